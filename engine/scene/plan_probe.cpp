@@ -37,6 +37,8 @@ std::vector<std::string> names_of(const auto& plans) {
     return names;
 }
 
+}  // namespace
+
 std::size_t find_body(const ScenePlan& plan, const std::string& name, const Place& place) {
     const std::size_t body = find_name(plan.bodies, name);
     if (body == nowhere) place.refuse(in_quotes(name), "the name of a body", nearest_hint(name, names_of(plan.bodies)));
@@ -49,6 +51,8 @@ std::size_t find_collider(const ScenePlan& plan, const std::string& name, const 
         place.refuse(in_quotes(name), "the name of a collider", nearest_hint(name, names_of(plan.colliders)));
     return collider;
 }
+
+namespace {
 
 std::size_t find_joint(const ScenePlan& plan, const std::string& name, const Place& place) {
     const auto found = std::ranges::find(plan.joints, name, &JointPlan::name);

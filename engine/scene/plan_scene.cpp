@@ -219,22 +219,14 @@ ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number, std::
     return collider;
 }
 
-std::size_t find_joined_body(const ScenePlan& plan, const std::string& wanted, const Place& place) {
-    std::vector<std::string> names;
-    for (const BodyPlan& body : plan.bodies) names.push_back(body.settings.name);
-    const auto found = std::find(names.begin(), names.end(), wanted);
-    if (found == names.end()) place.refuse(in_quotes(wanted), "the name of a body", nearest_hint(wanted, names));
-    return static_cast<std::size_t>(found - names.begin());
-}
-
 JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePlan& plan) {
     JointPlan joint;
     joint.name = entry.name.empty() ? "joint_" + std::to_string(number) : entry.name;
     if (std::ranges::find(plan.joints, joint.name, &JointPlan::name) != plan.joints.end())
         entry.place.key("name").refuse(in_quotes(joint.name) + ", which is already the name of a joint",
                                        "a different name for every joint");
-    joint.first = find_joined_body(plan, entry.first, entry.place.key("first"));
-    if (entry.second) joint.second = find_joined_body(plan, *entry.second, entry.place.key("second"));
+    joint.first = find_body(plan, entry.first, entry.place.key("first"));
+    if (entry.second) joint.second = find_body(plan, *entry.second, entry.place.key("second"));
     joint.settings.kind = entry.kind;
     joint.settings.point = entry.point;
     joint.settings.axis = entry.axis;

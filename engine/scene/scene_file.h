@@ -122,6 +122,12 @@ struct ColliderEntry {
                   collision_mask = ColliderSettings{}.collision_mask;
     Place place;
 };
+/// A point that is fixed to a body, to a collider, or to the world.
+struct AnchorEntry {
+    std::optional<std::string> body, collider;
+    Vec3 point = Vec3::Zero();  // position in the own frame of the mesh or collider, or in the world [m]
+    Place place;
+};
 struct MotorEntry {
     std::optional<Real> speed, position;
     std::vector<MotorKey> keys;

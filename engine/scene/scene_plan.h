@@ -10,6 +10,7 @@
 #include "engine/scene/place.h"
 #include "engine/scene/scene_file.h"
 #include "engine/world/tuning.h"
+#include "skerry/anchor.h"
 #include "skerry/scene.h"
 
 namespace skerry {
@@ -34,6 +35,11 @@ struct ColliderPlan {
     Shape shape;
     ColliderSettings settings;
     Place place;
+};
+struct AnchorPlan {
+    std::optional<std::size_t> body{}, collider{};  // indices in ScenePlan::bodies and ScenePlan::colliders
+    // Position in the own frame of the mesh or collider; without body and collider: in the world [m].
+    Vec3 point = Vec3::Zero();
 };
 struct JointPlan {
     std::string name;
@@ -88,6 +94,21 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
 /// Returns the nodes of a mesh inside a box, which is given in the mesh's own frame. Throws SceneError if the box
 /// contains no node.
 std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Place& place);
+
+/// Returns the index of a body or a collider in a plan. Throws SceneError if the plan has none of this name.
+std::size_t find_body(const ScenePlan& plan, const std::string& name, const Place& place);
+std::size_t find_collider(const ScenePlan& plan, const std::string& name, const Place& place);
+
+/// Resolves the names of an anchor. The plan must already contain all bodies and colliders.
+AnchorPlan plan_anchor(const AnchorEntry& entry, const ScenePlan& plan);
+
+/// Bodies and colliders of a world that is being built, in the order of the plan.
+struct PlannedHandles {
+    const std::vector<BodyHandle>& bodies;
+    const std::vector<ColliderHandle>& colliders;
+};
+/// Returns a planned anchor in the form that a world takes.
+Anchor anchor_of(const AnchorPlan& anchor, const ScenePlan& plan, const World& world, const PlannedHandles& handles);
 
 /// Adds a probe to a plan that already contains all bodies, colliders and joints.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);

@@ -1,5 +1,4 @@
-// Keys of scene files: declarations of the rules that scene_rules.cpp, shape_rules.cpp, joint_rules.cpp and
-// probe_rules.cpp define.
+// Keys of scene files: declarations of the rules that the files *_rules.cpp define.
 #pragma once
 
 #include "engine/scene/scene_file.h"
@@ -50,6 +49,8 @@ template <>
 const Rule<ShapeEntry>& rule_of<ShapeEntry>();
 template <>
 const Rule<ColliderEntry>& rule_of<ColliderEntry>();
+template <>
+const Rule<AnchorEntry>& rule_of<AnchorEntry>();
 template <>
 const Rule<MotorKey>& rule_of<MotorKey>();
 template <>

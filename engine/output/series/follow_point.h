@@ -4,15 +4,12 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "components/types.h"
+#include "systems/geometry/material_point.h"
 
 namespace skerry {
-
-struct MaterialPoint {
-    std::array<Index, 4> node{};
-    std::array<Real, 4> weight{};
-};
 
 /// Returns the corners of the tetrahedron that contains the position `place`, and the barycentric coordinates of this
 /// position. If no tetrahedron contains the position, returns the nearest node, or nothing if this node is farther away
