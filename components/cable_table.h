@@ -5,24 +5,16 @@
 #include <span>
 
 #include "components/anchor.h"
+#include "components/cable_control.h"
 #include "components/column.h"
 #include "components/column_role.h"
 #include "components/contact_table.h"
-#include "components/handle.h"
 #include "components/key_lists.h"
 #include "components/range.h"
 #include "components/row_type.h"
 #include "components/types.h"
 
 namespace skerry {
-
-using CableHandle = Handle<struct CableTag>;
-
-/// Quantity of a cable that its keys prescribe: the tension of its first segment [N], its greatest length [m], or the
-/// rate of its greatest length [m/s].
-enum class CableControl : std::uint8_t { tension, length, rate };
-template <>
-inline constexpr std::uint64_t value_count<CableControl> = 3;
 
 /// One row per cable. Segment `s` of a cable is the straight line from its point `s` to its next point.
 struct CableTable {

@@ -52,6 +52,8 @@ const Rule<ColliderEntry>& rule_of<ColliderEntry>();
 template <>
 const Rule<AnchorEntry>& rule_of<AnchorEntry>();
 template <>
+const Rule<CableEntry>& rule_of<CableEntry>();
+template <>
 const Rule<MotorKey>& rule_of<MotorKey>();
 template <>
 const Rule<MotorEntry>& rule_of<MotorEntry>();

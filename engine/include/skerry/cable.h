@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "components/cable_table.h"
+#include "components/cable_control.h"
 #include "components/types.h"
 #include "skerry/anchor.h"
 #include "skerry/time_table.h"
