@@ -383,7 +383,8 @@ void check_joints(const SavedFile& file, const Model& model) {
     }
 }
 
-void check_cables(const SavedFile& file, const CableTable& table) {
+void check_cables(const SavedFile& file, const Model& model) {
+    const CableTable& table = model.cables;
     check_keys(file, "cables", "keys", table.keys.span(), table.key.span());
     const std::size_t points = table.anchor.body.size();
     expect_size(file, "cables/collider", table.anchor.collider.size(), points);
@@ -401,6 +402,11 @@ void check_cables(const SavedFile& file, const CableTable& table) {
                           "at least two points from row " + std::to_string(end) + " on");
         if (table.keys[c].size() < 1) file.complain("cables/keys", at_row("no keys", c), "at least one key");
         end = of.end;
+    }
+    for (std::size_t p = 0; p < points; ++p) {
+        const Index body = table.anchor.body[p];
+        const Index nodes = body == no_index ? 1 : model.bodies.nodes[static_cast<std::size_t>(body)].size();
+        expect_between(file, "cables/anchor", table.anchor.point[p].node, 0, nodes - 1);
     }
     if (static_cast<std::size_t>(end) != points)
         file.complain("cables/points", std::to_string(end) + " points", std::to_string(points));
@@ -432,7 +438,7 @@ void check_model(const SavedFile& file, Model& model) {
     model.for_each_joining(
         [&](const char* name, auto& table, auto&) { check_joined_objects(file, model, name, table); });
     check_joints(file, model);
-    check_cables(file, model.cables);
+    check_cables(file, model);
     check_implicit_nodes(file, model.implicit_nodes);
     check_watch(file, model);
 }
