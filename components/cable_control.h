@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "components/handle.h"
-#include "components/row_type.h"
 
 namespace skerry {
 
@@ -13,7 +12,5 @@ using CableHandle = Handle<struct CableTag>;
 /// Quantity of a cable that its keys prescribe: the tension of its first segment [N], its greatest length [m], or the
 /// rate of its greatest length [m/s].
 enum class CableControl : std::uint8_t { tension, length, rate };
-template <>
-inline constexpr std::uint64_t value_count<CableControl> = 3;
 
 }  // namespace skerry

@@ -16,6 +16,9 @@
 
 namespace skerry {
 
+template <>
+inline constexpr std::uint64_t value_count<CableControl> = 3;
+
 /// One row per cable. Segment `s` of a cable is the straight line from its point `s` to its next point.
 struct CableTable {
     Column<std::uint32_t> slot;

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "components/types.h"
+#include "systems/solver/local/friction_law.h"
 
 namespace skerry {
 
