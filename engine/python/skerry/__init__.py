@@ -48,8 +48,11 @@ from ._settings import (
 )
 from ._sweep import sweep
 from ._world import (
+    Anchor,
     Attachment,
     Body,
+    Cable,
+    CableState,
     Collider,
     DynamicsChoice,
     DynamicsEstimate,
@@ -69,6 +72,7 @@ from ._world import (
 )
 from ._world.probes import (
     BodyProbe,
+    CableProbe,
     EnergyProbe,
     ForceProbe,
     JointProbe,
@@ -86,6 +90,7 @@ __all__ = [
     "OPEN",
     "SLIDE",
     "STICK",
+    "Anchor",
     "Attachment",
     "Backend",
     "Body",
@@ -93,6 +98,9 @@ __all__ = [
     "Box",
     "Bucket",
     "BusyError",
+    "Cable",
+    "CableProbe",
+    "CableState",
     "Capsule",
     "Collider",
     "ContactProbe",

@@ -3,11 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Unpack, cast
 
-from .._arrays import RotationLike, VectorLike, checked, flag, index_array, name_text, read_only, real, vector, whole
+from .._arrays import (
+    RotationLike,
+    TimeTableLike,
+    Vector,
+    VectorLike,
+    checked,
+    flag,
+    index_array,
+    name_text,
+    read_only,
+    real,
+    vector,
+    whole,
+)
 from .._arrays import rotation as rotation_vector
 from .._errors import scene_error
 from .._mesh import Mesh
@@ -27,7 +40,9 @@ from .._settings import (
     Sphere,
     SurfaceMesh,
 )
+from .anchor import Anchor
 from .body import Attachment, Body, Indices
+from .cable import Cable, drive_tables
 from .changes import MaterialChanges
 from .collider import Collider
 from .joint import Joint, joint_label
@@ -236,9 +251,36 @@ class Building:
         other = None if second is None else self._own(second, "second", Body)
         return self._joint(self._core.add_joint(one, other, given))
 
-    def remove(self, removed: PosedObject | Joint) -> None:
-        """Removes a body, a collider, an attachment or a joint. BufferError: arrays of views() are in use."""
-        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint)
+    def add_cable(
+        self,
+        points: Sequence[Anchor],
+        *,
+        tension: TimeTableLike | None = None,
+        length: TimeTableLike | None = None,
+        rate: TimeTableLike | None = None,
+        friction: float = 0.0,
+    ) -> Cable:
+        """Adds a cable that runs straight from point to point and never pushes, and returns it.
+
+        points: at least two, and at least one on a body. Exactly one of the following is given, as a number or as pairs
+        (time, value). tension: tension of the first segment [N]. length: greatest length [m]. rate: rate of the
+        greatest length, which is the length now [m/s]. friction: friction coefficient mu at the points between the
+        first and the last; tensions differ there by at most exp(mu theta) for a bend by the angle theta."""
+        given = [self._anchor(point, f"points[{number}]") for number, point in enumerate(points)]
+        drive = drive_tables(tension, length, rate)
+        return self._cable(self._core.add_cable(given, *drive, real(friction, "friction")))
+
+    def _anchor(self, anchor: Anchor, name: str) -> tuple[Any, Vector]:
+        """An anchor for the extension module."""
+        checked(anchor, name, Anchor)
+        if anchor.body is not None and anchor.collider is not None:
+            raise scene_error("cable", name, "a body and a collider", "a body, a collider, or neither for the world")
+        given = anchor.collider if anchor.body is None else anchor.body
+        return None if given is None else self._own(given, name, Body, Collider), vector(anchor.point, f"{name}.point")
+
+    def remove(self, removed: PosedObject | Joint | Cable) -> None:
+        """Removes a body, a collider, an attachment, a joint or a cable. BufferError: arrays of views() are in use."""
+        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint, Cable)
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)
 
@@ -256,6 +298,11 @@ class Building:
     def joints(self) -> list[Joint]:
         """The joints in the order added. They have no names."""
         return [self._joint(handle) for handle in self._core.joints()]
+
+    @property
+    def cables(self) -> list[Cable]:
+        """The cables in the order added. They have no names."""
+        return [self._cable(handle) for handle in self._core.cables()]
 
     @property
     def attachments(self) -> list[Attachment]:
@@ -276,6 +323,9 @@ class Building:
 
     def _collider(self, handle: Any, name: str | None = None) -> Collider:
         return Collider(self._self, handle, self._core.name(handle) if name is None else name)
+
+    def _cable(self, handle: Any) -> Cable:
+        return Cable(self._self, handle, "cable")
 
     def _joint(self, handle: Any) -> Joint:
         state = self._core.joint_state(handle)
