@@ -176,6 +176,32 @@ TEST_CASE("the work of a cable becomes elastic energy, motion and losses", "[sce
         }
 }
 
+TEST_CASE("a mass on a taut cable swings at its frequency and gains no energy at the stable step", "[scene][cables]") {
+    const Real tension = 1e5, half = 0.5, mass = 1, speed = 0.01;
+    const Real rate = std::sqrt(2 * tension / (half * mass));  // circular frequency [rad/s]
+    World world(accurate(Vec3::Zero(), 1e-12));
+    const BodyHandle cube = add_cube(world, {0, 0, 0});
+    Cables(world).add({.points = {{.point = {-half, 0, 0}}, {.body = cube, .point = {0, 0, 0}}, {.point = {half, 0, 0}}},
+                       .drive = {.tension = tension}});
+    world.set_velocity(cube, {0, 0, speed});
+    int crossings = 0;
+    Real largest = 0, before = 0, last = 0;
+    while (crossings < 400) {
+        REQUIRE(world.advance(1e-4).ok());
+        const Real now = world.center_of_mass(cube).z();
+        if (before != 0 && (now > 0) != (before > 0)) {
+            ++crossings;
+            last = world.time() - 1e-4 * now / (now - before);
+        }
+        largest = std::max(largest, std::abs(now));
+        before = now;
+    }
+    CHECK(last == Approx(400 * std::numbers::pi / rate).epsilon(1e-3));
+    CHECK(largest == Approx(speed / rate).epsilon(1e-2));
+    REQUIRE(world.advance(20).ok());  // in steps as long as the stable step allows
+    CHECK(std::abs(world.center_of_mass(cube).z()) < 2 * speed / rate);
+}
+
 TEST_CASE("a slack cable does not push", "[scene][cables]") {
     World world(with_step(1e-3));
     const BodyHandle cube = add_cube(world, {0, 0, -1});
