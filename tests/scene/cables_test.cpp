@@ -230,6 +230,18 @@ TEST_CASE("a slack cable does not push", "[scene][cables]") {
     CHECK(world.velocity(cube).velocity.z() == 1);
 }
 
+TEST_CASE("a cable that nothing can shorten stays without tension", "[scene][cables]") {
+    World world(with_step(1e-3));
+    const BodyHandle cube = add_cube(world, {0, 0, 0});
+    const CableHandle cable = Cables(world).add(
+        {.points = {{.point = {0.1, 0.2, 1}}, {.body = cube, .point = {0, 0, 0}}, {.point = {-0.1, -0.2, -1}}},
+         .drive = {.rate = -0.1},
+         .friction = 0.2});
+    REQUIRE(world.advance(0.1).ok());
+    CHECK(Cables(world).state(cable).tension == std::vector<Real>{0, 0});
+    CHECK(world.velocity(cube).velocity.norm() == 0);
+}
+
 namespace {
 
 /// A soft bar and a rigid cube that a cable with friction draws together while they spin, beside an obstacle.

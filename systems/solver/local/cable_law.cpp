@@ -5,6 +5,25 @@
 
 namespace skerry {
 
+namespace {
+
+/// Sum of entries of a mobility matrix that may cancel, for example if a cable is straight through a point that moves.
+struct MobilitySum {
+    Real sum = 0, size = 0;  // sum of the entries, and of their absolute values [1/kg]
+
+    void add(Real entry) {
+        sum += entry;
+        size += std::abs(entry);
+    }
+    /// The sum, or 0 if it is only a rounding error.
+    Real value() const {
+        constexpr Real rounding = 1e-12;
+        return sum > rounding * size ? sum : 0;
+    }
+};
+
+}  // namespace
+
 void CableLaw::read(std::span<const Vec4> point, std::span<Real> impulse_of_segment) const {
     Vec3 last = Vec3::Zero();
     for (std::size_t s = 0; s < segments(); ++s) {
@@ -14,10 +33,14 @@ void CableLaw::read(std::span<const Vec4> point, std::span<Real> impulse_of_segm
 }
 
 void CableLaw::prepare() const {
+    MobilitySum of;
     for (std::size_t s = segments(); s-- > 0;) {
-        Real sum = entry(s, s);
-        for (std::size_t m = s + 1; m < segments(); ++m) sum += entry(s, m) + entry(m, s);
-        far_mobility[s] = (s + 1 < segments() ? far_mobility[s + 1] : 0) + sum;
+        of.add(entry(s, s));
+        for (std::size_t m = s + 1; m < segments(); ++m) {
+            of.add(entry(s, m));
+            of.add(entry(m, s));
+        }
+        far_mobility[s] = of.value();
     }
 }
 
@@ -41,10 +64,10 @@ Real CableLaw::step(std::size_t s) const {
     const std::size_t count = segments();
     const Real present = impulse[s];
     const auto ratio = [&](std::size_t m) { return present > 0 ? impulse[m] / present : Real(1); };
-    Real of = 0;  // mobility of the far rate for such changes [1/kg]
+    MobilitySum of;  // mobility of the far rate for such changes
     for (std::size_t m = s; m < count; ++m)
-        for (std::size_t row = s; row < count; ++row) of += entry(row, m) * ratio(m);
-    const Real next = answer(s, of);
+        for (std::size_t row = s; row < count; ++row) of.add(entry(row, m) * ratio(m));
+    const Real next = answer(s, of.value());
     const Real change = next - present;
     if (change == 0) return 0;
     for (std::size_t m = count; m-- > s;) {
@@ -71,7 +94,7 @@ Real CableLaw::squared_residual() const {
     Real sum = 0;
     for (std::size_t s = 0; s < segments(); ++s) {
         const Real off = impulse[s] - answer(s, far_mobility[s]);
-        sum += std::max(far_mobility[s], Real(0)) * off * off;
+        sum += far_mobility[s] * off * off;
     }
     return sum;
 }
