@@ -1,7 +1,11 @@
 // Cables that run through points of bodies.
 #include "skerry/cable.h"
 
+#include <array>
+#include <optional>
+#include <tuple>
 #include <variant>
+#include <vector>
 
 #include "engine/python/read_settings.h"
 #include "engine/python/world/parts.h"
@@ -50,7 +54,7 @@ void bind_cables(WorldClass& type) {
     type.def("add_cable",
              guarded([](World& world, const std::vector<GivenAnchor>& points, const GivenTable& tension,
                         const GivenTable& length, const GivenTable& rate, Real friction) {
-                 CableSettings settings{.drive = drive_of(tension, length, rate), .friction = friction};
+                 CableSettings settings{.points = {}, .drive = drive_of(tension, length, rate), .friction = friction};
                  for (const GivenAnchor& point : points) settings.points.push_back(anchor_of(point));
                  return Cables(world).add(settings);
              }),
