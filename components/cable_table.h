@@ -30,7 +30,7 @@ struct CableTable {
     Column<Real> dissipated;  // energy that friction at the points dissipated before the last step [J]
     Column<Range> points;     // rows of the columns by point
     Column<Range> keys;       // rows of `key`
-    // Columns by point. For the last point of a cable, `tension` and `length` are 0.
+    // The following columns have one row per point. For the last point of a cable, `tension` and `length` are 0.
     AnchorColumns anchor;
     Column<Real> tension;  // impulse of the tension of the segment from this point in the last step [N s]
     Column<Real> length;   // length of the segment from this point at the start of the last step [m]
@@ -93,14 +93,14 @@ struct CableBlock {
 /// The cables that act in a step. Cables whose bodies all sleep, or that cannot move anything, are left out.
 struct CableBlockTable {
     Column<CableBlock> block;
-    // By point.
-    Column<Stencil> stencil;   // nodes and weights; all weights are 0 for points of colliders and of the world
-    Column<Vec3> velocity;     // velocity of points of colliders; 0 for other points [m/s]
-    Column<Vec3> direction;    // unit vector to the next point; 0 at the last point
-    Column<Real> length;       // distance to the next point; 0 at the last point [m]
-    Column<Real> most_ratio;   // greatest ratio of the tensions on both sides of the point, exp(friction angle)
-    Column<Real> impulse;      // impulse of the tension of the segment from the point; before the solve: warm start [N s]
-    Column<Real> work;         // by block: work of a solved cable on the bodies [J]
+    // The following columns have one row per point.
+    Column<Stencil> stencil;  // nodes and weights; all weights are 0 for points of colliders and of the world
+    Column<Vec3> velocity;    // velocity of points of colliders; 0 for other points [m/s]
+    Column<Vec3> direction;   // unit vector to the next point; 0 at the last point
+    Column<Real> length;      // distance to the next point; 0 at the last point [m]
+    Column<Real> most_ratio;  // greatest ratio of the tensions on both sides of the point, exp(friction angle)
+    Column<Real> impulse;  // tension of the segment from the point, as an impulse; before the solve: warm start [N s]
+    Column<Real> work;     // by block: work of a solved cable on the bodies [J]
     Column<Vec3> sum_impulse;  // by block: total impulse of a solved cable on the moving nodes [N s]
     Index mobilities = 0;      // number of entries of all mobility matrices
     Index first_solved = 0;    // the blocks from here on have `solved` set

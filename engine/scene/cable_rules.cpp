@@ -7,9 +7,10 @@ template <>
 const Rule<CableEntry>& rule_of<CableEntry>() {
     using Entry = CableEntry;
     static const auto rule =
-        Rule<Entry>("cable",
-                    "A cable that runs straight from point to point and never pushes. It is drawn in and let out at its "
-                    "first point.")
+        Rule<Entry>(
+            "cable",
+            "A cable that runs straight from point to point and never pushes. It is drawn in and let out at its "
+            "first point.")
             .key("name", &Entry::name, {.meaning = "name for probes; default: cable_NUMBER"})
             .key("points", &Entry::points,
                  {.meaning = "points through which the cable runs; at least two, and at least one on a body",

@@ -111,12 +111,12 @@ Index collect_connections(const NodeGroups& groups, std::span<const Real> invers
 /// Separates regions sequentially, for few contacts or few workers. It is the reference for separate_in_blocks.
 Index separate_in_order(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
                         UnionFind& sets, RegionTable& regions, std::span<Index> contact_region) {
-    const Index count = groups.empty()
-                            ? label_by_union_find(
-                                  stencil, inverse_mass, [](Index node) { return node; }, groups, sets, contact_region)
-                            : label_by_union_find(
-                                  stencil, inverse_mass, [&](Index node) { return groups.leader(node); }, groups, sets,
-                                  contact_region);
+    const Index count =
+        groups.empty()
+            ? label_by_union_find(
+                  stencil, inverse_mass, [](Index node) { return node; }, groups, sets, contact_region)
+            : label_by_union_find(
+                  stencil, inverse_mass, [&](Index node) { return groups.leader(node); }, groups, sets, contact_region);
     const Index all = collect_connections(
         groups, inverse_mass, [&](Index node) { return sets.number(node); }, count, regions);
     collect_contacts(contact_region, all, regions);

@@ -87,7 +87,36 @@ void add_block(const CableInputs& cables, std::size_t cable, const CableTimes& t
     blocks.sum_impulse.push_back(Vec3::Zero());
 }
 
+/// Adds the bound of a segment of the length `length` and of the greatest tension `tension` to its bodies.
+void add_segment_rate(const CableInputs& cables, std::size_t point, Real tension, std::span<Real> of_body) {
+    const Real length = (cables.anchor.at(point + 1) - cables.anchor.at(point)).norm();
+    if (!(length > 0) || tension == 0) return;
+    // A segment resists a displacement across its direction with the stiffness tension / length. With the weights w of
+    // the nodes of an anchor and their masses m, w^2 / m sums to the mobility of the anchor.
+    Real mobility = 0;  // [1/kg]
+    for (const std::size_t end : {point, point + 1})
+        cables.anchor.for_each_node(
+            end, [&](std::size_t node, Real weight) { mobility += weight * weight * cables.inverse_mass[node]; });
+    for (const std::size_t end : {point, point + 1})
+        if (const Index body = cables.anchor.body[end]; body != no_index)
+            of_body[static_cast<std::size_t>(body)] += tension / length * mobility;
+}
+
 }  // namespace
+
+void add_cable_rates(const CableInputs& cables, std::span<Real> of_body) {
+    for (std::size_t c = 0; c < cables.size(); ++c) {
+        const Range points = cables.points[c];
+        const std::span<const TimeKey> keys = cables.keys_of(c);
+        const bool known = cables.control[c] == CableControl::tension;
+        for (Index p = points.begin; p + 1 < points.end; ++p) {
+            const auto at = static_cast<std::size_t>(p);
+            const Real last = cables.step[c] > 0 ? cables.tension[at] / cables.step[c] : 0;
+            const Real most = known ? std::ranges::max_element(keys, {}, &TimeKey::value)->value : last;
+            add_segment_rate(cables, at, most, of_body);
+        }
+    }
+}
 
 bool CableInputs::is_driven(std::size_t cable, Real t, Real h) const {
     const std::span<const TimeKey> of = keys_of(cable);
@@ -167,7 +196,8 @@ bool store_cables(const CableBlockTable& blocks, Real kick, const CableMemory& o
         const auto c = static_cast<std::size_t>(block.cable);
         const std::span<const Real> length = rows_of(blocks.length, block.points),
                                     impulse = rows_of(blocks.impulse, block.points);
-        const std::span<Real> tension = rows_of(out.tension, out.points[c]), before = rows_of(out.length, out.points[c]);
+        const std::span<Real> tension = rows_of(out.tension, out.points[c]),
+                              before = rows_of(out.length, out.points[c]);
         if (out.step[c] > 0) {
             const CableWork of = work_of_cable(tension.first(tension.size() - 1), before, length);
             out.work[c] += of.work / out.step[c];

@@ -70,6 +70,9 @@ bool prepare_cables(const CableInputs& cables, const CableTimes& times, CableBlo
 /// Adds the forces of the cables with known forces to the forces on nodes. Returns false if there is none.
 bool add_cable_forces(const CableBlockTable& blocks, Real kick, std::span<Vec3> applied_force);
 
+/// Adds, for each body, an upper bound of the contribution of its cables to its squared natural frequencies [1/s^2].
+void add_cable_rates(const CableInputs& cables, std::span<Real> of_body);
+
 /// Marks the bodies of cables whose control changes in this step. Returns false if there is none.
 bool mark_driven_cables(const CableInputs& cables, Real t, Real h, std::span<std::uint8_t> marked);
 

@@ -58,10 +58,9 @@ struct HeldBar {
 
 /// A rigid cube at `place`.
 BodyHandle add_cube(World& world, const Vec3& place, Real size = 0.1, Real density = 1000) {
-    return world.add_body(mesh::box(Vec3::Constant(size), {1, 1, 1}),
-                          {.material = world.add_material({.density = density}),
-                           .position = place,
-                           .dynamics = BodyDynamics::rigid});
+    return world.add_body(
+        mesh::box(Vec3::Constant(size), {1, 1, 1}),
+        {.material = world.add_material({.density = density}), .position = place, .dynamics = BodyDynamics::rigid});
 }
 
 Settings with_step(Real h, const Vec3& gravity = Vec3::Zero(), Index threads = 1) {
@@ -177,8 +176,7 @@ TEST_CASE("the work of a cable becomes elastic energy, motion and losses", "[sce
             CHECK(report.energy_error_share < 2e-3);
             const Energy energy = bar_with.world.energy();
             REQUIRE(energy.elastic > 0);
-            CHECK(bar_with.state().work ==
-                  Approx(energy.elastic + energy.kinetic + energy.dissipated).epsilon(0.01));
+            CHECK(bar_with.state().work == Approx(energy.elastic + energy.kinetic + energy.dissipated).epsilon(0.01));
         }
 }
 
@@ -187,8 +185,9 @@ TEST_CASE("a mass on a taut cable swings at its frequency and gains no energy at
     const Real rate = std::sqrt(2 * tension / (half * mass));  // circular frequency [rad/s]
     World world(accurate(Vec3::Zero(), 1e-12));
     const BodyHandle cube = add_cube(world, {0, 0, 0});
-    Cables(world).add({.points = {{.point = {-half, 0, 0}}, {.body = cube, .point = {0, 0, 0}}, {.point = {half, 0, 0}}},
-                       .drive = {.tension = tension}});
+    Cables(world).add(
+        {.points = {{.point = {-half, 0, 0}}, {.body = cube, .point = {0, 0, 0}}, {.point = {half, 0, 0}}},
+         .drive = {.tension = tension}});
     world.set_velocity(cube, {0, 0, speed});
     int crossings = 0;
     Real largest = 0, before = 0, last = 0;
@@ -211,9 +210,8 @@ TEST_CASE("a mass on a taut cable swings at its frequency and gains no energy at
 TEST_CASE("a slack cable does not push", "[scene][cables]") {
     World world(with_step(1e-3));
     const BodyHandle cube = add_cube(world, {0, 0, -1});
-    const CableHandle cable =
-        Cables(world).add({.points = {{.point = {0, 0, 0}}, {.body = cube, .point = {0, 0, -1}}},
-                           .drive = {.length = 1.2}});
+    const CableHandle cable = Cables(world).add(
+        {.points = {{.point = {0, 0, 0}}, {.body = cube, .point = {0, 0, -1}}}, .drive = {.length = 1.2}});
     world.set_velocity(cube, {0, 0, -1});
     while (world.time() < 0.19) {
         REQUIRE(world.advance(0.01).ok());
@@ -311,10 +309,10 @@ TEST_CASE("a cable presses a cube onto a plane, and contact and cable are solved
     const Real gap = 0.02 * 0.1;
     const BodyHandle cube = add_cube(world, {0, 0, 0.05 + gap});
     // The cable runs from the cube down through the plane to the world, and is 1 mm shorter than the contact allows.
-    const CableHandle cable = Cables(world).add(
-        {.points = {{.point = {0.2, 0, -0.1}}, {.body = cube, .point = {0, 0, 0.05 + gap}}},
-         .drive = {.tension = TimeTable({{0, 0}, {0.1, 4}})},
-         .friction = 0.1});
+    const CableHandle cable =
+        Cables(world).add({.points = {{.point = {0.2, 0, -0.1}}, {.body = cube, .point = {0, 0, 0.05 + gap}}},
+                           .drive = {.tension = TimeTable({{0, 0}, {0.1, 4}})},
+                           .friction = 0.1});
     REQUIRE(world.advance(0.5).ok());
     CHECK(world.velocity(cube).velocity.norm() < 1e-9);
     Vec3 support = Vec3::Zero();
@@ -328,9 +326,9 @@ TEST_CASE("a cable presses a cube onto a plane, and contact and cable are solved
 TEST_CASE("removing a body removes its cables, and other cables stay", "[scene][cables]") {
     Flying flying({.tension = 2});
     Cables cables(flying.world);
-    const CableHandle other = cables.add({.points = {{.point = {0.1, 1, 0.1}}, {.body = flying.cube,
-                                                                                .point = {0.1, 0.3, 0.1}}},
-                                          .drive = {.length = TimeTable({{0, 1}, {1, 0.5}})}});
+    const CableHandle other =
+        cables.add({.points = {{.point = {0.1, 1, 0.1}}, {.body = flying.cube, .point = {0.1, 0.3, 0.1}}},
+                    .drive = {.length = TimeTable({{0, 1}, {1, 0.5}})}});
     flying.world.remove(flying.soft);
     CHECK_FALSE(cables.alive(flying.cable));
     REQUIRE(cables.alive(other));

@@ -33,13 +33,13 @@ struct CableSettings {
 };
 
 struct CableState {
-    std::vector<Vec3> points;   // present positions of the points [m]
-    std::vector<Real> tension;  // tension of each segment in the last step [N]
-    Real length = 0;            // present length [m]
-    Real rate = 0;              // present rate of the length [m/s]
+    std::vector<Vec3> points;        // present positions of the points [m]
+    std::vector<Real> tension;       // tension of each segment in the last step [N]
+    Real length = 0;                 // present length [m]
+    Real rate = 0;                   // present rate of the length [m/s]
     std::optional<Real> released{};  // greatest length, unless the tension is prescribed [m]
-    Real work = 0;        // work of the drive on the cable since the cable was added [J]
-    Real dissipated = 0;  // energy dissipated by friction at the points since the cable was added [J]
+    Real work = 0;                   // work of the drive on the cable since the cable was added [J]
+    Real dissipated = 0;             // energy dissipated by friction at the points since the cable was added [J]
 };
 
 /// A view of the cables of a world. It is valid until the world is moved or destroyed. Functions that change cables may

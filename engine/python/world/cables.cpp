@@ -1,6 +1,8 @@
 // Cables that run through points of bodies.
 #include "skerry/cable.h"
 
+#include <nanobind/stl/tuple.h>
+
 #include <array>
 #include <optional>
 #include <tuple>
@@ -67,9 +69,7 @@ void bind_cables(WorldClass& type) {
              guarded([](World& world, const CableHandle& cable) { return values_of(Cables(world).state(cable)); }))
         .def("set_cable_drive",
              guarded([](World& world, const CableHandle& cable, const GivenTable& tension, const GivenTable& length,
-                        const GivenTable& rate) {
-                 Cables(world).set_drive(cable, drive_of(tension, length, rate));
-             }),
+                        const GivenTable& rate) { Cables(world).set_drive(cable, drive_of(tension, length, rate)); }),
              nb::arg("cable"), nb::arg("tension").none(), nb::arg("length").none(), nb::arg("rate").none());
 }
 

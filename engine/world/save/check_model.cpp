@@ -333,7 +333,8 @@ void check_keys(const SavedFile& file, const std::string& table, const std::stri
     for (std::size_t row = 0; row < range.size(); ++row) {
         const Range keys = range[row];
         if (!(keys.begin >= 0 && keys.begin <= keys.end && keys.end <= static_cast<Index>(key.size())))
-            file.complain(place, at_row("a range that does not exist", row), "a range of the rows of " + table + "/key");
+            file.complain(place, at_row("a range that does not exist", row),
+                          "a range of the rows of " + table + "/key");
         const std::span<const TimeKey> list = rows_of(key, keys);
         if (std::ranges::adjacent_find(list, std::greater_equal<>(), &TimeKey::time) != list.end())
             file.complain(table + "/key", at_row("keys whose times do not ascend", row), "ascending times");

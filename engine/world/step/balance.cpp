@@ -101,8 +101,8 @@ void add_step(const StepScratch& step, Balance& balance) {
     Real push_work = 0;
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;
-    const Real work = push_work + external.work + step.findings.joints.work + step.findings.cables.work + contacts.outer_work -
-                      contacts.dissipated - step.findings.damped - step.findings.strained.damped -
+    const Real work = push_work + external.work + step.findings.joints.work + step.findings.cables.work +
+                      contacts.outer_work - contacts.dissipated - step.findings.damped - step.findings.strained.damped -
                       step.findings.relaxed - step.findings.viscous - step.findings.rest.energy;
     ++balance.steps;
     // Impulses that cancel each other also count as exchanged momentum, for example those of weight and support.

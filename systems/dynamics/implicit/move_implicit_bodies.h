@@ -168,8 +168,8 @@ struct TouchedNodes {
     }
 };
 
-/// Lists the nodes of implicit bodies that contacts and cables touch. Computes the velocity response of each of these nodes to
-/// impulses on all touched nodes of its body. Returns false if none touches an implicit body (skipped).
+/// Lists the nodes of implicit bodies that contacts and cables touch. Computes the velocity response of each of these
+/// nodes to impulses on all touched nodes of its body. Returns false if none touches an implicit body (skipped).
 bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const TouchedNodes& stencils,
                             std::span<const Index> node_body, const ImplicitTimes& times, StiffBodies& stiff,
                             ImplicitCoupling& coupling);

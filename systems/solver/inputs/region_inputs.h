@@ -180,10 +180,9 @@ struct RegionOutputs {
     std::span<Vec3> deforming_impulse{};  // by row of ImplicitNodeTable, zero before the solve [N s]
     std::span<Vec3> joint_impulse{};      // by joint block: warm start as input, solution as output
     std::span<Real> motor_impulse{};      // by joint block
-    // By point of the cables: impulse of the tension; warm start as input, solution as output [N s]
-    std::span<Real> cable_impulse{};
-    std::span<Real> cable_work{};  // by solved cable: work on the bodies [J]
-    std::span<Vec3> cable_sum{};   // by solved cable: total impulse on the moving nodes [N s]
+    std::span<Real> cable_impulse{};  // tension by point of the cables: warm start as input, solution as output [N s]
+    std::span<Real> cable_work{};     // by solved cable: work on the bodies [J]
+    std::span<Vec3> cable_sum{};      // by solved cable: total impulse on the moving nodes [N s]
 
     static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid,
                               ImplicitNodeTable& implicit, JointBlockTable& joints, CableBlockTable& cables) {

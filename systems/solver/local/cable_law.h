@@ -12,17 +12,18 @@ namespace skerry {
 /// u [m/s] by -A r, with the mobility matrix A. At a point between the segments s - 1 and s, friction bounds the ratio
 /// of the tensions: r_(s-1) / e <= r_s <= r_(s-1) e.
 struct CableLaw {
-    Index first = 0;     // number of the first point among the rows of the region
-    Index moving = 0;    // number of the first point that impulses can move
+    Index first = 0;   // number of the first point among the rows of the region
+    Index moving = 0;  // number of the first point that impulses can move
     bool by_length = false;
-    Real wanted = 0;     // greatest sum of u [m/s] if `by_length`, else the impulse r_0 [N s]
+    Real wanted = 0;                   // greatest sum of u [m/s] if `by_length`, else the impulse r_0 [N s]
     std::span<const Vec3> direction;   // by segment: unit vector to the next point
     std::span<const Real> most_ratio;  // by segment: e at the start of the segment
     std::span<const Real> mobility;    // A, row by row [1/kg]
-    // By segment: the sum of the entries of A whose row and column are at least the segment [1/kg]. It is the mobility
-    // of the rate of length of the cable from the segment on.
+    // Sum of the entries of A whose row and column are at least the segment, by segment [1/kg]. It is the mobility of
+    // the rate of length of the cable from the segment on.
     std::span<Real> far_mobility;
-    // By segment: present impulses and rates of length. Impulses before the step of the solver, and in the sweep before.
+    // Present impulses and rates of length, by segment. Impulses before the present step of the solver, and in the
+    // sweep before.
     std::span<Real> impulse, rate, before, previous;
     static constexpr std::size_t numbers_by_segment = 5;  // number of the lists of numbers from far_mobility on
 
@@ -35,7 +36,8 @@ struct CableLaw {
     /// Computes the impulses of the law from the present ones, while all contacts keep their impulses. Updates the
     /// rates.
     void solve() const;
-    /// Squared residual of the law at the present impulses and rates, in the energy norm [J] (docs/methods/errors.md 1).
+    /// Squared residual of the law at the present impulses and rates, in the energy norm [J] (docs/methods/errors.md
+    /// 1).
     Real squared_residual() const;
     /// Energy product a . A b of the impulses a and b [J].
     Real product(std::span<const Real> a, std::span<const Real> b) const;

@@ -79,10 +79,10 @@ void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory,
     const auto velocity = [&](std::size_t p) {
         const std::size_t i = static_cast<std::size_t>(first) + p;
         const Vec4* const rows = memory.velocity.data();
-        return Vec3((memory.contact[i].offset +
-                     add_rigid_velocities(memory.part[i], rows,
-                                          add_node_velocities(memory.contact[i], rows, Vec4::Zero())))
-                        .head<3>());
+        return Vec3(
+            (memory.contact[i].offset +
+             add_rigid_velocities(memory.part[i], rows, add_node_velocities(memory.contact[i], rows, Vec4::Zero())))
+                .head<3>());
     };
     for (std::size_t s = 0; s < count; ++s) law.rate[s] = law.direction[s].dot(velocity(s + 1) - velocity(s));
     add_to_sums(law, sums);
@@ -94,9 +94,10 @@ void take_cable_impulses(const RegionStage& stage, Index cable, const BodyMemory
     Vec3 last = Vec3::Zero();
     for (Index p = 0; p < points.size(); ++p) {
         const auto s = static_cast<std::size_t>(p);
-        const Vec3 next = s < law.segments() ? Vec3(stage.out.cable_impulse[static_cast<std::size_t>(points.begin + p)] *
-                                                    law.direction[s])
-                                             : Vec3(Vec3::Zero());
+        const Vec3 next =
+            s < law.segments()
+                ? Vec3(stage.out.cable_impulse[static_cast<std::size_t>(points.begin + p)] * law.direction[s])
+                : Vec3(Vec3::Zero());
         memory.impulse[static_cast<std::size_t>(law.first + p)] = padded(Vec3(next - last));
         last = next;
     }

@@ -170,7 +170,8 @@ private:
         return stage_.inputs.normal[static_cast<std::size_t>(region_.row[i])];
     }
 
-    /// Adds a node that moves with a rigid body. `beside()`: initial value of the arm of the body, times its weight [m].
+    /// Adds a node that moves with a rigid body. `beside()`: initial value of the arm of the body, times its weight
+    /// [m].
     void add_term(RigidPart& part, Index body, Index node, Real weight, auto&& beside) {
         const RigidInputs& rigid = stage_.inputs.rigid;
         Index k = 0;
@@ -179,8 +180,7 @@ private:
         if (k == part.term_count) {
             ++part.term_count;
             const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
-            term = {
-                .row = body, .slot = static_cast<Index>(2 * place), .arm = padded(Vec3(beside())), .spin_step = {}};
+            term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = padded(Vec3(beside())), .spin_step = {}};
         }
         term.weight += weight;
         term.arm += weight * padded(rigid.position[static_cast<std::size_t>(node)] -
