@@ -5,6 +5,7 @@
 #include "components/attachment_table.h"
 #include "components/body_table.h"
 #include "components/bvh_table.h"
+#include "components/cable_table.h"
 #include "components/collider_table.h"
 #include "components/collision_filter.h"
 #include "components/contact_table.h"
@@ -70,6 +71,8 @@ template std::span<const ColumnInfo> columns_of<AttachmentTable>();
 template std::span<const ColumnInfo> columns_of<BodyTable>();
 template std::span<const ColumnInfo> columns_of<BvhLeafTable>();
 template std::span<const ColumnInfo> columns_of<BvhTable>();
+template std::span<const ColumnInfo> columns_of<CableBlockTable>();
+template std::span<const ColumnInfo> columns_of<CableTable>();
 template std::span<const ColumnInfo> columns_of<ColliderTable>();
 template std::span<const ColumnInfo> columns_of<ContactTable>();
 template std::span<const ColumnInfo> columns_of<DisabledPairTable>();

@@ -27,6 +27,7 @@ enum RegionShortcut : std::uint8_t {
 struct RegionTable {
     Ragged<Index> contacts;    // rows of ContactTable, ascending
     Ragged<Index> joints;      // rows of JointBlockTable, ascending; `joints` has no rows if there are no joints
+    Ragged<Index> cables;      // numbers of solved cables, ascending; `cables` has no rows if there are none
     Column<ContactKey> id;     // key of the region's first contact, which identifies the region across steps
     Column<Index> iterations;  // number of solver sweeps; 0 if the warm start is the solution
     Column<Real> error;        // relative error e_nat of the solution (docs/methods/errors.md 2)
@@ -43,11 +44,16 @@ struct RegionTable {
     std::span<const Index> joints_of(std::size_t region) const {
         return joints.size() == 0 ? std::span<const Index>() : joints[region];
     }
+    std::span<const Index> cables_of(std::size_t region) const {
+        return cables.size() == 0 ? std::span<const Index>() : cables[region];
+    }
     void for_each_column(auto&& visit) {
         visit("contacts.offset", contacts.offset, ColumnRole::scratch);
         visit("contacts.item", contacts.item, ColumnRole::scratch);
         visit("joints.offset", joints.offset, ColumnRole::scratch);
         visit("joints.item", joints.item, ColumnRole::scratch);
+        visit("cables.offset", cables.offset, ColumnRole::scratch);
+        visit("cables.item", cables.item, ColumnRole::scratch);
         visit("id", id, ColumnRole::scratch);
         visit("iterations", iterations, ColumnRole::scratch);
         visit("error", error, ColumnRole::scratch);

@@ -98,6 +98,7 @@ void rename_world(RecordedProbe& probe, std::uint32_t number) {
             if constexpr (requires { what.collider; }) rename(what.collider);
             if constexpr (requires { what.attachment; }) rename(what.attachment);
             if constexpr (requires { what.joint; }) rename(what.joint);
+            if constexpr (requires { what.cable; }) rename(what.cable);
             if constexpr (requires { what.object; }) std::visit(rename, what.object);
             if constexpr (std::is_same_v<std::remove_cvref_t<decltype(what)>, BodyForceProbe>) {
                 if (what.by) std::visit(rename, *what.by);

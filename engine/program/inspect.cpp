@@ -265,6 +265,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"colliders", report.colliders},
                            {"joints", plan.joints.size()},
                            {"ties", plan.ties.size()},
+                           {"cables", plan.cables.size()},
                            {"nodes", report.nodes},
                            {"elements", report.elements},
                            {"stable_dt", stable_step},
@@ -292,7 +293,8 @@ int inspect_scene(const InspectOptions& options) {
               << "  bodies        " << grouped(report.bodies) << ", " << grouped(report.nodes) << " nodes, "
               << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders"
               << (plan.joints.empty() ? "" : ", " + grouped(plan.joints.size()) + " joints")
-              << (plan.ties.empty() ? "" : ", " + grouped(plan.ties.size()) + " ties") << "\n"
+              << (plan.ties.empty() ? "" : ", " + grouped(plan.ties.size()) + " ties")
+              << (plan.cables.empty() ? "" : ", " + grouped(plan.cables.size()) + " cables") << "\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
               << (report.stable_step_body.empty() ? "no body limits the step" : "limited by " + report.stable_step_body)

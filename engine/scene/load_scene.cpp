@@ -16,6 +16,7 @@ struct Built {
     const std::vector<ColliderHandle>& colliders;
     const std::vector<std::vector<AttachmentHandle>>& pins;  // indexed by body
     const std::vector<JointHandle>& joints;
+    const std::vector<CableHandle>& cables;
 };
 
 decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& built) {
@@ -46,6 +47,8 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
             return ReactionProbe{built.pins[*series.body][series.pin]};
         case ProbeQuantity::joint:
             return JointProbe{built.joints[series.joint]};
+        case ProbeQuantity::cable:
+            return CableProbe{built.cables[series.cable]};
         case ProbeQuantity::stress:
             return StressProbe{body, series.nodes};
         case ProbeQuantity::volume:
@@ -145,10 +148,18 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         if (tie.to_collider) settings.to_collider = colliders[*tie.to_collider];
         called_at(tie.place, [&] { return Ties(world).add(settings); });
     }
+    std::vector<CableHandle> cables;
+    for (const CablePlan& cable : plan.cables)
+        cables.push_back(called_at(cable.place, [&] {
+            CableSettings settings = cable.settings;
+            for (const AnchorPlan& point : cable.points)
+                settings.points.push_back(anchor_of(point, plan, world, {bodies, colliders}));
+            return Cables(world).add(settings);
+        }));
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     for (const SeriesPlan& series : plan.series)
-        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints})});
+        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints, cables})});
     return scene;
 }
 

@@ -38,6 +38,16 @@ std::size_t find_collider(const ScenePlan& plan, const std::string& name, const 
 
 namespace {
 
+std::size_t find_cable(const ScenePlan& plan, const std::string& name, const Place& place) {
+    const auto found = std::ranges::find(plan.cables, name, &CablePlan::name);
+    if (found != plan.cables.end()) return static_cast<std::size_t>(found - plan.cables.begin());
+    std::vector<std::string> names;
+    for (const CablePlan& cable : plan.cables) names.push_back(cable.name);
+    place.refuse(in_quotes(name),
+                 names.empty() ? "the name of a cable, but the scene has no cables" : "the name of a cable",
+                 nearest_hint(name, names));
+}
+
 std::size_t find_joint(const ScenePlan& plan, const std::string& name, const Place& place) {
     const auto found = std::ranges::find(plan.joints, name, &JointPlan::name);
     if (found != plan.joints.end()) return static_cast<std::size_t>(found - plan.joints.begin());
@@ -96,6 +106,7 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
     if (entry.body) series.body = find_body(plan, *entry.body, entry.place.key("body"));
     if (entry.collider) series.collider = find_collider(plan, *entry.collider, entry.place.key("collider"));
     if (entry.joint) series.joint = find_joint(plan, *entry.joint, entry.place.key("joint"));
+    if (entry.cable) series.cable = find_cable(plan, *entry.cable, entry.place.key("cable"));
     if (entry.by) find_partner(entry, plan, series);
     if (series.body) {
         const BodyPlan& body = plan.bodies[*series.body];

@@ -23,6 +23,8 @@ KeysOf keys_of(ProbeQuantity quantity) {
             return {{"body"}, {"pin"}};
         case ProbeQuantity::joint:
             return {{"joint"}, {}};
+        case ProbeQuantity::cable:
+            return {{"cable"}, {}};
         case ProbeQuantity::energy:
             return {{}, {}};
         case ProbeQuantity::stress:
@@ -40,7 +42,8 @@ void check_keys(const Place& place, const ProbeEntry& probe) {
         {"body", probe.body.has_value()},   {"collider", probe.collider.has_value()},
         {"by", probe.by.has_value()},       {"box", probe.box.has_value()},
         {"point", probe.point.has_value()}, {"pin", probe.pin.has_value()},
-        {"joint", probe.joint.has_value()}, {"set", probe.set.has_value()}};
+        {"joint", probe.joint.has_value()}, {"set", probe.set.has_value()},
+        {"cable", probe.cable.has_value()}};
     for (const auto& [key, is_given] : given) {
         const bool required = std::ranges::find(keys.required, key) != keys.required.end();
         if (required && !is_given)
@@ -77,7 +80,7 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
             .key("quantity", &P::quantity,
                  {.meaning = "recorded quantity: contacts (default); motion of a point or of the centre of mass; force "
                              "of contacts on a body or a collider; reaction of a pin; coordinate and forces of a "
-                             "joint; energy of the world; largest "
+                             "joint; tensions and length of a cable; energy of the world; largest "
                              "stress; smallest ratio of current volume to rest volume"})
             .key("body", &P::body, {.meaning = "name of a body"})
             .key("collider", &P::collider, {.meaning = "for a force: name of the collider on which it acts"})
@@ -85,6 +88,7 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
                  {.meaning = "for a force: name of the body or collider that exerts the force; default: all bodies and "
                              "colliders"})
             .key("joint", &P::joint, {.meaning = "for a joint: name of the joint"})
+            .key("cable", &P::cable, {.meaning = "for a cable: name of the cable"})
             .key("box", &P::box,
                  {.meaning = "box around the recorded nodes, in the mesh's own frame; default for a stress: all nodes"})
             .key("set", &P::set, {.meaning = "set of the body that contains the recorded nodes, instead of \"box\""})

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/scene/values.h"
+#include "skerry/cable.h"
 #include "skerry/joint.h"
 #include "skerry/settings.h"
 #include "skerry/tie.h"
@@ -201,17 +202,25 @@ struct TieEntry : PartEntry {
     std::optional<Real> break_force;
     bool close_gap = false, bodies_touch = false;
 };
+struct CableEntry {
+    std::string name;
+    std::vector<AnchorEntry> points;
+    std::optional<TimeTable> tension, length, rate;
+    Real friction = CableSettings{}.friction;
+    Place place;
+};
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
-enum class ProbeQuantity { contacts, motion, force, reaction, joint, energy, stress, volume };
+enum class ProbeQuantity { contacts, motion, force, reaction, joint, cable, energy, stress, volume };
 template <>
 struct EnumNames<ProbeQuantity> {
-    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 8> table{{
+    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 9> table{{
         {ProbeQuantity::contacts, "contacts"},
         {ProbeQuantity::motion, "motion"},
         {ProbeQuantity::force, "force"},
         {ProbeQuantity::reaction, "reaction"},
         {ProbeQuantity::joint, "joint"},
+        {ProbeQuantity::cable, "cable"},
         {ProbeQuantity::energy, "energy"},
         {ProbeQuantity::stress, "stress"},
         {ProbeQuantity::volume, "volume"},
@@ -220,7 +229,7 @@ struct EnumNames<ProbeQuantity> {
 struct ProbeEntry {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::contacts;
-    std::optional<std::string> body, collider, by, joint, set;
+    std::optional<std::string> body, collider, by, joint, set, cable;
     std::optional<RestBox> box;
     std::optional<Vec3> point;  // position in the mesh's own frame [m]
     std::optional<int> pin;
@@ -241,6 +250,7 @@ struct SceneFile {
     std::vector<ColliderEntry> colliders;
     std::vector<JointEntry> joints;
     std::vector<TieEntry> ties;
+    std::vector<CableEntry> cables;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;
 };

@@ -71,6 +71,12 @@ struct TiePlan {
     TieSettings settings;  // settings without handles, because handles exist only in a built world
     Place place;
 };
+struct CablePlan {
+    std::string name;
+    std::vector<AnchorPlan> points{};
+    CableSettings settings{};  // settings without points
+    Place place{};
+};
 struct ProbePlan {
     std::string name;
     std::size_t body = 0;      // index in ScenePlan::bodies
@@ -83,6 +89,7 @@ struct SeriesPlan {
     std::optional<std::size_t> body{}, by_body{};          // indices in ScenePlan::bodies
     std::optional<std::size_t> collider{}, by_collider{};  // indices in ScenePlan::colliders
     std::size_t joint = 0;                                 // index in ScenePlan::joints
+    std::size_t cable = 0;                                 // index in ScenePlan::cables
     std::size_t pin = 0;                                   // index in BodyPlan::pins
     std::vector<Index> nodes;                              // local numbers
     std::optional<MaterialPoint> point;
@@ -105,6 +112,7 @@ struct ScenePlan {
     std::vector<PairPlan> pairs;
     std::vector<JointPlan> joints;
     std::vector<TiePlan> ties;
+    std::vector<CablePlan> cables;
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;
     Real probe_step = 0;  // [s]
@@ -150,7 +158,10 @@ Anchor anchor_of(const AnchorPlan& anchor, const ScenePlan& plan, const World& w
 /// Resolves the names and nodes of a tie. The plan must already contain all bodies and colliders.
 TiePlan plan_tie(const TieEntry& entry, const ScenePlan& plan);
 
-/// Adds a probe to a plan that already contains all bodies, colliders and joints.
+/// Resolves the names of a cable. The plan must already contain all bodies and colliders. `number`: index of the cable.
+CablePlan plan_cable(const CableEntry& entry, std::size_t number, const ScenePlan& plan);
+
+/// Adds a probe to a plan that already contains all bodies, colliders, joints and cables.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 
 /// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.

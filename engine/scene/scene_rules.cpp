@@ -307,6 +307,7 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
                  {.meaning = "rigid shapes that are fixed or follow a prescribed motion"})
             .key("joints", &SceneFile::joints, {.meaning = "joints of rigid bodies"})
             .key("ties", &SceneFile::ties, {.meaning = "ties of deformable bodies to other objects"})
+            .key("cables", &SceneFile::cables, {.meaning = "cables that run through points of bodies"})
             .key("probes", &SceneFile::probes,
                  {.meaning = "recorded quantities: contacts for the report, and time series for --probes"})
             .key("probe_step", &SceneFile::probe_step,

@@ -63,6 +63,8 @@ template <>
 const Rule<PairEntry>& rule_of<PairEntry>();
 const Rule<AnchorEntry>& rule_of<AnchorEntry>();
 template <>
+const Rule<CableEntry>& rule_of<CableEntry>();
+template <>
 const Rule<MotorKey>& rule_of<MotorKey>();
 template <>
 const Rule<MotorEntry>& rule_of<MotorEntry>();

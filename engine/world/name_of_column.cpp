@@ -14,6 +14,7 @@ std::string name_of_column(void* world, const void* place) {
     tables.emplace_back(w.scratch.contacts, "contacts");
     tables.emplace_back(w.scratch.joints, "joint_blocks");
     tables.emplace_back(w.scratch.ties, "tie_rows");
+    tables.emplace_back(w.scratch.cables, "cable_blocks");
     tables.emplace_back(w.scratch.regions, "regions");
     for (const AnyTable& table : tables)
         for (const ColumnInfo& info : table.columns())

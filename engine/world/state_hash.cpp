@@ -6,6 +6,7 @@
 
 #include "components/check.h"
 #include "components/hash.h"
+#include "engine/world/edit/joining_rows.h"
 
 namespace skerry {
 
@@ -147,13 +148,25 @@ void add_attachment(Hash& hash, Model& model, std::size_t a) {
 
 /// Hashes a row that joins bodies, such as a joint. The slots of the joined bodies and colliders are hashed, not their
 /// rows.
-void add_joining_row(Hash& hash, const Model& model, AnyTable table, std::size_t row) {
+template <class Table>
+void add_joining_row(Hash& hash, const Model& model, Table& of, std::size_t row) {
+    const AnyTable table(of);
     add_row_state(hash, table, row);
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::body && info.role != ColumnRole::collider) continue;
         const std::span<const std::uint32_t> slot =
             info.role == ColumnRole::body ? model.bodies.slot.span() : model.colliders.slot.span();
-        hash.add(slot_of(slot, reinterpret_cast<const Index*>(table.column(info).read())[row]));
+        const Range entries = entries_of(of, info, row);
+        for (Index entry = entries.begin; entry < entries.end; ++entry)
+            hash.add(slot_of(slot, reinterpret_cast<const Index*>(table.column(info).read())[entry]));
+    }
+    if constexpr (requires { of.list_of(row); }) {
+        const Range list = of.list_of(row);
+        hash.add(list.size());
+        for (const ColumnInfo& info : table.columns())
+            if (info.role == ColumnRole::state && !info.has_row_each && !table.column(info).is(&of.key))
+                add_rows(hash, table.column(info), static_cast<std::size_t>(list.begin),
+                         static_cast<std::size_t>(list.size()));
     }
 }
 

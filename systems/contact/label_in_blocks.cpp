@@ -138,6 +138,7 @@ Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std:
     SharedUnionFind& sets = memory.sets;
     sets.start(inverse_mass.size());
     join_all(executor, groups.joints, sets);
+    groups.join_cables(inverse_mass, sets);
     if (groups.empty())
         unite_all(
             executor, blocks, stencil, inverse_mass, [](Index node) { return node; }, sets, contact_region);

@@ -2,15 +2,18 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <span>
 
 #include "components/body_table.h"
+#include "components/cable_table.h"
 #include "components/contact_table.h"
 #include "components/joint_table.h"
 #include "components/node_block_table.h"
 #include "components/node_clusters.h"
 #include "components/node_table.h"
+#include "components/range.h"
 #include "components/rigid_body_table.h"
 #include "jobs/access.h"
 
@@ -118,26 +121,78 @@ struct RigidSpins {
     Vec3 kicked(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
 };
 
-/// All groups of nodes, and the joints. No node is in a rigid body and in a cluster at the same time.
+/// The cables that the region solver solves, with their columns by point (CableBlockTable).
+struct SolvedCables {
+    std::span<const CableBlock> block{};
+    std::span<const Stencil> stencil{};
+    std::span<const Vec3> velocity{}, direction{};
+    std::span<const Real> most_ratio{};
+
+    static SolvedCables bind(const Binder& binder, const CableBlockTable& cables) {
+        const auto first = static_cast<std::size_t>(binder.read(cables.first_solved));
+        const std::span<const CableBlock> all = binder.read(cables.block);
+        return {.block = all.subspan(std::min(first, all.size())),
+                .stencil = binder.read(cables.stencil),
+                .velocity = binder.read(cables.velocity),
+                .direction = binder.read(cables.direction),
+                .most_ratio = binder.read(cables.most_ratio)};
+    }
+
+    /// Calls visit(node) for each node of a cable that impulses can move.
+    void for_each_moving_node(std::size_t cable, std::span<const Real> inverse_mass, auto&& visit) const {
+        for (const Stencil& of : rows_of(stencil, block[cable].points))
+            for (std::size_t a = 0; a < 4; ++a)
+                if (of.weight[a] != 0 && inverse_mass[static_cast<std::size_t>(of.node[a])] > 0) visit(of.node[a]);
+    }
+};
+
+/// All groups of nodes, the joints and the cables. No node is in a rigid body and in a cluster at the same time.
 struct NodeGroups {
     const NodeClusters* clusters = nullptr;  // null: none
     RigidNodes rigid{};
     std::span<const JointBlock> joints{};
+    SolvedCables cables{};
 
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
-                           const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints) {
+                           const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints,
+                           const CableBlockTable& cables) {
         // the matrices of the clusters are not declared as read, because they may still change in a step
         binder.value(clusters.nodes);
         binder.value(clusters.body);
         binder.value(clusters.cluster_of);
         return {.clusters = &clusters,
                 .rigid = RigidNodes::bind(binder, node, body, rigid),
-                .joints = binder.read(joints.block)};
+                .joints = binder.read(joints.block),
+                .cables = SolvedCables::bind(binder, cables)};
     }
 
-    bool empty() const { return (clusters == nullptr || clusters->empty()) && !rigid.any() && joints.empty(); }
+    bool empty() const {
+        return (clusters == nullptr || clusters->empty()) && !rigid.any() && joints.empty() && cables.block.empty();
+    }
     /// The first node of the group that contains `node`; `node` itself if it belongs to no group.
     Index leader(Index node) const { return rigid.leader(clusters == nullptr ? node : clusters->leader(node)); }
+    /// Joins the sets of the nodes that a cable connects, for each cable.
+    void join_cables(std::span<const Real> inverse_mass, auto& sets) const {
+        for (std::size_t c = 0; c < cables.block.size(); ++c) {
+            Index first = no_index;
+            cables.for_each_moving_node(c, inverse_mass, [&](Index node) {
+                if (first == no_index) first = leader(node);
+                sets.join(first, leader(node));
+            });
+        }
+    }
+    /// A node that impulses of the joint `joint` can move.
+    Index node_of_joint(std::size_t joint) const {
+        return joints[joint].first_node == no_index ? joints[joint].second_node : joints[joint].first_node;
+    }
+    /// The leader of a node that impulses of the cable `cable` can move.
+    Index node_of_cable(std::size_t cable, std::span<const Real> inverse_mass) const {
+        Index found = no_index;
+        cables.for_each_moving_node(cable, inverse_mass, [&](Index node) {
+            if (found == no_index) found = leader(node);
+        });
+        return found;
+    }
 };
 
 }  // namespace skerry

@@ -33,11 +33,12 @@ Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Le
 /// first contacts.
 template <class Leader>
 Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const Leader& leader,
-                          std::span<const JointBlock> joints, UnionFind& sets, std::span<Index> contact_region) {
+                          const NodeGroups& groups, UnionFind& sets, std::span<Index> contact_region) {
     sets.start(inverse_mass.size());
-    for (const JointBlock& joint : joints)
+    for (const JointBlock& joint : groups.joints)
         if (joint.first_node != no_index && joint.second_node != no_index)
             sets.join(joint.first_node, joint.second_node);
+    groups.join_cables(inverse_mass, sets);
     constexpr std::size_t ahead = 12;  // number of contacts by which prefetching is ahead
     const auto fetch = [&](const Stencil& next) {
         for (const Index node : next.node) {
@@ -68,8 +69,8 @@ Index label_all_as_one(std::span<const Stencil> stencil, std::span<const Real> i
     return any ? 1 : 0;
 }
 
-/// Counting sort of `count` contacts or joints by region. The sort is stable, so the contacts or joints of a region
-/// stay in ascending order.
+/// Counting sort of `count` contacts, joints or cables by region. The sort is stable, so those of a region stay in
+/// ascending order.
 template <class RegionOf>
 void collect(std::size_t count, const RegionOf& region_of, Index region_count, Ragged<Index>& list) {
     Column<Index>& offset = list.offset;
@@ -90,35 +91,36 @@ void collect_contacts(std::span<const Index> contact_region, Index region_count,
         contact_region.size(), [&](std::size_t i) { return contact_region[i]; }, region_count, regions.contacts);
 }
 
-/// Sorts the joints by region. `number(node)`: the region of a joint that acts on `node`. Returns the number of
-/// regions, including regions that have joints but no contacts.
+/// Sorts the joints and the cables by region. `number(node)`: the region of a joint or cable that acts on `node`.
+/// Returns the number of regions, including regions that have no contacts.
 template <class Number>
-Index collect_joints(std::span<const JointBlock> joints, const Number& number, Index region_count,
-                     Ragged<Index>& list) {
-    list.clear();
-    if (joints.empty()) return region_count;
-    const auto region_of = [&](std::size_t i) {
-        const JointBlock& joint = joints[i];
-        return number(joint.first_node == no_index ? joint.second_node : joint.first_node);
-    };
-    for (std::size_t i = 0; i < joints.size(); ++i) region_count = std::max(region_count, region_of(i) + 1);
-    collect(joints.size(), region_of, region_count, list);
+Index collect_connections(const NodeGroups& groups, std::span<const Real> inverse_mass, const Number& number,
+                          Index region_count, RegionTable& regions) {
+    const std::size_t joints = groups.joints.size(), cables = groups.cables.block.size();
+    regions.joints.clear();
+    regions.cables.clear();
+    const auto of_joint = [&](std::size_t j) { return number(groups.node_of_joint(j)); };
+    const auto of_cable = [&](std::size_t c) { return number(groups.node_of_cable(c, inverse_mass)); };
+    for (std::size_t j = 0; j < joints; ++j) region_count = std::max(region_count, of_joint(j) + 1);
+    for (std::size_t c = 0; c < cables; ++c) region_count = std::max(region_count, of_cable(c) + 1);
+    if (joints > 0) collect(joints, of_joint, region_count, regions.joints);
+    if (cables > 0) collect(cables, of_cable, region_count, regions.cables);
     return region_count;
 }
 
 /// Separates regions sequentially, for few contacts or few workers. It is the reference for separate_in_blocks.
 Index separate_in_order(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
                         UnionFind& sets, RegionTable& regions, std::span<Index> contact_region) {
-    const Index count = groups.empty()
-                            ? label_by_union_find(
-                                  stencil, inverse_mass, [](Index node) { return node; }, {}, sets, contact_region)
-                            : label_by_union_find(
-                                  stencil, inverse_mass, [&](Index node) { return groups.leader(node); }, groups.joints,
-                                  sets, contact_region);
-    const Index with_joints = collect_joints(
-        groups.joints, [&](Index node) { return sets.number(node); }, count, regions.joints);
-    collect_contacts(contact_region, with_joints, regions);
-    return with_joints;
+    const Index count =
+        groups.empty()
+            ? label_by_union_find(
+                  stencil, inverse_mass, [](Index node) { return node; }, groups, sets, contact_region)
+            : label_by_union_find(
+                  stencil, inverse_mass, [&](Index node) { return groups.leader(node); }, groups, sets, contact_region);
+    const Index all = collect_connections(
+        groups, inverse_mass, [&](Index node) { return sets.number(node); }, count, regions);
+    collect_contacts(contact_region, all, regions);
+    return all;
 }
 
 Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
@@ -136,18 +138,18 @@ Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, s
         const Index first = labels.sets.first_item(root);
         return first < contacts ? contact_region[static_cast<std::size_t>(first)] : count + first - contacts;
     };
-    const Index with_joints = collect_joints(groups.joints, number, count, regions.joints);
-    regions.contacts.offset.resize(static_cast<std::size_t>(with_joints) + 1, regions.contacts.offset[count]);
-    return with_joints;
+    const Index all = collect_connections(groups, inverse_mass, number, count, regions);
+    regions.contacts.offset.resize(static_cast<std::size_t>(all) + 1, regions.contacts.offset[count]);
+    return all;
 }
 
 Index take_all_as_one(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
                       RegionTable& regions, std::span<Index> contact_region) {
     const Index count = label_all_as_one(stencil, inverse_mass, contact_region);
-    const Index with_joints = collect_joints(
-        groups.joints, [](Index) { return 0; }, count, regions.joints);
-    collect_contacts(contact_region, with_joints, regions);
-    return with_joints;
+    const Index all = collect_connections(
+        groups, inverse_mass, [](Index) { return 0; }, count, regions);
+    collect_contacts(contact_region, all, regions);
+    return all;
 }
 
 void resize_results(Index region_count, RegionTable& regions) {
@@ -167,9 +169,10 @@ bool separate_regions(Executor& executor, std::span<const Stencil> stencil, std:
                       const NodeGroups& groups, ContactRegions mode, SeparationMemory& memory, RegionTable& regions,
                       std::span<Index> contact_region) {
     SKERRY_CHECK(contact_region.size() == stencil.size());
-    if (stencil.empty() && groups.joints.empty()) {
+    if (stencil.empty() && groups.joints.empty() && groups.cables.block.empty()) {
         regions.contacts.clear();
         regions.joints.clear();
+        regions.cables.clear();
         resize_results(0, regions);
         return false;
     }

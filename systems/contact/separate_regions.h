@@ -23,14 +23,14 @@ struct SeparationMemory {
 inline constexpr std::size_t least_contacts_in_blocks = 1024;
 inline constexpr int least_workers_for_blocks = 4;
 
-/// Fills `regions.contacts`, `regions.joints` and `contact_region`. Two contacts are in one region if a chain of shared
-/// moving nodes (inverse mass > 0) connects them. Nodes of the same group in `groups` count as shared, and so do bodies
-/// connected by a joint. With `mode` global, all contacts and joints are in one region. Contacts without a moving node
-/// belong to no region. Returns false if there are no contacts and no joints (skipped).
+/// Fills the lists of contacts, joints and cables of `regions`, and `contact_region`. Two contacts are in one region if
+/// a chain of shared moving nodes (inverse mass > 0) connects them. Nodes of the same group in `groups` count as
+/// shared, and so do bodies connected by a joint or a cable. With `mode` global, there is one region. Contacts without
+/// a moving node belong to no region. Returns false if there are no contacts, joints and cables (skipped).
 ///
-/// Regions are numbered in the order of their first contacts. Regions with joints only follow, in the order of their
-/// first joints. Each region lists its contacts and joints in order. The result does not depend on the number of
-/// workers.
+/// Regions are numbered in the order of their first contacts. Regions without contacts follow, in the order of their
+/// first joints, then of their first cables. Each region lists its contacts, joints and cables in order. The result
+/// does not depend on the number of workers.
 bool separate_regions(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                       const NodeGroups& groups, ContactRegions mode, SeparationMemory& memory, RegionTable& regions,
                       std::span<Index> contact_region);

@@ -31,16 +31,20 @@ constexpr Real first_sweeps = 8, sweeps_of_size = 2;
 
 constexpr std::size_t regions_per_block = 256;  // chosen so that a block takes a few microseconds
 
-/// Number of contacts plus number of joint blocks of a region.
+/// Number of contacts, joint blocks and cables of a region.
 Index contact_count(const RegionTable& regions, Index region) {
+    const auto r = static_cast<std::size_t>(region);
     return regions.contacts.offset[region + 1] - regions.contacts.offset[region] +
-           static_cast<Index>(regions.joints_of(static_cast<std::size_t>(region)).size());
+           static_cast<Index>(regions.joints_of(r).size() + regions.cables_of(r).size());
 }
 
-/// Identifier of a region that has only joints. These identifiers are larger than those of all other regions.
-ContactKey id_of_joint(Index block) {
-    constexpr std::uint64_t last = ~std::uint64_t{0};
-    return {last, static_cast<std::uint64_t>(block)};
+/// Identifier of a region without contacts: of its first joint block, or of its first cable if it has no joints. These
+/// identifiers are larger than those of regions with contacts.
+ContactKey id_without_contacts(const RegionTable& regions, std::size_t region) {
+    constexpr std::uint64_t last = ~std::uint64_t{0}, of_cable = std::uint64_t{1} << 32;
+    const std::span<const Index> joints = regions.joints_of(region);
+    return {last, joints.empty() ? of_cable + static_cast<std::uint64_t>(regions.cables[region][0])
+                                 : static_cast<std::uint64_t>(joints[0])};
 }
 
 bool fits_lanes(Index contacts) {
@@ -96,7 +100,7 @@ void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionM
             // Contacts ascend by key and regions by their first contact, so the identifiers ascend in the list of
             // earlier regions and in the list of present ones.
             const ContactKey id =
-                regions.contacts[r].empty() ? id_of_joint(regions.joints[r][0]) : key[regions.contacts[r][0]];
+                regions.contacts[r].empty() ? id_without_contacts(regions, r) : key[regions.contacts[r][0]];
             regions.id[r] = present.id[r] = id;
             if (r == begin)
                 old = static_cast<std::size_t>(std::ranges::lower_bound(history.id, id) - history.id.begin());

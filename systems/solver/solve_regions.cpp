@@ -23,9 +23,9 @@ void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, Re
         const std::span<const Index> row = regions.contacts[number];
         const Index base = regions.contacts.offset[number];
         RegionOutcome outcome;
-        if (needs_blocks(stage.memory, number)) {
-            const std::span<const Index> joints = regions.joints_of(static_cast<std::size_t>(number));
-            outcome = solve_bodies(stage, row, joints, number, base);
+        if (needs_blocks(stage.memory, regions, number)) {
+            const auto r = static_cast<std::size_t>(number);
+            outcome = solve_bodies(stage, {row, regions.joints_of(r), regions.cables_of(r)}, number, base);
         } else if (touches_cluster(stage.memory, number)) {
             outcome = solve_clustered(stage, row, number, base);
         } else if (row.size() == 1 && !stage.settings.fixed_iterations) {
@@ -45,6 +45,15 @@ void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, Re
         write_outcome(outcome, number, regions);
     }
     queue.flush();
+}
+
+void make_room_for_cables(const SolvedCables& cables, RegionMemory& data) {
+    if (cables.block.empty()) return;
+    const CableBlock& last = cables.block.back();
+    const auto segments = static_cast<std::size_t>(last.points.size() - 1);
+    make_room(data.cable_law, cables.block.size());
+    make_room(data.cable_mobility, static_cast<std::size_t>(last.mobility) + segments * segments);
+    make_room(data.cable_numbers, CableLaw::numbers_by_segment * cables.stencil.size());
 }
 
 void make_rows(RegionTable& regions) {
@@ -97,12 +106,13 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
     }
     const std::size_t region_nodes = find_region_blocks(contacts, regions, data);
     data.make_room_for(data.rows, region_nodes, contacts.inverse_mass.size(), settings);
-    if (contacts.rigid.any() || !contacts.friction_axis.empty()) {
+    if (contacts.rigid.any() || !contacts.cables.block.empty() || !contacts.friction_axis.empty()) {
         data.make_room_for_rigid(data.rows, region_nodes, settings.method);
         data.newton.make_room(static_cast<std::size_t>(executor.worker_count()));
         data.runs.make_room(static_cast<std::size_t>(executor.worker_count()));
     }
     make_room(data.joint_law, data.rows - data.contact_rows);
+    make_room_for_cables(contacts.cables, data);
     schedule_regions(executor, settings, data, regions);
     solve_tasks(executor, {contacts, settings, h, out, data}, regions);
     regions.pushed = data.pushed.load(std::memory_order_relaxed);

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "components/cable_control.h"
 #include "components/joint_kind.h"
 #include "skerry/world.h"
 
@@ -55,6 +56,10 @@ struct ReactionProbe {
 struct JointProbe {
     JointHandle joint{};
 };
+/// Records the tensions, the length, the rate, the work and the friction loss of a cable (CableState).
+struct CableProbe {
+    CableHandle cable{};
+};
 /// Records the kinetic, elastic, potential and dissipated energy of the world.
 struct EnergyProbe {};
 /// Records the largest von Mises stress at the given nodes of a body, or at all its nodes if none is given. `nodes` are
@@ -85,8 +90,8 @@ struct NodesProbe {
 
 struct RecordedProbe {
     std::string name;  // unique and not empty; not "." or "time"; without '/' and control characters
-    std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, JointProbe, EnergyProbe,
-                 StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe>
+    std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, JointProbe, CableProbe,
+                 EnergyProbe, StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe>
         what;
 };
 

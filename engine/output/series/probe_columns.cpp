@@ -9,6 +9,7 @@
 #include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/world_state.h"
+#include "skerry/cable.h"
 #include "skerry/joint.h"
 #include "systems/dynamics/checks/volume_ratios.h"
 #include "systems/dynamics/elements/element_energy.h"
@@ -140,6 +141,15 @@ JointState state_of(const World& world, const JointProbe& probe) {
     return joint_state(WorldAccess::state_of(world).model, probe.joint);
 }
 
+CableState state_of(const World& world, const CableProbe& probe) {
+    return cable_state(WorldAccess::state_of(world), probe.cable);
+}
+
+void put_cable(const CableState& cable, std::vector<Real>& values) {
+    values.insert(values.end(), cable.tension.begin(), cable.tension.end());
+    values.insert(values.end(), {cable.length, cable.rate, cable.work, cable.dissipated});
+}
+
 bool has_coordinate(JointKind kind) {
     return kind == JointKind::hinge || kind == JointKind::slider;
 }
@@ -166,6 +176,7 @@ void put_values(const World& world, TrackedProbe& probe, std::vector<Real>& valu
             [&](const ColliderForceProbe&) { put_force(probe.force, true, values); },
             [&](const ReactionProbe&) { put_force(probe.force, false, values); },
             [&](const JointProbe& joint) { put_joint(state_of(world, joint), values); },
+            [&](const CableProbe& cable) { put_cable(state_of(world, cable), values); },
             [&](const EnergyProbe&) {
                 const Energy energy = world.energy();
                 values.insert(values.end(), {energy.kinetic, energy.elastic, energy.potential, energy.dissipated});
@@ -228,7 +239,8 @@ void require_objects(const World& world, const RecordedProbe& probe) {
                               if (force.by) require(*force.by);
                           },
                           [&](const ReactionProbe& force) { require(force.attachment); },
-                          [&](const JointProbe& joint) { require(joint.joint); }, [](const EnergyProbe&) {},
+                          [&](const JointProbe& joint) { require(joint.joint); },
+                          [&](const CableProbe& cable) { require(cable.cable); }, [](const EnergyProbe&) {},
                           [&](const BodyProbe& body) { require(body.body); },
                           [&](const VolumeProbe& volume) { require(volume.body); },
                           [&](const NodesProbe& nodes) { require(nodes.body); },
@@ -299,10 +311,18 @@ void add_columns(const World& world, const RecordedProbe& probe, std::vector<Ser
         one(turns ? "passive_moment" : "passive_force", turns ? "N m" : "N");
         one(turns ? "limit_moment" : "limit_force", turns ? "N m" : "N");
     };
+    const auto of_cable = [&](std::size_t segments) {
+        for (std::size_t s = 0; s < segments; ++s) one(("tension_" + std::to_string(s)).c_str(), "N");
+        one("length", "m");
+        one("rate", "m/s");
+        one("work", "J");
+        one("dissipated", "J");
+    };
     std::visit(Overloaded{[&](const PointProbe&) { motion(); }, [&](const BodyProbe&) { motion(); },
                           [&](const BodyForceProbe&) { contact_force(); },
                           [&](const ColliderForceProbe&) { contact_force(); }, [&](const ReactionProbe&) { force(); },
                           [&](const JointProbe& joint) { of_joint(state_of(world, joint).kind); },
+                          [&](const CableProbe& cable) { of_cable(state_of(world, cable).tension.size()); },
                           [&](const EnergyProbe&) {
                               for (const char* part : {"kinetic", "elastic", "potential", "dissipated"}) one(part, "J");
                           },

@@ -51,8 +51,11 @@ from ._settings import (
 )
 from ._sweep import sweep
 from ._world import (
+    Anchor,
     Attachment,
     Body,
+    Cable,
+    CableState,
     Collider,
     DynamicsChoice,
     DynamicsEstimate,
@@ -75,6 +78,7 @@ from ._world import (
 )
 from ._world.probes import (
     BodyProbe,
+    CableProbe,
     EnergyProbe,
     ForceProbe,
     JointProbe,
@@ -92,6 +96,7 @@ __all__ = [
     "OPEN",
     "SLIDE",
     "STICK",
+    "Anchor",
     "Attachment",
     "Backend",
     "Body",
@@ -99,6 +104,9 @@ __all__ = [
     "Box",
     "Bucket",
     "BusyError",
+    "Cable",
+    "CableProbe",
+    "CableState",
     "Capsule",
     "Collider",
     "ContactProbe",

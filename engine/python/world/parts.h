@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/python/world_object.h"
+#include "skerry/cable.h"
 #include "skerry/joint.h"
 #include "skerry/report.h"
 
@@ -14,6 +15,7 @@ void bind_advance(WorldClass& type);
 void bind_state(WorldClass& type);
 void bind_control(WorldClass& type);
 void bind_joints(WorldClass& type);
+void bind_cables(WorldClass& type);
 void bind_surface(WorldClass& type);
 void bind_ties(WorldClass& type);
 void bind_sets(WorldClass& type);

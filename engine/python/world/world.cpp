@@ -77,6 +77,7 @@ void bind_world(nb::module_& module) {
     bind_handle<ColliderHandle>(module, "ColliderHandle");
     bind_handle<AttachmentHandle>(module, "AttachmentHandle");
     bind_handle<JointHandle>(module, "JointHandle");
+    bind_handle<CableHandle>(module, "CableHandle");
     bind_handle<SurfaceSetHandle>(module, "SurfaceSetHandle");
     bind_handle<TieHandle>(module, "TieHandle");
     module.def("end_calls", &CallScope::end_calls);
@@ -91,6 +92,7 @@ void bind_world(nb::module_& module) {
     bind_state(type);
     bind_control(type);
     bind_joints(type);
+    bind_cables(type);
     bind_surface(type);
     bind_ties(type);
     bind_sets(type);

@@ -7,6 +7,7 @@
 
 #include "components/pair_table.h"
 #include "engine/world/world_state.h"
+#include "skerry/cable.h"
 #include "skerry/joint.h"
 #include "skerry/tie.h"
 
@@ -32,6 +33,11 @@ void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
 /// Enables a disabled pair during a call of advance. `first`: row of BodyTable; `second`: row of BodyTable or
 /// ColliderTable, as `kind` says.
 void enable_pair(WorldState& world, PairKind kind, Index first, Index second);
+
+// control_cables.cpp
+
+/// Returns the present shape and motion of a cable, and its tensions in the last step.
+CableState cable_state(const WorldState& state, CableHandle cable);
 
 // control_joints.cpp
 

@@ -15,8 +15,8 @@ namespace skerry {
 
 namespace {
 
-/// Sets the stored impulses of the contacts, joints and ties of a body to zero. They are the warm start of the next
-/// step.
+/// Sets the stored impulses of the contacts, joints, ties and cables of a body to zero. They are the warm start of the
+/// next step.
 void forget_impulses(WorldState& world, std::size_t body) {
     Model& model = world.model;
     const std::uint32_t slot = model.bodies.slot[body];
@@ -40,6 +40,13 @@ void forget_impulses(WorldState& world, std::size_t body) {
         if (ties.first[t] != static_cast<Index>(body) && ties.second[t] != static_cast<Index>(body)) continue;
         std::ranges::fill(rows_of(ties.impulse, ties.nodes[t]), Vec3::Zero());
         ties.step[t] = 0;
+    }
+    CableTable& cables = model.cables;
+    for (std::size_t c = 0; c < cables.size(); ++c) {
+        const std::span<const Index> bodies = rows_of(cables.anchor.body, cables.points[c]);
+        if (std::ranges::find(bodies, static_cast<Index>(body)) == bodies.end()) continue;
+        std::ranges::fill(rows_of(cables.tension, cables.points[c]), Real(0));
+        cables.step[c] = 0;
     }
 }
 
@@ -144,6 +151,7 @@ void World::reset(const World& saved) {
     now.model.attachment_map.differ_from(before.model.attachment_map);
     now.model.joint_map.differ_from(before.model.joint_map);
     now.model.tie_map.differ_from(before.model.tie_map);
+    now.model.cable_map.differ_from(before.model.cable_map);
     std::swap(now.executor, before.executor);
     now.record.tracing = before.record.tracing;
     std::swap(now.record.problem_watch, before.record.problem_watch);

@@ -11,13 +11,17 @@ namespace {
 /// Calls visit(row, joined) for each body or collider that a row of a joining table names. `role`: `body` or
 /// `collider`. `joined` is a reference to the entry of the column, which is a row of BodyTable or ColliderTable. The
 /// entry no_index stands for the world and is not visited.
-void for_each_joined(AnyTable table, ColumnRole role, auto&& visit) {
-    for (const ColumnInfo& info : table.columns()) {
+template <class Table>
+void for_each_joined(Table& table, ColumnRole role, auto&& visit) {
+    const AnyTable any(table);
+    for (const ColumnInfo& info : any.columns()) {
         if (info.role != role) continue;
-        const AnyColumn column = table.column(info);
-        auto* const joined = reinterpret_cast<Index*>(column.write());
-        for (std::size_t row = 0; row < column.size(); ++row)
-            if (joined[row] != no_index) visit(row, joined[row]);
+        auto* const joined = reinterpret_cast<Index*>(any.column(info).write());
+        for (std::size_t row = 0; row < table.slot.size(); ++row) {
+            const Range entries = entries_of(table, info, row);
+            for (Index entry = entries.begin; entry < entries.end; ++entry)
+                if (joined[entry] != no_index) visit(row, joined[entry]);
+        }
     }
 }
 

@@ -10,6 +10,15 @@
 
 namespace skerry {
 
+/// Entries that a row of a joining table has in a column. In a column without one entry per row of the table, a row has
+/// the list of entries that Table::list_of returns.
+template <class Table>
+Range entries_of(const Table& table, const ColumnInfo& column, std::size_t row) {
+    if constexpr (requires { table.list_of(row); })
+        if (!column.has_row_each) return table.list_of(row);
+    return {static_cast<Index>(row), static_cast<Index>(row) + 1};
+}
+
 /// Removes the marked rows of a table and their handles. `gone`: true for each row to be removed.
 template <class Table, class Handle>
 void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<Handle>& map) {
@@ -30,8 +39,8 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
     map.rows_moved(row_now);
 }
 
-/// Removes all rows that join an object to others, for example the joints of a body. Must be called before the object is
-/// removed. Wakes all bodies of the removed rows. `role`: `body` or `collider`; `object`: row of BodyTable or
+/// Removes all rows that join an object to others, for example the joints of a body. Must be called before the object
+/// is removed. Wakes all bodies of the removed rows. `role`: `body` or `collider`; `object`: row of BodyTable or
 /// ColliderTable.
 void erase_rows_joining(ColumnRole role, Index object, Model& model);
 

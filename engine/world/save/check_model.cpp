@@ -428,6 +428,35 @@ void check_ties(const SavedFile& file, const Model& model) {
     }
 }
 
+void check_cables(const SavedFile& file, const Model& model) {
+    const CableTable& table = model.cables;
+    check_keys(file, "cables", "keys", table.keys.span(), table.key.span());
+    const std::size_t points = table.anchor.body.size();
+    expect_size(file, "cables/collider", table.anchor.collider.size(), points);
+    expect_size(file, "cables/anchor", table.anchor.point.size(), points);
+    expect_size(file, "cables/tension", table.tension.size(), points);
+    expect_size(file, "cables/length", table.length.size(), points);
+    expect_between(file, "cables/step", table.step, 0.0, infinity);
+    expect_between(file, "cables/friction", table.friction, 0.0, infinity);
+    expect_between(file, "cables/released", table.released, 0.0, infinity);
+    Index end = 0;
+    for (std::size_t c = 0; c < table.size(); ++c) {
+        const Range of = table.points[c];
+        if (of.begin != end || of.size() < 2)
+            file.complain("cables/points", at_row("points that begin at row " + std::to_string(of.begin), c),
+                          "at least two points from row " + std::to_string(end) + " on");
+        if (table.keys[c].size() < 1) file.complain("cables/keys", at_row("no keys", c), "at least one key");
+        end = of.end;
+    }
+    for (std::size_t p = 0; p < points; ++p) {
+        const Index body = table.anchor.body[p];
+        const Index nodes = body == no_index ? 1 : model.bodies.nodes[static_cast<std::size_t>(body)].size();
+        expect_between(file, "cables/anchor", table.anchor.point[p].node, 0, nodes - 1);
+    }
+    if (static_cast<std::size_t>(end) != points)
+        file.complain("cables/points", std::to_string(end) + " points", std::to_string(points));
+}
+
 void check_implicit_nodes(const SavedFile& file, const ImplicitNodeTable& table) {
     for (std::size_t row = 0; row < table.size(); ++row) {
         const std::string found = "a value that is not finite at row " + std::to_string(row);
@@ -456,6 +485,7 @@ void check_model(const SavedFile& file, Model& model) {
     check_joints(file, model);
     check_surface_rules(file, model);
     check_ties(file, model);
+    check_cables(file, model);
     check_implicit_nodes(file, model.implicit_nodes);
     check_watch(file, model);
 }

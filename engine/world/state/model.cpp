@@ -71,6 +71,9 @@ Index Model::row(JointHandle joint, const char* call) const {
 Index Model::row(TieHandle tie, const char* call) const {
     return live_row(tie_map, tie, call, "tie");
 }
+Index Model::row(CableHandle cable, const char* call) const {
+    return live_row(cable_map, cable, call, "cable");
+}
 
 ElementInputs Model::all_elements() const {
     return ElementInputs::bind({}, elements, element_nodes, materials);

@@ -13,6 +13,7 @@
 #include "components/attachment_table.h"
 #include "components/body_table.h"
 #include "components/bvh_table.h"
+#include "components/cable_table.h"
 #include "components/collider_table.h"
 #include "components/collision_filter.h"
 #include "components/element_table.h"
@@ -106,6 +107,7 @@ struct Model {
     AttachmentTable attachments;
     JointTable joints;
     TieTable ties;
+    CableTable cables;
     DisabledPairTable disabled_pairs;
     MaterialPairTable material_pairs;
     SurfaceSetTable surface_sets;
@@ -117,6 +119,7 @@ struct Model {
     HandleMap<JointHandle> joint_map;
     HandleMap<SurfaceSetHandle> surface_set_map;
     HandleMap<TieHandle> tie_map;
+    HandleMap<CableHandle> cable_map;
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
     std::vector<ColliderRecord> collider_records;  // one record for each row of ColliderTable
@@ -131,6 +134,9 @@ struct Model {
     // For each body: sum of the bounds that ForceElement::add_rate adds for all force elements [1/s^2]. If the column
     // is empty, all sums are zero. Computed by note_forces.
     Column<Real> force_rate;
+    // True if the bounds depend on positions, so that they must be computed again before each step. Computed by
+    // note_forces.
+    bool force_rate_moves = false;
     BodyLinks links;          // pairs of bodies that are joined, for example by a joint; computed by note_changed_seams
     bool links_open = false;  // true if joints (or other rows that join bodies) have changed since `links` was computed
     // True if a body is asleep. If false, no stage tests for sleeping bodies. Computed by note_rest.
@@ -146,6 +152,7 @@ struct Model {
     Index row(JointHandle joint, const char* call) const;
     Index row(SurfaceSetHandle set, const char* call) const;
     Index row(TieHandle tie, const char* call) const;
+    Index row(CableHandle cable, const char* call) const;
 
     /// All elements, including the elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
@@ -244,6 +251,7 @@ struct Model {
         visit("attachments", attachments);
         visit("joints", joints);
         visit("ties", ties);
+        visit("cables", cables);
         visit("disabled_pairs", disabled_pairs);
         visit("material_pairs", material_pairs);
         visit("surface_sets", surface_sets);
@@ -255,6 +263,7 @@ struct Model {
         visit("joints", joints, joint_map);
         visit("surface_sets", surface_sets, surface_set_map);
         visit("ties", ties, tie_map);
+        visit("cables", cables, cable_map);
     }
 };
 

@@ -3,6 +3,7 @@
 // cost of the solver are not cleared.
 #pragma once
 
+#include "components/cable_table.h"
 #include "components/contact_table.h"
 #include "components/implicit_coupling.h"
 #include "components/joint_table.h"
@@ -25,6 +26,7 @@
 #include "systems/dynamics/joints/measure_joints.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
+#include "systems/forces/prepare_cables.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {
@@ -68,6 +70,7 @@ struct StepFindings {
     TakenByRest rest;
     JointMeasures joints;
     TieMeasures ties;
+    CableMeasures cables;
     Index released_ties = 0;  // number of ties of which the last node has broken off in this step
     Index unstrained = 0;     // number of bodies whose elements are skipped, because they are undeformed in free flight
     Real relaxed = 0;         // energy dissipated by relaxation of the elements in this step [J]
@@ -123,6 +126,7 @@ struct StepScratch {
     ContactTable contacts;
     JointBlockTable joints;
     TieRowTable ties;
+    CableBlockTable cables;
     RegionTable regions;
     Real awake_mass = 0;      // mass of bodies that are awake at the start of the step [kg]
     bool ran_inline = false;  // true if all stages ran on the calling thread

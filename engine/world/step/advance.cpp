@@ -246,6 +246,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             report.status = StepStatus::stopped;
             break;
         }
+        if (model.force_rate_moves) note_force_rates(model);
         Index stiffest = no_index;
         const Real trusted = trusted_step(model, &stiffest);
         if (!(std::min(trusted, attempt.at_most()) > std::numeric_limits<Real>::epsilon() * end)) {

@@ -2,6 +2,7 @@
 #include <span>
 
 #include "components/any_table.h"
+#include "engine/world/edit/joining_rows.h"
 #include "engine/world/step/seams.h"
 #include "engine/world/step/step.h"
 
@@ -11,20 +12,25 @@ namespace {
 
 /// Adds links between joined bodies: for each row of the table, between its first body and each other body that the row
 /// joins.
-void add_links(AnyTable table, BodyLinks& links) {
-    std::span<const Index> first;
-    for (const ColumnInfo& info : table.columns()) {
-        if (info.role != ColumnRole::body) continue;
-        const AnyColumn column = table.column(info);
-        const std::span<const Index> bodies(reinterpret_cast<const Index*>(column.read()), column.size());
-        if (first.empty()) {
-            first = bodies;
-            continue;
-        }
-        for (std::size_t row = 0; row < bodies.size(); ++row) {
-            if (first[row] == no_index || bodies[row] == no_index) continue;
-            links.first.push_back(first[row]);
-            links.second.push_back(bodies[row]);
+template <class Table>
+void add_links(Table& table, BodyLinks& links) {
+    const AnyTable any(table);
+    for (std::size_t row = 0; row < table.slot.size(); ++row) {
+        Index first = no_index;
+        for (const ColumnInfo& info : any.columns()) {
+            if (info.role != ColumnRole::body) continue;
+            const auto* const bodies = reinterpret_cast<const Index*>(any.column(info).read());
+            const Range entries = entries_of(table, info, row);
+            for (Index entry = entries.begin; entry < entries.end; ++entry) {
+                const Index body = bodies[entry];
+                if (body == no_index || body == first) continue;
+                if (first == no_index) {
+                    first = body;
+                    continue;
+                }
+                links.first.push_back(first);
+                links.second.push_back(body);
+            }
         }
     }
 }
@@ -33,19 +39,26 @@ void add_links(AnyTable table, BodyLinks& links) {
 
 void note_forces(Model& model) {
     const bool was_forced = model.forced;
-    model.forced = false;
-    model.force_rate.clear();
+    model.forced = model.force_rate_moves = false;
     for (const ForceElement* element : force_elements) {
         if (!element->any(model)) continue;
         model.forced = true;
-        if (!element->add_rate) continue;
-        model.force_rate.resize(model.bodies.slot.size());
-        element->add_rate(model, model.force_rate);
+        model.force_rate_moves |= element->rate_moves;
     }
+    note_force_rates(model);
     // If the last force element was removed, the next step must still account for the work of its last forces.
     if (was_forced && !model.forced)
         model.forced =
             std::ranges::any_of(model.nodes.applied_before, [](const Vec3& force) { return force != Vec3::Zero(); });
+}
+
+void note_force_rates(Model& model) {
+    model.force_rate.clear();
+    for (const ForceElement* element : force_elements) {
+        if (!element->any(model) || !element->add_rate) continue;
+        model.force_rate.resize(model.bodies.slot.size());
+        element->add_rate(model, model.force_rate);
+    }
 }
 
 void note_changed_seams(Model& model) {

@@ -25,6 +25,7 @@ struct ForceElement {
     // of the body [1/s^2]. This bound limits the stable step. The pointer is null if the forces do not depend on
     // positions.
     void (*add_rate)(const Model&, std::span<Real> of_body) = nullptr;
+    bool rate_moves = false;  // true: the bound depends on positions, and is computed again before each step
 };
 
 /// A motion model: the rule by which the degrees of freedom of some bodies move in a step. Each member is a function
@@ -51,19 +52,19 @@ struct ConstraintLaw {
     ListStages remember = nullptr;  // stores the impulses for the next step, if the step can be committed
 };
 
-extern const ForceElement nodal_loads;
+extern const ForceElement nodal_loads, cable_forces;
 extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies, held_axes;
-extern const ConstraintLaw contact_law, joint_law, tie_law;
+extern const ConstraintLaw contact_law, joint_law, tie_law, cable_law;
 
 /// All force elements. Nodal loads come first: their stage sets the total force on each node, to which the other force
 /// elements add.
-inline constexpr std::array<const ForceElement*, 1> force_elements{&nodal_loads};
+inline constexpr std::array<const ForceElement*, 2> force_elements{&nodal_loads, &cable_forces};
 /// All motion models. The order matters where two models write the same columns. Rigid bodies come first, because the
 /// frames of implicit bodies move like rigid bodies. Held axes come last, because they correct velocities.
 inline constexpr std::array<const MotionModel*, 5> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,
                                                                  &implicit_bodies, &held_axes};
 /// All constraint laws. Contacts come first, because the rows of ties follow the contacts in the contact table.
-inline constexpr std::array<const ConstraintLaw*, 3> constraint_laws{&contact_law, &joint_law, &tie_law};
+inline constexpr std::array<const ConstraintLaw*, 4> constraint_laws{&contact_law, &joint_law, &tie_law, &cable_law};
 
 /// Condition of a stage that changes the state of the world: the stage runs only if the step can be committed.
 inline auto if_taken(const WorldState& world) {

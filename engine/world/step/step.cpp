@@ -17,6 +17,7 @@
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "systems/forces/add_nodal_loads.h"
+#include "systems/forces/prepare_cables.h"
 
 namespace skerry {
 
@@ -125,8 +126,11 @@ void separate(WorldState& w, TaskGraph& g) {
     g.stage("contact/mark_led", mark_led,
             inputs<TieInputs>(m.ties, m.bodies, m.nodes, m.rigid_bodies, m.colliders, m.any_asleep),
             write(w.scratch.pressed), if_any_asleep);
+    g.stage("forces/mark_driven_cables", mark_driven_cables,
+            inputs<CableInputs>(m.cables, m.bodies, m.nodes, m.colliders, m.any_asleep), value(w.clock.time),
+            value(p.h), write(w.scratch.pressed), if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
-            inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
+            inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints, w.scratch.cables),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
 }
 
@@ -140,9 +144,9 @@ void solve(WorldState& w, TaskGraph& g) {
             inputs<KeptFrames>(m.rigid_bodies, m.implicit_nodes), make(s.kept_velocities), if_wanted);
     g.stage("solver/solve_regions", kernels().solve_regions,
             inputs<RegionInputs>(s.contacts, n, n.velocity, p.collision.gravity, m.clusters, s.cluster_kick, m.bodies,
-                                 m.rigid_bodies, m.implicit_nodes, s.coupling, s.joints, m.surface_sets),
+                                 m.rigid_bodies, m.implicit_nodes, s.coupling, s.joints, s.cables, m.surface_sets),
             value(p.solver), value(p.h), make(s.solver_memory), make(s.regions),
-            outputs<RegionOutputs>(s.contacts, n, m.rigid_bodies, m.implicit_nodes, s.joints));
+            outputs<RegionOutputs>(s.contacts, n, m.rigid_bodies, m.implicit_nodes, s.joints, s.cables));
 }
 
 /// Lists the stages that sum contact and attachment forces, if a user requested them.

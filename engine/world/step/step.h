@@ -29,6 +29,8 @@ HeldDepth held_in_surfaces(WorldState& world);
 /// Computes Model::forced and force_rate. Must be called after force elements, or bodies on which they act, were added,
 /// changed or removed.
 void note_forces(Model& model);
+/// Computes Model::force_rate for the present positions.
+void note_force_rates(Model& model);
 /// Must be called before steps. Computes Model::links again if rows that join bodies have changed, and Model::forced if
 /// the last force element was removed.
 void note_changed_seams(Model& model);

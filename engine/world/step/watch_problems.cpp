@@ -54,7 +54,8 @@ void show_contact_problem(const WorldState& world, Real time) {
     const KeptVelocities& kept = scratch.kept_velocities;
     RegionInputs inputs = RegionInputs::bind(
         {}, c, model.nodes, kept.velocity, scratch.parameters.collision.gravity, model.clusters, scratch.cluster_kick,
-        model.bodies, model.rigid_bodies, model.implicit_nodes, scratch.coupling, scratch.joints, model.surface_sets);
+        model.bodies, model.rigid_bodies, model.implicit_nodes, scratch.coupling, scratch.joints, scratch.cables,
+        model.surface_sets);
     inputs.rigid.position = kept.position;
     inputs.rigid.center = kept.center;
     inputs.rigid.spins.angular_momentum = kept.angular_momentum;

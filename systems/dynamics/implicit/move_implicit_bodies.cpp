@@ -131,7 +131,7 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
     return true;
 }
 
-bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, std::span<const Stencil> stencil,
+bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const TouchedNodes& stencils,
                             std::span<const Index> node_body, const ImplicitTimes& times, StiffBodies& stiff,
                             ImplicitCoupling& coupling) {
     coupling.nodes.clear();
@@ -139,16 +139,17 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
     constexpr Index touched = 0;
     coupling.place.assign(bodies.displacement.size(), no_index);
     bool any = false;
-    for (const Stencil& of_contact : stencil)
-        for (std::size_t a = 0; a < 4; ++a) {
-            if (of_contact.weight[a] == 0) continue;
-            const Index node = of_contact.node[a];
-            const auto body = static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)]);
-            const Range rows = bodies.body_implicit[body];
-            if (rows.size() == 0) continue;
-            coupling.place[static_cast<std::size_t>(rows.begin + node - bodies.body_nodes[body].begin)] = touched;
-            any = true;
-        }
+    for (const std::span<const Stencil> list : {stencils.contact, stencils.cable_point})
+        for (const Stencil& of : list)
+            for (std::size_t a = 0; a < 4; ++a) {
+                if (of.weight[a] == 0) continue;
+                const Index node = of.node[a];
+                const auto body = static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)]);
+                const Range rows = bodies.body_implicit[body];
+                if (rows.size() == 0) continue;
+                coupling.place[static_cast<std::size_t>(rows.begin + node - bodies.body_nodes[body].begin)] = touched;
+                any = true;
+            }
     if (!any) return false;
     coupling.nodes.offset.push_back(0);
     for (std::size_t r = 0; r < bodies.body.size(); ++r) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "components/body_table.h"
+#include "components/cable_table.h"
 #include "components/contact_table.h"
 #include "components/implicit_coupling.h"
 #include "components/implicit_node_table.h"
@@ -158,9 +159,18 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
                           const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                           const ImplicitKicks& out);
 
-/// Lists the nodes of implicit bodies that contacts touch. Computes the velocity response of each of these nodes to
-/// impulses on all touched nodes of its body. Returns false if no contact touches an implicit body (skipped).
-bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, std::span<const Stencil> stencil,
+/// Stencils of the points at which impulses of the region solver act: contacts, and points of cables.
+struct TouchedNodes {
+    std::span<const Stencil> contact, cable_point;
+
+    static TouchedNodes bind(const Binder& binder, const ContactTable& contact, const CableBlockTable& cable) {
+        return {binder.read(contact.stencil), binder.read(cable.stencil)};
+    }
+};
+
+/// Lists the nodes of implicit bodies that contacts and cables touch. Computes the velocity response of each of these
+/// nodes to impulses on all touched nodes of its body. Returns false if none touches an implicit body (skipped).
+bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const TouchedNodes& stencils,
                             std::span<const Index> node_body, const ImplicitTimes& times, StiffBodies& stiff,
                             ImplicitCoupling& coupling);
 

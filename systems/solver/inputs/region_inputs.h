@@ -131,6 +131,7 @@ struct RegionInputs {
     RigidInputs rigid{};                   // no rigid bodies by default
     ImplicitInputs implicit{};             // deformations of the implicit bodies; none by default
     std::span<const JointBlock> joints{};  // joints between rigid bodies; none by default
+    SolvedCables cables{};                 // none by default
     // first_body and second_body: rows of BodyTable of the two bodies of a contact, or no_index. body_kind and
     // still_time: by row of BodyTable. If these spans are empty, no body counts as still.
     std::span<const Index> first_body{}, second_body{};
@@ -150,7 +151,8 @@ struct RegionInputs {
                              const Column<Vec3>& velocity, const Real& gravity, const NodeClusters& clusters,
                              const Column<Vec3>& cluster_kick, const BodyTable& body, const RigidBodyTable& rigid,
                              const ImplicitNodeTable& implicit, const ImplicitCoupling& coupling,
-                             const JointBlockTable& joints, const SurfaceSetTable& sets) {
+                             const JointBlockTable& joints, const CableBlockTable& cables,
+                             const SurfaceSetTable& sets) {
         return {.stencil = binder.read(contact.stencil),
                 .normal = binder.read(contact.normal),
                 .gap = binder.read(contact.gap),
@@ -167,6 +169,7 @@ struct RegionInputs {
                 .rigid = RigidInputs::bind(binder, node, body, rigid),
                 .implicit = ImplicitInputs::bind(binder, body, rigid, implicit, coupling),
                 .joints = binder.read(joints.block),
+                .cables = SolvedCables::bind(binder, cables),
                 .first_body = binder.read(contact.first_body),
                 .second_body = binder.read(contact.second_body),
                 .body_kind = binder.read(body.kind),
@@ -185,9 +188,15 @@ struct RegionOutputs {
     std::span<Vec3> deforming_impulse{};  // by row of ImplicitNodeTable, zero before the solve [N s]
     std::span<Vec3> joint_impulse{};      // by joint block: warm start as input, solution as output
     std::span<AxisImpulses> axis_impulse{};  // by joint block
+    std::span<Real> cable_impulse{};  // tension by point of the cables: warm start as input, solution as output [N s]
+    std::span<Real> cable_work{};     // by solved cable: work on the bodies [J]
+    std::span<Vec3> cable_sum{};      // by solved cable: total impulse on the moving nodes [N s]
 
     static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid,
-                              ImplicitNodeTable& implicit, JointBlockTable& joints) {
+                              ImplicitNodeTable& implicit, JointBlockTable& joints, CableBlockTable& cables) {
+        const auto first = static_cast<std::size_t>(binder.read(cables.first_solved));
+        const std::span<Real> work = binder.write(cables.work);
+        const std::span<Vec3> sum = binder.write(cables.sum_impulse);
         return {.impulse = binder.write(contact.impulse),
                 .velocity_next = binder.write(node.velocity_next),
                 .push_out = binder.write(node.push_out),
@@ -197,7 +206,10 @@ struct RegionOutputs {
                 .push_spin = binder.write(rigid.push_spin),
                 .deforming_impulse = binder.write(implicit.contact_impulse),
                 .joint_impulse = binder.write(joints.impulse),
-                .axis_impulse = binder.write(joints.axis_impulse)};
+                .axis_impulse = binder.write(joints.axis_impulse),
+                .cable_impulse = binder.write(cables.impulse),
+                .cable_work = work.subspan(std::min(first, work.size())),
+                .cable_sum = sum.subspan(std::min(first, sum.size()))};
     }
 };
 

@@ -72,12 +72,13 @@ Real BodyOperator::step(Index i, Real relaxation) {
 }
 
 void BodyOperator::list_runs() const {
-    if (!runs_->listed()) runs_->list(memory_.contact, walk_, memory_.velocity.size());
+    if (!runs_->listed())
+        runs_->list(memory_.contact.first(static_cast<std::size_t>(swept())), walk_, memory_.velocity.size());
 }
 
 void BodyOperator::for_each_in_sweep(auto&& of) {
     // Sweeps with and without runs share one loop, because compilers would not inline the function `of` twice.
-    const ContactRuns::Run all{0, size(), 0, 0};
+    const ContactRuns::Run all{0, swept(), 0, 0};
     std::span<const ContactRuns::Run> runs(&all, 1);
     if (runs_) {
         list_runs();
@@ -101,7 +102,9 @@ void BodyOperator::apply(Index i, const Vec4& impulse) {
 Real BodyOperator::sweep(Real relaxation) {
     Real change = 0;
     for_each_in_sweep([&](Index i) { change += step(i, relaxation); });
-    return change;
+    SweepChange of_cables;
+    sweep_cables(relaxation, of_cables);
+    return change + of_cables.size;
 }
 
 SweepChange BodyOperator::accelerated_sweep(Real relaxation) {
@@ -115,7 +118,57 @@ SweepChange BodyOperator::accelerated_sweep(Real relaxation) {
         sum.size += size;
         sum.against -= inner(i, present[at] - before, present[at] - previous[at]);
     });
+    sweep_cables(relaxation, sum);
     return sum;
+}
+
+const CableLaw& BodyOperator::read_cable(Index cable) const {
+    const CableLaw& law = memory_.cable_law[static_cast<std::size_t>(cable)];
+    law.read(memory_.impulse.subspan(static_cast<std::size_t>(law.first)), law.impulse);
+    Vec4 start = velocity(law.first);
+    for (std::size_t s = 0; s < law.segments(); ++s) {
+        const Vec4 end = velocity(law.first + static_cast<Index>(s) + 1);
+        law.rate[s] = law.direction[s].dot((end - start).head<3>());
+        start = end;
+    }
+    return law;
+}
+
+void BodyOperator::sweep_cables(Real relaxation, SweepChange& sum) {
+    Vec4* const velocity = memory_.velocity.data();
+    for (const Index cable : memory_.cable) {
+        const CableLaw& law = read_cable(cable);
+        const auto first = static_cast<std::size_t>(law.first);
+        std::ranges::copy(law.impulse, law.before.begin());
+        law.solve();
+        if (relaxation != 1)
+            for (std::size_t s = 0; s < law.segments(); ++s)
+                law.impulse[s] = law.before[s] + relaxation * (law.impulse[s] - law.before[s]);
+        if (std::ranges::equal(law.impulse, law.before)) continue;
+        Vec4* const nodes = runs_ ? runs_->sums(memory_.velocity.size()).data() : nullptr;
+        Vec3 last = Vec3::Zero();  // change of the impulse of the segment that ends at the point [N s]
+        for (std::size_t p = 0; p <= law.segments(); ++p) {
+            const Vec3 next =
+                p < law.segments() ? Vec3((law.impulse[p] - law.before[p]) * law.direction[p]) : Vec3(Vec3::Zero());
+            const Vec4 change = padded(Vec3(next - last));
+            const auto i = static_cast<Index>(first + p);
+            if (nodes != nullptr)
+                walk_.collect(contact(i), change, nodes, velocity);
+            else
+                walk_.apply_undeformed(contact(i), change, velocity);
+            apply_to_rigid(part(i), change, velocity);
+            memory_.impulse[first + p] += change;
+            last = next;
+        }
+        if (nodes != nullptr) runs_->spread_sums(walk_, velocity);
+        if (!memory_.workspace[1].empty()) law.read(memory_.workspace[1].subspan(first), law.previous);
+        for (std::size_t s = 0; s < law.segments(); ++s) {
+            law.previous[s] = law.impulse[s] - law.previous[s];
+            law.before[s] = law.impulse[s] - law.before[s];
+        }
+        sum.size += law.product(law.before, law.before);
+        sum.against -= law.product(law.before, law.previous);
+    }
 }
 
 void BodyOperator::extrapolate(Real factor) {
@@ -124,6 +177,13 @@ void BodyOperator::extrapolate(Real factor) {
 }
 
 Real BodyOperator::squared_residual(Index i) const {
+    if (i >= swept()) {
+        // The first point that moves represents the cable.
+        for (const Index cable : memory_.cable)
+            if (memory_.cable_law[static_cast<std::size_t>(cable)].moving == i)
+                return read_cable(cable).squared_residual();
+        return 0;
+    }
     const Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
     const JointLaw* const law = joint(i);
     if (law == nullptr && part(i).across != 1) {

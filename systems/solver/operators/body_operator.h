@@ -10,6 +10,7 @@
 #include "components/options.h"
 #include "systems/solver/equations/body_equations.h"
 #include "systems/solver/equations/pool.h"
+#include "systems/solver/local/cable_law.h"
 #include "systems/solver/local/joint_law.h"
 #include "systems/solver/local/push_contact.h"
 #include "systems/solver/local/rigid_part.h"
@@ -23,7 +24,10 @@ namespace skerry {
 /// of W_ii.
 struct BodyMemory : ContactMemory {
     std::span<RigidPart> part;            // by contact
+    Index contacts = 0;                   // number of contacts
     std::span<const JointLaw> joint;      // laws of the joint rows, which follow the contacts
+    std::span<const Index> cable;         // numbers of the cables, whose points follow the joint rows
+    std::span<const CableLaw> cable_law;  // by solved cable of the step
     std::span<const Vec4> free_velocity;  // by velocity row: velocity without impulses [m/s, rad/s]
 };
 
@@ -50,7 +54,7 @@ public:
     SweepChange accelerated_sweep(Real relaxation);
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return a.dot(times(part(i).mobility, b)); }
     Vec4 project(Index i, const Vec4& impulse) const {
-        if (joint(i) != nullptr) return impulse;  // joint impulses have no friction law and are not projected
+        if (i >= memory_.contacts) return impulse;  // impulses of joints and cables have no friction cone
         if (part(i).across != 1) return project_in_frame(i, impulse);
         return project_friction(impulse, contact(i).normal, contact(i).friction, friction_);
     }
@@ -102,8 +106,8 @@ public:
 
     /// Returns the law of a joint row, or null for a contact.
     const JointLaw* joint(Index i) const {
-        const Index first = size() - static_cast<Index>(memory_.joint.size());
-        return i < first ? nullptr : &memory_.joint[static_cast<std::size_t>(i - first)];
+        return i < memory_.contacts || i >= swept() ? nullptr
+                                                    : &memory_.joint[static_cast<std::size_t>(i - memory_.contacts)];
     }
 
 private:
@@ -153,8 +157,14 @@ private:
     /// Solves contact i and applies the change of its impulse. Returns change . W_ii change, where W_ii is the diagonal
     /// block of contact i [J]
     Real step(Index i, Real relaxation);
-    /// Calls `of` for all contacts in their order.
+    /// Number of contacts and joint rows. The points of cables follow.
+    Index swept() const { return memory_.contacts + static_cast<Index>(memory_.joint.size()); }
+    /// Calls `of` for all contacts and joint rows in their order.
     void for_each_in_sweep(auto&& of);
+    /// Solves the cables one after the other. Adds the changes of their impulses to `sum`.
+    void sweep_cables(Real relaxation, SweepChange& sum);
+    /// Reads the present impulses and rates of a cable into its law.
+    const CableLaw& read_cable(Index cable) const;
     void list_runs() const;
     /// Applies an impulse of contact i within a sweep. On an implicit body only the nodes of the present run move
     /// (ContactRuns).

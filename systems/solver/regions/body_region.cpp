@@ -37,6 +37,7 @@ void BodyRegion::take_joint_impulses(const RegionStage& stage) const {
         const Vec3& last = stage.out.joint_impulse[static_cast<std::size_t>(joint[k])];
         memory.impulse[i] = times(memory.part[i].frame, padded(last));
     }
+    for (const Index of : cable) take_cable_impulses(stage, of, memory);
 }
 
 void BodyRegion::hold_joints(const RegionStage& stage, BodyOperator& op, RegionOutcome& outcome) const {
@@ -53,9 +54,12 @@ void BodyRegion::hold_joints(const RegionStage& stage, BodyOperator& op, RegionO
 }
 
 void BodyRegion::write_contact(const RegionStage& stage, std::size_t i) const {
+    write_stencil(stage, stage.inputs.stencil[static_cast<std::size_t>(row[i])], i);
+}
+
+void BodyRegion::write_stencil(const RegionStage& stage, const Stencil& stencil, std::size_t i) const {
     const RigidInputs& bodies = stage.inputs.rigid;
     write_to_bodies(stage, memory.part[i], memory.impulse[i]);
-    const Stencil& stencil = stage.inputs.stencil[static_cast<std::size_t>(row[i])];
     for (std::size_t a = 0; a < 4; ++a) {
         const Index node = stencil.node[a];
         const bool moves = stencil.weight[a] != 0 && stage.inputs.inverse_mass[static_cast<std::size_t>(node)] > 0;
@@ -87,6 +91,13 @@ void BodyRegion::write_joints(const RegionStage& stage) const {
         stage.out.axis_impulse[block] =
             parts_of(place.law.axis, place.law.axis_mobility, part.frame[2].dot(u), impulse.z());
     }
+    std::size_t i = row.size() + joint.size();
+    for (const Index of : cable) {
+        for (const Stencil& stencil :
+             rows_of(stage.inputs.cables.stencil, stage.inputs.cables.block[static_cast<std::size_t>(of)].points))
+            write_stencil(stage, stencil, i++);
+        write_cable(stage, of, memory);
+    }
 }
 
 void BodyRegion::write_body_push(const RegionStage& stage) const {
@@ -108,9 +119,8 @@ Real BodyRegion::push_work(const RegionStage& stage) const {
     return work;
 }
 
-RegionOutcome solve_bodies(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint,
-                           Index number, Index base) {
-    return solve_loaded(stage, load_body_region(stage, row, joint, number, base));
+RegionOutcome solve_bodies(const RegionStage& stage, const RegionRows& rows, Index number, Index base) {
+    return solve_loaded(stage, load_body_region(stage, rows, number, base));
 }
 
 }  // namespace skerry

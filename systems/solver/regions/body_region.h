@@ -2,6 +2,7 @@
 #pragma once
 
 #include "systems/solver/operators/body_operator.h"
+#include "systems/solver/regions/cable_rows.h"
 #include "systems/solver/regions/joint_rows.h"
 #include "systems/solver/regions/life_cycle.h"
 #include "systems/solver/regions/pushed_bodies.h"
@@ -9,9 +10,11 @@
 namespace skerry {
 
 /// A region with rigid or implicit bodies. Its velocity rows are: two per rigid body, then touched nodes of implicit
-/// bodies, then nodes of clusters, then other nodes. In the memory by contact, joints follow the contacts.
+/// bodies, then nodes of clusters, then other nodes. In the memory by contact, joints follow the
+/// contacts, and points of cables follow the joints.
 struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     std::span<const Index> joint;  // rows of JointBlockTable
+    std::span<const Index> cable;  // numbers of solved cables
     std::span<const Index> rigid;  // rows of RigidBodyTable
     bool has_axes = false;         // true if the friction of a contact depends on the direction
 
@@ -22,10 +25,10 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
         return memory.node[n] != no_index &&
                stage.inputs.implicit.row(memory.node[n], stage.inputs.rigid.nodes) == no_index;
     }
-    /// Joints require method ags, because only sweeps support them. Friction that depends on the direction also allows
+    /// Joints and cables require method ags, because only sweeps support them. Friction that depends on the direction also allows
     /// the Newton steps of `automatic`.
     SolverMethod method(const SolverSettings& settings) const {
-        const bool any = joint.empty() && (!has_axes || settings.method == SolverMethod::automatic);
+        const bool any = joint.empty() && cable.empty() && (!has_axes || settings.method == SolverMethod::automatic);
         return any ? settings.method : SolverMethod::ags;
     }
     void take_joint_impulses(const RegionStage& stage) const;
@@ -33,6 +36,9 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     /// the tolerance (docs/methods/joints.md 2).
     void hold_joints(const RegionStage& stage, BodyOperator& op, RegionOutcome& outcome) const;
     void write_contact(const RegionStage& stage, std::size_t i) const;
+    /// Adds the impulse of contact or point `i` to the bodies that its nodes move with, and writes the velocities of
+    /// these nodes.
+    void write_stencil(const RegionStage& stage, const Stencil& stencil, std::size_t i) const;
     void write_joints(const RegionStage& stage) const;
     void write_body_push(const RegionStage& stage) const;
     PushedBodies pushed(const RegionStage& stage, const BodyOperator& op) const {
@@ -51,12 +57,15 @@ inline BodyOperator operator_of(const RegionStage& stage, const BodyRegion& regi
     return {region.memory, stage.settings.friction, region.scale, region.walk, stage.memory.newton, stage.memory.runs};
 }
 
-/// Loads a region with rigid or implicit bodies. Impulses are zero. `joint` lists rows of JointBlockTable.
-BodyRegion load_body_region(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint,
-                            Index number, Index base);
+/// Rows of ContactTable and JointBlockTable, and numbers of the solved cables, of a region.
+struct RegionRows {
+    std::span<const Index> contact, joint, cable;
+};
 
-/// Solves a region with rigid or implicit bodies in one thread.
-RegionOutcome solve_bodies(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint,
-                           Index number, Index base);
+/// Loads a region with rigid or implicit bodies, or with cables. Impulses are zero.
+BodyRegion load_body_region(const RegionStage& stage, const RegionRows& rows, Index number, Index base);
+
+/// Solves a region with rigid or implicit bodies, or with cables, in one thread.
+RegionOutcome solve_bodies(const RegionStage& stage, const RegionRows& rows, Index number, Index base);
 
 }  // namespace skerry

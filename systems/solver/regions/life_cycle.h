@@ -29,13 +29,13 @@ struct LoadedRegion {
     /// True if the region writes the velocity of its node number n. False if the node moves with the frame of a body.
     bool moves_node(const RegionStage&, std::size_t) const { return true; }
     SolverMethod method(const SolverSettings& settings) const { return settings.method; }
-    /// Sets the joint impulses to those of the last step.
+    /// Sets the impulses of joints and cables to those of the last step.
     void take_joint_impulses(const RegionStage&) const {}
     /// Solves the region again if its joints would not hold at the end of the step.
     void hold_joints(const RegionStage&, auto&, RegionOutcome&) const {}
     /// Adds the impulse of a contact to the touched bodies, and writes the velocities of the nodes of these bodies.
     void write_contact(const RegionStage&, std::size_t) const {}
-    /// Writes the impulses of joints.
+    /// Writes the impulses of joints and cables.
     void write_joints(const RegionStage&) const {}
     /// Writes the pseudo velocities of bodies.
     void write_body_push(const RegionStage&) const {}

@@ -13,26 +13,30 @@ const NodeClusters no_clusters;
 /// Loads one region.
 class Loading {
 public:
-    Loading(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint, Index number,
-            Index base)
+    Loading(const RegionStage& stage, const RegionRows& rows, Index number, Index base)
         : stage_(stage),
           data_(stage.memory),
           number_(static_cast<std::size_t>(number)),
-          list_(data_, data_.node_base[number_], room_of_region(stage.inputs, data_, row.size(), number)),
-          region_{{.row = row,
+          points_(points_of_cables(stage.inputs, rows.cable)),
+          list_(data_, data_.node_base[number_],
+                room_of_region(stage.inputs, data_, rows.contact.size() + points_, number)),
+          region_{{.row = rows.contact,
                    .base = base,
                    .walk = ThroughGroups(stage.inputs.clustered() ? *stage.inputs.clusters : no_clusters,
                                          stage.inputs.implicit, stage.inputs.rigid, list_.node()),
-                   .memory = memory_of(row.size(), joint.size(), base),
-                   // Joints are not checked for stillness, so regions with joints never use the tolerance of still
-                   // regions.
-                   .tolerance = joint.empty() ? tolerance_of(stage, row) : stage.settings.tolerance},
-                  joint,
+                   .memory = memory_of(rows, base),
+                   // Joints and cables are not checked for stillness, so regions with them never use the tolerance of
+                   // still regions.
+                   .tolerance = rows.joint.empty() && rows.cable.empty() ? tolerance_of(stage, rows.contact)
+                                                                         : stage.settings.tolerance},
+                  rows.joint,
+                  rows.cable,
                   data_.region_rigid[number_]} {}
 
     BodyRegion load() {
         list_blocks();
         for (std::size_t k = 0; k < region_.joint.size(); ++k) load_joint_at(k);
+        load_cables();
         load_contacts(stage_, region_, [this](std::size_t i, std::size_t, LumpedContact& contact) {
             RigidPart& part = region_.memory.part[i];
             load_contact_at(i, contact, part);
@@ -49,12 +53,18 @@ public:
     }
 
 private:
-    BodyMemory memory_of(std::size_t contacts, std::size_t joints, Index base) const {
+    BodyMemory memory_of(const RegionRows& rows, Index base) const {
         const auto first = static_cast<std::size_t>(base);
         const std::size_t slots = body_workspace_slots(stage_.settings.method);
-        BodyMemory memory{
-            memory_from(stage_, base, contacts + joints, data_.node_base[number_], list_.node(), slots), {}, {}, {}};
-        memory.part = data_.rigid_part.span().subspan(first, contacts + joints);
+        const std::size_t contacts = rows.contact.size(), joints = rows.joint.size(),
+                          count = contacts + joints + points_;
+        BodyMemory memory;
+        static_cast<ContactMemory&>(memory) =
+            memory_from(stage_, base, count, data_.node_base[number_], list_.node(), slots);
+        memory.contacts = static_cast<Index>(contacts);
+        memory.cable = rows.cable;
+        memory.cable_law = data_.cable_law;
+        memory.part = data_.rigid_part.span().subspan(first, count);
         if (joints > 0) memory.joint = data_.joint_law.span().subspan(first + contacts - data_.contact_rows, joints);
         return memory;
     }
@@ -93,13 +103,68 @@ private:
             [&](Index node) { return place_of(node); },
             [&](Index node, Real weight) {
                 const Index body = rigid.row(node);
-                if (body != no_index) add_term(part, body, node, weight, i);
+                const auto row = static_cast<std::size_t>(region_.row[i]);
+                const bool is_tie = stage_.inputs.is_tie(region_.row[i]);
+                const Vec3& acts_at = is_tie ? stage_.inputs.touch.point[row]
+                                             : stage_.inputs.rigid.position[static_cast<std::size_t>(node)];
+                if (body != no_index)
+                    add_term(part, body, acts_at, weight, [&] {
+                        // Vector from the core of a round body to the contact point on its surface.
+                        return is_tie ? Vec3(Vec3::Zero())
+                                      : rigid.beside_core(node, weight, row, contact_normal(i), stage_.inputs.touch);
+                    });
                 return body != no_index && stage_.inputs.implicit.row(node, rigid) == no_index;
             });
         const std::span<const FrictionAxis> axes = stage_.inputs.friction_axis;
         const FrictionAxis axis = axes.empty() ? FrictionAxis{} : axes[static_cast<std::size_t>(region_.row[i])];
         region_.has_axes |= axis.across != 1;
         find_mobility(contact, part, axis);
+    }
+
+    void load_cables() {
+        const SolvedCables& cables = stage_.inputs.cables;
+        std::size_t i = region_.row.size() + region_.joint.size();
+        for (const Index cable : region_.cable) {
+            const auto first = static_cast<Index>(i);
+            const Range points = cables.block[static_cast<std::size_t>(cable)].points;
+            for (Index p = points.begin; p < points.end; ++p) {
+                load_point(static_cast<std::size_t>(p), data_.contact[static_cast<std::size_t>(region_.base) + i],
+                           region_.memory.part[i]);
+                region_.memory.impulse[i++].setZero();
+            }
+            load_cable(stage_, cable, region_.memory, region_.walk, first, region_.sums);
+        }
+    }
+
+    /// Loads a point of a cable. Its `offset` is the velocity of the held nodes, or of a point of a collider.
+    void load_point(std::size_t point, LumpedContact& contact, RigidPart& part) {
+        const RigidNodes& rigid = stage_.inputs.rigid.nodes;
+        const Stencil& stencil = stage_.inputs.cables.stencil[point];
+        Vec3 offset = stage_.inputs.cables.velocity[point];
+        contact = LumpedContact{};
+        contact.normal = padded(Vec3(Vec3::UnitZ()));
+        part.term_count = 0;
+        for (std::size_t a = 0; a < 4; ++a) {
+            const Index node = stencil.node[a];
+            const Real weight = stencil.weight[a];
+            if (weight == 0) continue;
+            const Real inverse_mass = stage_.inputs.inverse_mass[static_cast<std::size_t>(node)];
+            if (!(inverse_mass > 0)) {
+                offset += weight * stage_.out.velocity_next[static_cast<std::size_t>(node)];
+                continue;
+            }
+            const Index body = rigid.row(node);
+            if (body != no_index)
+                add_term(part, body, stage_.inputs.rigid.position[static_cast<std::size_t>(node)], weight,
+                         [] { return Vec3(Vec3::Zero()); });
+            if (body != no_index && stage_.inputs.implicit.row(node, rigid) == no_index) continue;
+            const auto place = static_cast<std::size_t>(contact.node_count++);
+            contact.weight[place] = weight;
+            contact.step[place] = weight * inverse_mass;
+            contact.node[place] = place_of(node);
+        }
+        contact.offset = padded(offset);
+        find_mobility(contact, part, FrictionAxis{});
     }
 
     void load_joint_at(std::size_t k) {
@@ -114,24 +179,19 @@ private:
         return stage_.inputs.normal[static_cast<std::size_t>(region_.row[i])];
     }
 
-    void add_term(RigidPart& part, Index body, Index node, Real weight, std::size_t i) {
+    /// Adds a node that moves with a rigid body. `acts_at`: point at which the impulse acts. `beside()`: initial value
+    /// of the arm of the body, times its weight [m].
+    void add_term(RigidPart& part, Index body, const Vec3& acts_at, Real weight, auto&& beside) {
         const RigidInputs& rigid = stage_.inputs.rigid;
-        const bool is_tie = stage_.inputs.is_tie(region_.row[i]);
         Index k = 0;
         while (k < part.term_count && part.term[static_cast<std::size_t>(k)].row != body) ++k;
         RigidTerm& term = part.term[static_cast<std::size_t>(k)];
         if (k == part.term_count) {
             ++part.term_count;
             const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
-            // Vector from the core of a round body to the contact point on its surface.
-            const Vec3 beside = is_tie ? Vec3(Vec3::Zero())
-                                       : rigid.nodes.beside_core(node, weight, static_cast<std::size_t>(region_.row[i]),
-                                                                 contact_normal(i), stage_.inputs.touch);
-            term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = padded(beside), .spin_step = {}};
+            term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = padded(Vec3(beside())), .spin_step = {}};
         }
         term.weight += weight;
-        const Vec3& acts_at = is_tie ? stage_.inputs.touch.point[static_cast<std::size_t>(region_.row[i])]
-                                     : rigid.position[static_cast<std::size_t>(node)];
         term.arm += weight * padded(acts_at - rigid.center[static_cast<std::size_t>(body)]);
     }
 
@@ -169,16 +229,17 @@ private:
     const RegionStage& stage_;
     RegionMemory& data_;
     const std::size_t number_;
+    const std::size_t points_;  // number of points of cables
     NodeList list_;
     BodyRegion region_;
 };
 
 }  // namespace
 
-BodyRegion load_body_region(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint,
-                            Index number, Index base) {
-    if (!joint.empty()) base = static_cast<Index>(stage.memory.joint_base[static_cast<std::size_t>(number)]);
-    return Loading(stage, row, joint, number, base).load();
+BodyRegion load_body_region(const RegionStage& stage, const RegionRows& rows, Index number, Index base) {
+    if (!rows.joint.empty() || !rows.cable.empty())
+        base = static_cast<Index>(stage.memory.joint_base[static_cast<std::size_t>(number)]);
+    return Loading(stage, rows, number, base).load();
 }
 
 }  // namespace skerry

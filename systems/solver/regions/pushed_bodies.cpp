@@ -70,7 +70,7 @@ Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
 Real PushedBodies::sweep_joints(std::span<Vec4> push) const {
     const std::span<Vec4> impulse = memory_.workspace[0];
     Real size = 0;
-    for (std::size_t at = row_.size(); at < memory_.contact.size(); ++at) {
+    for (std::size_t at = row_.size(); at < row_.size() + memory_.joint.size(); ++at) {
         const auto i = static_cast<Index>(at);
         const RigidPart& part = memory_.part[at];
         const JointLaw& law = *op_.joint(i);

@@ -13,11 +13,30 @@ void note(Index block, Index region, Column<Index>& region_of, Ragged<Index>& li
     list.item.push_back(block);
 }
 
+/// Lists the clusters and rigid bodies of the nodes of a stencil.
+void note_stencil(const RegionInputs& inputs, const Stencil& stencil, Index number, RegionMemory& memory) {
+    for (std::size_t a = 0; a < 4; ++a) {
+        if (stencil.weight[a] == 0) continue;
+        if (inputs.clustered())
+            note(inputs.clusters->cluster(stencil.node[a]), number, memory.region_of_cluster, memory.region_clusters);
+        // Nodes with zero inverse mass belong to held bodies.
+        if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)
+            note(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
+    }
+}
+
 }  // namespace
 
-std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memory, std::size_t contacts, Index number) {
+std::size_t points_of_cables(const RegionInputs& inputs, std::span<const Index> cables) {
+    std::size_t count = 0;
+    for (const Index cable : cables)
+        count += static_cast<std::size_t>(inputs.cables.block[static_cast<std::size_t>(cable)].points.size());
+    return count;
+}
+
+std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memory, std::size_t stencils, Index number) {
     const auto r = static_cast<std::size_t>(number);
-    std::size_t room = 4 * contacts;
+    std::size_t room = 4 * stencils;
     for (const Index body : memory.region_rigid[r]) {
         room += 2;
         // An impulse moves all touched nodes of the body, so the region needs rows for all of them.
@@ -35,36 +54,33 @@ std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& re
     memory.region_clusters.clear();
     memory.region_rigid.clear();
     memory.region_has_axes.clear();
-    if (!inputs.clustered() && !inputs.rigid.any() && inputs.friction_axis.empty()) return end;
+    const bool any_cable = !inputs.cables.block.empty();
+    if (!inputs.clustered() && !inputs.rigid.any() && !any_cable && inputs.friction_axis.empty()) return end;
     memory.region_clusters.offset.push_back(0);
     memory.region_rigid.offset.push_back(0);
-    if (!inputs.joints.empty()) memory.joint_base.resize(regions.size());
+    if (!inputs.joints.empty() || any_cable) memory.joint_base.resize(regions.size());
     memory.node_base.resize(regions.size());
     memory.region_of_cluster.assign(inputs.clustered() ? inputs.clusters->size() : 0, no_index);
     memory.region_of_rigid.assign(inputs.rigid.mass.size(), no_index);
     for (std::size_t r = 0; r < regions.size(); ++r) {
         const auto number = static_cast<Index>(r);
         memory.node_base[r] = end;
-        for (const Index contact : regions.contacts[r]) {
-            const Stencil& stencil = inputs.stencil[static_cast<std::size_t>(contact)];
-            for (std::size_t a = 0; a < 4; ++a) {
-                if (stencil.weight[a] == 0) continue;
-                if (inputs.clustered())
-                    note(inputs.clusters->cluster(stencil.node[a]), number, memory.region_of_cluster,
-                         memory.region_clusters);
-                // Nodes with zero inverse mass belong to held bodies.
-                if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)
-                    note(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
-            }
-        }
+        for (const Index contact : regions.contacts[r])
+            note_stencil(inputs, inputs.stencil[static_cast<std::size_t>(contact)], number, memory);
+        for (const Index cable : regions.cables_of(r))
+            for (const Stencil& of_point :
+                 rows_of(inputs.cables.stencil, inputs.cables.block[static_cast<std::size_t>(cable)].points))
+                note_stencil(inputs, of_point, number, memory);
         for (const Index joint : regions.joints_of(r)) {
             const JointBlock& block = inputs.joints[static_cast<std::size_t>(joint)];
             if (block.first_node != no_index) note(block.first, number, memory.region_of_rigid, memory.region_rigid);
             if (block.second_node != no_index) note(block.second, number, memory.region_of_rigid, memory.region_rigid);
         }
-        if (const std::size_t joints = regions.joints_of(r).size(); joints > 0) {
+        const std::size_t contacts = regions.contacts[r].size(), joints = regions.joints_of(r).size(),
+                          points = points_of_cables(inputs, regions.cables_of(r));
+        if (joints + points > 0) {
             memory.joint_base[r] = memory.rows;
-            memory.rows += regions.contacts[r].size() + joints;
+            memory.rows += contacts + joints + points;
         }
         memory.region_clusters.offset.push_back(static_cast<Index>(memory.region_clusters.item.size()));
         memory.region_rigid.offset.push_back(static_cast<Index>(memory.region_rigid.item.size()));
@@ -72,8 +88,8 @@ std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& re
             memory.region_has_axes.push_back(std::ranges::any_of(regions.contacts[r], [&](Index contact) {
                 return inputs.friction_axis[static_cast<std::size_t>(contact)].across != 1;
             }));
-        if (touches_cluster(memory, number) || needs_blocks(memory, number))
-            end += room_of_region(inputs, memory, regions.contacts[r].size(), number);
+        if (touches_cluster(memory, number) || needs_blocks(memory, regions, number))
+            end += room_of_region(inputs, memory, contacts + points, number);
     }
     return end;
 }

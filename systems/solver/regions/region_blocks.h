@@ -5,9 +5,9 @@
 
 namespace skerry {
 
-/// Lists the clusters and rigid bodies that the contacts of each region touch, and finds the first node row of each
-/// region. All nodes of a touched cluster get rows, and a rigid body gets two rows. Returns the number of node rows of
-/// all regions.
+/// Lists the clusters and rigid bodies that the contacts and cables of each region touch, and finds the first node row
+/// of each region. All nodes of a touched cluster get rows, and a rigid body gets two rows. Returns the number of node
+/// rows of all regions.
 std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& regions, RegionMemory& memory);
 
 inline bool touches_cluster(const RegionMemory& memory, Index number) {
@@ -16,14 +16,18 @@ inline bool touches_cluster(const RegionMemory& memory, Index number) {
 inline bool touches_rigid(const RegionMemory& memory, Index number) {
     return memory.region_rigid.size() > 0 && !memory.region_rigid[static_cast<std::size_t>(number)].empty();
 }
-/// True if a region needs the operator with 3x3 blocks (BodyOperator): it touches rigid or implicit bodies, or the
-/// friction of a contact depends on the direction.
-inline bool needs_blocks(const RegionMemory& memory, Index number) {
-    return touches_rigid(memory, number) ||
+/// True if a region needs the operator with 3x3 blocks (BodyOperator): it touches rigid or implicit bodies, it has a
+/// cable, or the friction of a contact depends on the direction.
+inline bool needs_blocks(const RegionMemory& memory, const RegionTable& regions, Index number) {
+    return touches_rigid(memory, number) || !regions.cables_of(static_cast<std::size_t>(number)).empty() ||
            (!memory.region_has_axes.empty() && memory.region_has_axes[static_cast<std::size_t>(number)] != 0);
 }
 
-/// Upper bound of the node rows of a region that touches clusters or rigid bodies.
-std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memory, std::size_t contacts, Index number);
+/// Number of the points of some solved cables.
+std::size_t points_of_cables(const RegionInputs& inputs, std::span<const Index> cables);
+
+/// Upper bound of the node rows of a region that touches clusters or rigid bodies, or that has cables. `stencils`:
+/// number of its contacts and points of cables.
+std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memory, std::size_t stencils, Index number);
 
 }  // namespace skerry

@@ -14,6 +14,7 @@
 #include "systems/solver/equations/body_equations.h"
 #include "systems/solver/equations/pool.h"
 #include "systems/solver/inputs/solver_settings.h"
+#include "systems/solver/local/cable_law.h"
 #include "systems/solver/local/joint_law.h"
 #include "systems/solver/local/rigid_part.h"
 #include "systems/solver/operators/contact_runs.h"
@@ -81,11 +82,17 @@ struct RegionMemory {
     // For each cluster and for each body: last region that touched the cluster or body.
     Column<Index> region_of_cluster, region_of_rigid;
     Column<RigidPart> rigid_part;  // by contact; empty if there are no rigid bodies
-    Column<JointLaw> joint_law;    // by joint row; joint rows follow the contact rows, so entry 0 is row contact_rows
-    // For regions with joints: index of the first row of the region. The contacts of the region come first, then the
-    // joints.
+    // Laws by row of the regions with joints or cables. These rows follow the contact rows, so entry 0 is row
+    // contact_rows.
+    Column<JointLaw> joint_law;
+    Column<CableLaw> cable_law;   // by solved cable
+    Column<Real> cable_mobility;  // mobility matrices of all cables (CableBlock::mobility) [1/kg]
+    Column<Real> cable_numbers;   // by point of the cables, several times: numbers by segment of CableLaw
+    // For regions with joints or cables: index of the first row of the region. The contacts of the region come first,
+    // then the joints, then the points of the cables.
     Column<std::size_t> joint_base;
-    // contact_rows: number of contact rows. rows: contact_rows plus the number of rows of regions with joints.
+    // contact_rows: number of contact rows. rows: contact_rows plus the number of rows of regions with joints or
+    // cables.
     std::size_t contact_rows = 0, rows = 0;
     Column<Vec4> free_velocity;  // by row of `velocity`; empty if there are no rigid bodies [m/s]
     // For each row of NodeTable: position that the node received last in the list of its region. It is outdated if the

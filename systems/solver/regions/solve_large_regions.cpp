@@ -22,7 +22,7 @@ bool is_large(const RegionStage& stage, const RegionTable& regions, Index number
     const std::size_t contacts = regions.contacts[static_cast<std::size_t>(number)].size();
     return !stage.settings.fixed_iterations &&
            contacts >= static_cast<std::size_t>(stage.settings.parallel_region_contacts) &&
-           !touches_cluster(stage.memory, number) && !needs_blocks(stage.memory, number);
+           !touches_cluster(stage.memory, number) && !needs_blocks(stage.memory, regions, number);
 }
 
 void solve_large_regions(Executor& executor, const RegionStage& stage, RegionTable& regions) {

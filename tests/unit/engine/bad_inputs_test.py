@@ -16,6 +16,7 @@ CUBE = {"box": {"size": [0.1, 0.1, 0.1], "cells": [1, 1, 1]}}
 BODY = {"name": "second", "mesh": CUBE, "material": "rubber", "position": [2, 0, 2]}
 BASE = {**copy.deepcopy(SCENE), "bodies": [SCENE["bodies"][0], BODY]}
 NOWHERE = {"lower": [5, 5, 5], "upper": [6, 6, 6]}
+POINTS = [{"point": [0, 0, 1]}, {"body": "block"}]
 SMALL, LARGE = [-0.3, -0.3, -0.3], [0.3, 0.3, 0.3]
 
 
@@ -100,6 +101,14 @@ SCENES = [
      ['include: found the path of a missing file, "none.json"', "the path of an existing file"]),
     ("a scene that includes itself", "include", "bad.json", ["bad.json", "include"]),
     ("bodies by name", "bodies", {"block": {}}, ["bodies", "the object", "a list"]),
+    # cables
+    ("a cable without a control", "cables", [{"points": POINTS}], ["cables[0]", "tension", "length", "rate"]),
+    ("a cable that pushes", "cables", [{"points": POINTS, "tension": [[0, 1], [1, -1]]}], ["tension", "-1", "at least 0"]),
+    ("a cable through one point", "cables", [{"points": POINTS[:1], "length": 1}], ["cables[0]", "at least 2 points"]),
+    ("a cable of an unknown body", "cables", [{"points": [{"body": "blok"}, {}], "length": 1}],
+     ["cables[0].points[0].body", '"blok"', '"block"']),
+    ("a cable far from its body", "cables", [{"points": [{"body": "block", "point": [9, 0, 0]}, {}], "length": 1}],
+     ["cables[0]", "points[0].point", "outside body 'block'"]),
     # probes
     ("a probe of no known quantity", "probes", probe(quantity="heat"), ["probes[0].quantity", '"heat"', '"energy"']),
     ("a probe without a name", "probes", [{"quantity": "energy"}], ["probes[0]", '"name"']),

@@ -117,6 +117,20 @@ class CheckpointTest(ProgramCase):
         self.run_stats("--restart", checkpoint, "--seconds", 0.2, "--probes", parts)
         self.assertEqual(parts.read_text(), whole.read_text())
 
+    def test_a_run_with_a_cable_goes_on_with_the_same_rows(self):
+        points = [{"point": [0, 0, 1]}, {"body": "block", "point": [0, 0, 0.05]}, {"collider": "floor", "point": [1, 0, 0]}]
+        scene = self.write("cable.json", dict(
+            SCENE, cables=[{"points": points, "rate": [[0.05, 0], [0.1, -0.2]], "friction": 0.2}],
+            probes=[{"name": "tendon", "quantity": "cable", "cable": "cable_0"}]))
+        whole, parts, checkpoint = (self.folder / name for name in ("whole.csv", "parts.csv", "run.skerry"))
+        self.run_stats(scene, "--seconds", 0.2, "--probes", whole)
+        self.run_stats(scene, "--seconds", 0.1, "--probes", parts, "--checkpoint", checkpoint)
+        self.run_stats("--restart", checkpoint, "--seconds", 0.2, "--probes", parts)
+        self.assertEqual(parts.read_text(), whole.read_text())
+        heading, *_, last = whole.read_text().splitlines()
+        self.assertIn("tendon.tension_1 [N],tendon.length [m]", heading)
+        self.assertGreater(float(last.split(",")[1]), 0)
+
     def test_a_run_of_a_changed_scene_goes_on_with_it(self):
         checkpoint = self.folder / "run.skerry"
         change = ["--set", "bodies[0].name=brick", "--set", "probes[0].body=brick"]

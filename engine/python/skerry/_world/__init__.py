@@ -1,6 +1,8 @@
-"""The world, its bodies, colliders, attachments and joints, and their reports."""
+"""The world, its bodies, colliders, attachments, joints and cables, and their reports."""
 
+from .anchor import Anchor
 from .body import Attachment, Body
+from .cable import Cable, CableState
 from .collider import Collider
 from .joint import Joint, JointState
 from .material import MaterialHandle
@@ -22,8 +24,11 @@ from .tie import Tie, TieState
 from .world import World
 
 __all__ = [
+    "Anchor",
     "Attachment",
     "Body",
+    "Cable",
+    "CableState",
     "Collider",
     "DynamicsChoice",
     "DynamicsEstimate",

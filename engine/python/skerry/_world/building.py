@@ -4,13 +4,26 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Unpack, cast
 
 from numpy.typing import ArrayLike
 
-from .._arrays import RotationLike, VectorLike, checked, flag, index_array, name_text, read_only, real, vector, whole
+from .._arrays import (
+    RotationLike,
+    TimeTableLike,
+    Vector,
+    VectorLike,
+    checked,
+    flag,
+    index_array,
+    name_text,
+    read_only,
+    real,
+    vector,
+    whole,
+)
 from .._arrays import rotation as rotation_vector
 from .._errors import scene_error
 from .._mesh import Mesh
@@ -32,7 +45,9 @@ from .._settings import (
     SurfaceMesh,
     TieKind,
 )
+from .anchor import Anchor
 from .body import Attachment, Body, Indices
+from .cable import Cable, drive_tables
 from .changes import MaterialChanges
 from .collider import Collider
 from .joint import Joint, joint_label
@@ -281,9 +296,37 @@ class Building:
         to_body, to_collider = (None, other) if isinstance(to, Collider) else (other, None)
         return self._tie(self._core.add_tie(tied, index_array(nodes, "nodes", ("n",)), to_body, to_collider, given))
 
-    def remove(self, removed: PosedObject | Joint | Tie) -> None:
-        """Removes a body, a collider, an attachment, a joint or a tie. BufferError: arrays of views() are in use."""
-        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint, Tie)
+    def add_cable(
+        self,
+        points: Sequence[Anchor],
+        *,
+        tension: TimeTableLike | None = None,
+        length: TimeTableLike | None = None,
+        rate: TimeTableLike | None = None,
+        friction: float = 0.0,
+    ) -> Cable:
+        """Adds a cable that runs straight from point to point and never pushes, and returns it.
+
+        points: at least two, and at least one on a body. Exactly one of the following is given, as a number or as pairs
+        (time, value). tension: tension of the first segment [N]. length: greatest length [m]. rate: rate of the
+        greatest length, which is the length now [m/s]. friction: friction coefficient mu at the points between the
+        first and the last; tensions differ there by at most exp(mu theta) for a bend by the angle theta."""
+        given = [self._anchor(point, f"points[{number}]") for number, point in enumerate(points)]
+        drive = drive_tables(tension, length, rate)
+        return self._cable(self._core.add_cable(given, *drive, real(friction, "friction")))
+
+    def _anchor(self, anchor: Anchor, name: str) -> tuple[Any, Vector]:
+        """An anchor for the extension module."""
+        checked(anchor, name, Anchor)
+        if anchor.body is not None and anchor.collider is not None:
+            raise scene_error("cable", name, "a body and a collider", "a body, a collider, or neither for the world")
+        given = anchor.collider if anchor.body is None else anchor.body
+        return None if given is None else self._own(given, name, Body, Collider), vector(anchor.point, f"{name}.point")
+
+    def remove(self, removed: PosedObject | Joint | Tie | Cable) -> None:
+        """Removes a body, a collider, an attachment, a joint, a tie or a cable. BufferError: arrays of views() are in
+        use."""
+        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint, Tie, Cable)
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)
 
@@ -308,6 +351,11 @@ class Building:
         return [self._tie(handle) for handle in self._core.ties()]
 
     @property
+    def cables(self) -> list[Cable]:
+        """The cables in the order added. They have no names."""
+        return [self._cable(handle) for handle in self._core.cables()]
+
+    @property
     def attachments(self) -> list[Attachment]:
         """The attachments in the order added. They have no names."""
         return [self._attachment(handle) for handle in self._core.attachments()]
@@ -326,6 +374,9 @@ class Building:
 
     def _collider(self, handle: Any, name: str | None = None) -> Collider:
         return Collider(self._self, handle, self._core.name(handle) if name is None else name)
+
+    def _cable(self, handle: Any) -> Cable:
+        return Cable(self._self, handle, "cable")
 
     def _joint(self, handle: Any) -> Joint:
         state = self._core.joint_state(handle)

@@ -14,6 +14,7 @@ from .._settings import Field, held
 
 if TYPE_CHECKING:
     from .body import Attachment, Body
+    from .cable import Cable
     from .collider import Collider
     from .joint import Joint
     from .objects import PosedObject
@@ -89,6 +90,16 @@ class JointProbe:
 
 
 @dataclass(frozen=True, slots=True)
+class CableProbe:
+    """Tensions, length, rate, work and friction loss of a cable.
+
+    cable: the cable.
+    """
+
+    cable: Cable
+
+
+@dataclass(frozen=True, slots=True)
 class EnergyProbe:
     """Kinetic, elastic, potential and dissipated energy of the world."""
 
@@ -154,6 +165,7 @@ Probe: TypeAlias = (
     | ForceProbe
     | ReactionProbe
     | JointProbe
+    | CableProbe
     | EnergyProbe
     | StressProbe
     | VolumeProbe
@@ -173,6 +185,7 @@ def recorded_probes(probes: Mapping[str, Probe], owner: World | None = None) -> 
 
 def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
     from .body import Attachment, Body
+    from .cable import Cable
     from .collider import Collider
     from .joint import Joint
 
@@ -194,6 +207,8 @@ def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
             return _core.reaction_probe(name, handle_of("attachment", Attachment))
         case JointProbe():
             return _core.joint_probe(name, handle_of("joint", Joint))
+        case CableProbe():
+            return _core.cable_probe(name, handle_of("cable", Cable))
         case EnergyProbe():
             return _core.energy_probe(name)
         case StressProbe():
@@ -228,6 +243,8 @@ def _object_of(world: World, value: Any) -> Any:
         return world._collider(value)
     if isinstance(value, _core.JointHandle):
         return world._joint(value)
+    if isinstance(value, _core.CableHandle):
+        return world._cable(value)
     return world._attachment(value) if isinstance(value, _core.AttachmentHandle) else value
 
 

@@ -25,8 +25,8 @@ void list_implicit_kick(WorldState& w, TaskGraph& g) {
 void list_coupling(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/couple_implicit_bodies", couple_implicit_bodies, implicit_inputs(m),
-            read(w.scratch.contacts.stencil), read(m.nodes.body), implicit_times(w.scratch.parameters),
-            make(m.stiff_bodies), make(w.scratch.coupling));
+            inputs<TouchedNodes>(w.scratch.contacts, w.scratch.cables), read(m.nodes.body),
+            implicit_times(w.scratch.parameters), make(m.stiff_bodies), make(w.scratch.coupling));
 }
 
 /// Lists the stage in which implicit bodies deform and exert forces on their supports.

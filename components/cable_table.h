@@ -1,0 +1,122 @@
+// Cables: one row per cable, the points through which they run, and the cables of a step (docs/methods/cables.md).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "components/anchor.h"
+#include "components/cable_control.h"
+#include "components/column.h"
+#include "components/column_role.h"
+#include "components/contact_table.h"
+#include "components/key_lists.h"
+#include "components/range.h"
+#include "components/row_type.h"
+#include "components/types.h"
+
+namespace skerry {
+
+template <>
+inline constexpr std::uint64_t value_count<CableControl> = 3;
+
+/// One row per cable. Segment `s` of a cable is the straight line from its point `s` to its next point.
+struct CableTable {
+    Column<std::uint32_t> slot;
+    Column<CableControl> control;
+    Column<Real> friction;    // friction coefficient at the points between the first and the last
+    Column<Real> released;    // greatest length at the end of the last step [m]; used by the control `rate`
+    Column<Real> step;        // time for which the tensions acted in the last step; 0 before the first step [s]
+    Column<Real> work;        // work of the control on the cable before the last step [J]
+    Column<Real> dissipated;  // energy that friction at the points dissipated before the last step [J]
+    Column<Range> points;     // rows of the columns by point
+    Column<Range> keys;       // rows of `key`
+    // The following columns have one row per point. For the last point of a cable, `tension` and `length` are 0.
+    AnchorColumns anchor;
+    Column<Real> tension;  // impulse of the tension of the segment from this point in the last step [N s]
+    Column<Real> length;   // length of the segment from this point at the start of the last step [m]
+    Column<TimeKey> key;   // prescribed values of all cables
+
+    std::size_t size() const { return slot.size(); }
+
+    std::span<const TimeKey> keys_of(std::size_t cable) const { return rows_of(key.span(), keys[cable]); }
+    /// Rows of the cable in the columns by point.
+    Range list_of(std::size_t cable) const { return points[cable]; }
+    /// Erases the keys and the points of a cable.
+    void erase_keys_of(std::size_t cable) {
+        erase_keys(keys, key, cable);
+        const Range gone = points[cable];
+        for (Range& of : points.span())
+            if (of.begin >= gone.end) of = {of.begin - gone.size(), of.end - gone.size()};
+        points[cable] = {};
+        if (gone.size() == 0) return;
+        const std::span<const Range> ranges(&gone, 1);
+        anchor.body.erase(ranges);
+        anchor.collider.erase(ranges);
+        anchor.point.erase(ranges);
+        tension.erase(ranges);
+        length.erase(ranges);
+    }
+
+    /// Visits the columns with one row per cable.
+    void for_each_row_column(auto&& visit) {
+        visit("slot", slot, ColumnRole::state);
+        visit("control", control, ColumnRole::state);
+        visit("friction", friction, ColumnRole::state);
+        visit("released", released, ColumnRole::state);
+        visit("step", step, ColumnRole::state);
+        visit("work", work, ColumnRole::state);
+        visit("dissipated", dissipated, ColumnRole::state);
+        visit("points", points, ColumnRole::link);
+        visit("keys", keys, ColumnRole::link);
+    }
+    void for_each_column(auto&& visit) {
+        for_each_row_column(visit);
+        anchor.for_each_column({"body", "collider", "anchor"}, visit);
+        visit("tension", tension, ColumnRole::state);
+        visit("length", length, ColumnRole::state);
+        visit("key", key, ColumnRole::state);
+    }
+};
+
+/// A cable in a step.
+struct CableBlock {
+    Index cable;   // row of CableTable
+    Range points;  // rows of the columns by point of CableBlockTable
+    // True if the rows of the cable are solved with the contacts of a region. False if the cable acts by known forces.
+    bool solved;
+    bool by_length;  // true: the greatest length is prescribed; false: the tension of the first segment
+    Real wanted;     // greatest rate of the length [m/s], or impulse of the tension of the first segment [N s]
+    Real released;   // greatest length at the end of the step [m]
+    Index mobility;  // row of the first entry of the cable in the mobility matrices of the region solver
+};
+
+/// The cables that act in a step. Cables whose bodies all sleep, or that cannot move anything, are left out.
+struct CableBlockTable {
+    Column<CableBlock> block;
+    // The following columns have one row per point.
+    Column<Stencil> stencil;  // nodes and weights; all weights are 0 for points of colliders and of the world
+    Column<Vec3> velocity;    // velocity of points of colliders; 0 for other points [m/s]
+    Column<Vec3> direction;   // unit vector to the next point; 0 at the last point
+    Column<Real> length;      // distance to the next point; 0 at the last point [m]
+    Column<Real> most_ratio;  // greatest ratio of the tensions on both sides of the point, exp(friction angle)
+    Column<Real> impulse;  // tension of the segment from the point, as an impulse; before the solve: warm start [N s]
+    Column<Real> work;     // by block: work of a solved cable on the bodies [J]
+    Column<Vec3> sum_impulse;  // by block: total impulse of a solved cable on the moving nodes [N s]
+    Index mobilities = 0;      // number of entries of all mobility matrices
+    Index first_solved = 0;    // the blocks from here on have `solved` set
+
+    std::span<const CableBlock> solved() const { return block.span().subspan(static_cast<std::size_t>(first_solved)); }
+    void for_each_column(auto&& visit) {
+        visit("block", block, ColumnRole::scratch);
+        visit("stencil", stencil, ColumnRole::scratch);
+        visit("velocity", velocity, ColumnRole::scratch);
+        visit("direction", direction, ColumnRole::scratch);
+        visit("length", length, ColumnRole::scratch);
+        visit("most_ratio", most_ratio, ColumnRole::scratch);
+        visit("impulse", impulse, ColumnRole::scratch);
+        visit("work", work, ColumnRole::scratch);
+        visit("sum_impulse", sum_impulse, ColumnRole::scratch);
+    }
+};
+
+}  // namespace skerry

@@ -1,0 +1,68 @@
+// Cables that run through points of bodies (docs/methods/cables.md).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "components/cable_control.h"
+#include "components/types.h"
+#include "skerry/anchor.h"
+#include "skerry/time_table.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+class World;
+
+/// Control of a cable. Exactly one member must be given. A cable never pushes.
+struct CableDrive {
+    std::optional<TimeTable> tension{};  // tension of the first segment, >= 0 [N]
+    std::optional<TimeTable> length{};   // greatest length of the cable, > 0 [m]
+    // rate of the greatest length, which starts at the present length; negative draws the cable in [m/s]
+    std::optional<TimeTable> rate{};
+};
+
+/// A cable without mass and without elasticity. It runs straight from point to point, and is drawn in or let out at the
+/// first point.
+struct CableSettings {
+    std::vector<Anchor> points;  // at least two; neighbours must not coincide
+    CableDrive drive;
+    // Friction coefficient mu at the points between the first and the last, >= 0. A cable that bends by the angle theta
+    // at a point slides there if the tensions on both sides have the ratio exp(mu theta) (Euler and Eytelwein).
+    Real friction = 0;
+};
+
+struct CableState {
+    std::vector<Vec3> points;        // present positions of the points [m]
+    std::vector<Real> tension;       // tension of each segment in the last step [N]
+    Real length = 0;                 // present length [m]
+    Real rate = 0;                   // present rate of the length [m/s]
+    std::optional<Real> released{};  // greatest length, unless the tension is prescribed [m]
+    Real work = 0;                   // work of the drive on the cable since the cable was added [J]
+    Real dissipated = 0;             // energy dissipated by friction at the points since the cable was added [J]
+};
+
+/// A view of the cables of a world. It is valid until the world is moved or destroyed. Functions that change cables may
+/// only be called between calls of advance. They throw SceneError and change nothing if a handle is stale or a value is
+/// out of range. Cables belong to the state of the world: they are saved, cloned and hashed.
+class Cables {
+public:
+    explicit Cables(World& world) : world_(&world) {}
+
+    /// Adds a cable. It is removed with each of its bodies and colliders. All bodies of a cable that has friction, or
+    /// whose length is prescribed, are in one contact region.
+    CableHandle add(const CableSettings& cable);
+    void remove(CableHandle cable);
+    bool alive(CableHandle cable) const;
+    std::vector<CableHandle> all() const;  // all cables, in the order added
+    CableState state(CableHandle cable) const;
+    /// Replaces the control. A control equal to the present one changes no bit of the state. A new rate starts at the
+    /// present length, except if the old control was also a rate.
+    void set_drive(CableHandle cable, const CableDrive& drive);
+
+private:
+    World* world_;
+};
+
+}  // namespace skerry
+#pragma GCC visibility pop

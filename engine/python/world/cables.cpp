@@ -1,0 +1,76 @@
+// Cables that run through points of bodies.
+#include "skerry/cable.h"
+
+#include <nanobind/stl/tuple.h>
+
+#include <array>
+#include <optional>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+#include "engine/python/read_settings.h"
+#include "engine/python/world/parts.h"
+
+namespace skerry::python {
+
+namespace {
+
+/// A point of a cable: the handle of its body or collider, or None for the world; and its position in the world [m].
+using GivenAnchor = std::tuple<std::optional<std::variant<BodyHandle, ColliderHandle>>, std::array<Real, 3>>;
+using GivenTable = std::optional<std::vector<std::array<Real, 2>>>;
+
+Anchor anchor_of(const GivenAnchor& given) {
+    const auto& [object, point] = given;
+    Anchor anchor{.point = {point[0], point[1], point[2]}};
+    if (object && std::holds_alternative<BodyHandle>(*object)) anchor.body = std::get<BodyHandle>(*object);
+    if (object && std::holds_alternative<ColliderHandle>(*object)) anchor.collider = std::get<ColliderHandle>(*object);
+    return anchor;
+}
+
+CableDrive drive_of(const GivenTable& tension, const GivenTable& length, const GivenTable& rate) {
+    CableDrive drive;
+    if (tension) drive.tension = table_of(*tension);
+    if (length) drive.length = table_of(*length);
+    if (rate) drive.rate = table_of(*rate);
+    return drive;
+}
+
+nb::dict values_of(const CableState& state) {
+    nb::dict values;
+    nb::list points;
+    for (const Vec3& point : state.points) points.append(tuple_of(point));
+    values["points"] = nb::tuple(points);
+    values["tension"] = nb::tuple(nb::cast(state.tension));
+    values["length"] = state.length;
+    values["rate"] = state.rate;
+    values["released"] = state.released;
+    values["work"] = state.work;
+    values["dissipated"] = state.dissipated;
+    return values;
+}
+
+}  // namespace
+
+void bind_cables(WorldClass& type) {
+    type.def("add_cable",
+             guarded([](World& world, const std::vector<GivenAnchor>& points, const GivenTable& tension,
+                        const GivenTable& length, const GivenTable& rate, Real friction) {
+                 CableSettings settings{.points = {}, .drive = drive_of(tension, length, rate), .friction = friction};
+                 for (const GivenAnchor& point : points) settings.points.push_back(anchor_of(point));
+                 return Cables(world).add(settings);
+             }),
+             nb::arg("points"), nb::arg("tension").none(), nb::arg("length").none(), nb::arg("rate").none(),
+             nb::arg("friction"))
+        .def("remove", guarded([](World& world, const CableHandle& cable) { Cables(world).remove(cable); }))
+        .def("alive", guarded([](World& world, const CableHandle& cable) { return Cables(world).alive(cable); }))
+        .def("cables", guarded([](World& world) { return Cables(world).all(); }))
+        .def("cable_state",
+             guarded([](World& world, const CableHandle& cable) { return values_of(Cables(world).state(cable)); }))
+        .def("set_cable_drive",
+             guarded([](World& world, const CableHandle& cable, const GivenTable& tension, const GivenTable& length,
+                        const GivenTable& rate) { Cables(world).set_drive(cable, drive_of(tension, length, rate)); }),
+             nb::arg("cable"), nb::arg("tension").none(), nb::arg("length").none(), nb::arg("rate").none());
+}
+
+}  // namespace skerry::python

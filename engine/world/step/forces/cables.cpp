@@ -1,0 +1,35 @@
+// Force element of cables: lists the cables of the step, and adds the forces of frictionless cables with a prescribed
+// tension (docs/methods/cables.md).
+#include "engine/world/step/seams.h"
+#include "systems/forces/prepare_cables.h"
+
+namespace skerry {
+
+namespace {
+
+bool any_cable(const Model& model) {
+    return model.cables.size() > 0;
+}
+
+void list_cables(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    const StepParameters& p = w.scratch.parameters;
+    g.stage("forces/prepare_cables", prepare_cables,
+            inputs<CableInputs>(m.cables, m.bodies, m.nodes, m.colliders, m.any_asleep),
+            inputs<CableTimes>(w.clock.time, p.h, p.kick, p.solver.recovery_speed), make(w.scratch.cables));
+    const auto if_forced = only_if([](bool forced) { return forced; }, value(m.forced));
+    g.stage("forces/add_cable_forces", add_cable_forces, read(w.scratch.cables), value(p.kick),
+            write(m.nodes.applied_force), if_forced);
+}
+
+void add_cable_rate(const Model& model, std::span<Real> of_body) {
+    add_cable_rates(CableInputs::bind({}, model.cables, model.bodies, model.nodes, model.colliders, model.any_asleep),
+                    of_body);
+}
+
+}  // namespace
+
+constinit const ForceElement cable_forces{
+    .any = any_cable, .add_forces = list_cables, .add_rate = add_cable_rate, .rate_moves = true};
+
+}  // namespace skerry

@@ -1,0 +1,23 @@
+// Constraint law of cables whose length is prescribed, or that rub at their points (docs/methods/cables.md). The stage
+// forces/prepare_cables of the force element lists their rows.
+#include "engine/world/step/seams.h"
+#include "systems/forces/prepare_cables.h"
+
+namespace skerry {
+
+namespace {
+
+void list_cable_measures(WorldState& w, TaskGraph& g) {
+    g.stage_with_result("forces/measure_cables", w.scratch.findings.cables, measure_cables, read(w.scratch.cables));
+}
+
+void list_cable_memory(WorldState& w, TaskGraph& g) {
+    g.stage("forces/store_cables", store_cables, read(w.scratch.cables), value(w.scratch.parameters.kick),
+            outputs<CableMemory>(w.model.cables), if_taken(w));
+}
+
+}  // namespace
+
+constinit const ConstraintLaw cable_law{.measure = list_cable_measures, .remember = list_cable_memory};
+
+}  // namespace skerry

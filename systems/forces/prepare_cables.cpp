@@ -1,0 +1,223 @@
+#include "systems/forces/prepare_cables.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skerry {
+
+namespace {
+
+void clear(CableBlockTable& blocks) {
+    blocks.for_each_column([](const char*, auto& column, ColumnRole) { column.clear(); });
+    blocks.mobilities = 0;
+}
+
+/// Appends the points of a cable to the columns by point.
+Range list_points(const CableInputs& cables, std::size_t cable, CableBlockTable& blocks) {
+    const Range points = cables.points[cable];
+    const auto begin = static_cast<Index>(blocks.stencil.size());
+    for (Index p = points.begin; p < points.end; ++p) {
+        const auto at = static_cast<std::size_t>(p);
+        Stencil stencil{};
+        std::size_t count = 0;
+        cables.anchor.for_each_node(at, [&](std::size_t node, Real weight) {
+            stencil.node[count] = static_cast<Index>(node);
+            stencil.weight[count++] = weight;
+        });
+        for (std::size_t a = count; a < 4; ++a) stencil.node[a] = stencil.node[0];
+        blocks.stencil.push_back(stencil);
+        blocks.velocity.push_back(count > 0 ? Vec3(Vec3::Zero()) : cables.anchor.velocity(at));
+        const Vec3 to_next = p + 1 < points.end ? Vec3(cables.anchor.at(at + 1) - cables.anchor.at(at)) : Vec3::Zero();
+        const Real length = to_next.norm();
+        blocks.length.push_back(length);
+        blocks.direction.push_back(length > 0 ? Vec3(to_next / length) : Vec3(Vec3::Zero()));
+        blocks.most_ratio.push_back(1);
+        blocks.impulse.push_back(0);
+    }
+    const Range listed{begin, static_cast<Index>(blocks.stencil.size())};
+    const Real friction = cables.friction[cable];
+    for (Index p = listed.begin + 1; friction > 0 && p + 1 < listed.end; ++p) {
+        const Vec3 &before = blocks.direction[p - 1], &after = blocks.direction[p];
+        const Real turn = std::atan2(before.cross(after).norm(), before.dot(after));
+        blocks.most_ratio[p] = std::exp(friction * turn);
+    }
+    return listed;
+}
+
+void find_wanted_length(const CableInputs& cables, const CableTimes& times, Real length, CableBlock& block) {
+    const auto c = static_cast<std::size_t>(block.cable);
+    const std::span<const TimeKey> keys = cables.keys_of(c);
+    Real rate = 0;
+    if (cables.control[c] == CableControl::length) {
+        block.released = value_at(keys, times.t + times.h);
+        rate = (block.released - value_at(keys, times.t)) / times.h;
+    } else {
+        rate = mean_value(keys, times.t, times.h);
+        block.released = std::max(Real(0), cables.released[c] + times.h * rate);
+    }
+    block.wanted = std::max((block.released - length) / times.h, std::min(rate, Real(0)) - times.recovery_speed);
+}
+
+void add_block(const CableInputs& cables, std::size_t cable, const CableTimes& times, CableBlockTable& blocks) {
+    CableBlock block{.cable = static_cast<Index>(cable),
+                     .points = list_points(cables, cable, blocks),
+                     .solved = !cables.has_known_forces(cable),
+                     .by_length = cables.control[cable] != CableControl::tension,
+                     .wanted = 0,
+                     .released = cables.released[cable],
+                     .mobility = blocks.mobilities};
+    const std::span<Real> impulse = rows_of(blocks.impulse, block.points);
+    const std::size_t segments = impulse.size() - 1;
+    if (block.by_length) {
+        Real length = 0;
+        for (const Real of_segment : rows_of(blocks.length, block.points)) length += of_segment;
+        find_wanted_length(cables, times, length, block);
+    } else {
+        block.wanted = times.kick * mean_value(cables.keys_of(cable), times.t, times.h);
+        std::ranges::fill(impulse.first(segments), block.wanted);
+    }
+    if (block.solved) {
+        blocks.mobilities += static_cast<Index>(segments * segments);
+        const Real scale = cables.step[cable] > 0 ? times.kick / cables.step[cable] : 0;
+        const std::span<const Real> last = rows_of(cables.tension, cables.points[cable]);
+        for (std::size_t s = 0; s < segments; ++s) impulse[s] = scale * last[s];
+    }
+    blocks.block.push_back(block);
+    blocks.work.push_back(0);
+    blocks.sum_impulse.push_back(Vec3::Zero());
+}
+
+/// Adds the bound of a segment of the length `length` and of the greatest tension `tension` to its bodies.
+void add_segment_rate(const CableInputs& cables, std::size_t point, Real tension, std::span<Real> of_body) {
+    const Real length = (cables.anchor.at(point + 1) - cables.anchor.at(point)).norm();
+    if (!(length > 0) || tension == 0) return;
+    // A segment resists a displacement across its direction with the stiffness tension / length. With the weights w of
+    // the nodes of an anchor and their masses m, w^2 / m sums to the mobility of the anchor.
+    Real mobility = 0;  // [1/kg]
+    for (const std::size_t end : {point, point + 1})
+        cables.anchor.for_each_node(
+            end, [&](std::size_t node, Real weight) { mobility += weight * weight * cables.inverse_mass[node]; });
+    for (const std::size_t end : {point, point + 1})
+        if (const Index body = cables.anchor.body[end]; body != no_index)
+            of_body[static_cast<std::size_t>(body)] += tension / length * mobility;
+}
+
+}  // namespace
+
+void add_cable_rates(const CableInputs& cables, std::span<Real> of_body) {
+    for (std::size_t c = 0; c < cables.size(); ++c) {
+        const Range points = cables.points[c];
+        const std::span<const TimeKey> keys = cables.keys_of(c);
+        const bool known = cables.control[c] == CableControl::tension;
+        for (Index p = points.begin; p + 1 < points.end; ++p) {
+            const auto at = static_cast<std::size_t>(p);
+            const Real last = cables.step[c] > 0 ? cables.tension[at] / cables.step[c] : 0;
+            const Real most = known ? std::ranges::max_element(keys, {}, &TimeKey::value)->value : last;
+            add_segment_rate(cables, at, most, of_body);
+        }
+    }
+}
+
+bool CableInputs::is_driven(std::size_t cable, Real t, Real h) const {
+    const std::span<const TimeKey> of = keys_of(cable);
+    return changes(of, t, h) || (control[cable] == CableControl::rate && value_at(of, t) != 0);
+}
+
+bool CableInputs::moves(std::size_t cable) const {
+    bool found = false;
+    for (Index p = points[cable].begin; p < points[cable].end; ++p)
+        anchor.for_each_node(static_cast<std::size_t>(p),
+                             [&](std::size_t node, Real) { found |= inverse_mass[node] > 0; });
+    return found;
+}
+
+bool CableInputs::rests(std::size_t cable) const {
+    if (body_asleep.empty()) return false;
+    return std::ranges::all_of(rows_of(anchor.body, points[cable]), [&](Index body) {
+        return body == no_index || body_asleep[static_cast<std::size_t>(body)] != 0;
+    });
+}
+
+bool prepare_cables(const CableInputs& cables, const CableTimes& times, CableBlockTable& blocks) {
+    clear(blocks);
+    for (const bool known : {true, false}) {
+        if (!known) blocks.first_solved = static_cast<Index>(blocks.block.size());
+        for (std::size_t c = 0; c < cables.size(); ++c)
+            if (cables.has_known_forces(c) == known && !cables.rests(c) && cables.moves(c))
+                add_block(cables, c, times, blocks);
+    }
+    return cables.size() > 0;
+}
+
+bool add_cable_forces(const CableBlockTable& blocks, Real kick, std::span<Vec3> applied_force) {
+    const auto known = static_cast<std::size_t>(blocks.first_solved);
+    for (std::size_t b = 0; b < known; ++b) {
+        const Range points = blocks.block[b].points;
+        Vec3 last = Vec3::Zero();
+        for (Index p = points.begin; p < points.end; ++p) {
+            const Vec3 next = blocks.impulse[p] / kick * blocks.direction[p];
+            const Vec3 force = next - last;
+            const Stencil& stencil = blocks.stencil[p];
+            for (std::size_t a = 0; a < 4; ++a)
+                if (stencil.weight[a] != 0)
+                    applied_force[static_cast<std::size_t>(stencil.node[a])] += stencil.weight[a] * force;
+            last = next;
+        }
+    }
+    return known > 0;
+}
+
+bool mark_driven_cables(const CableInputs& cables, Real t, Real h, std::span<std::uint8_t> marked) {
+    bool any = false;
+    for (std::size_t c = 0; c < cables.size(); ++c) {
+        if (!cables.is_driven(c, t, h)) continue;
+        any = true;
+        for (const Index body : rows_of(cables.anchor.body, cables.points[c]))
+            if (body != no_index) marked[static_cast<std::size_t>(body)] = 1;
+    }
+    return any;
+}
+
+CableWork work_of_cable(std::span<const Real> tension, std::span<const Real> before, std::span<const Real> now) {
+    CableWork sum;
+    Real drawn = 0;  // length of cable that moves past the start of the segment, towards the first point [m]
+    for (std::size_t s = tension.size(); s-- > 0;) {
+        drawn -= now[s] - before[s];
+        if (s == 0)
+            sum.work = tension[0] * drawn;
+        else
+            sum.dissipated += (tension[s - 1] - tension[s]) * drawn;
+    }
+    return sum;
+}
+
+bool store_cables(const CableBlockTable& blocks, Real kick, const CableMemory& out) {
+    for (const CableBlock& block : blocks.block) {
+        const auto c = static_cast<std::size_t>(block.cable);
+        const std::span<const Real> length = rows_of(blocks.length, block.points),
+                                    impulse = rows_of(blocks.impulse, block.points);
+        const std::span<Real> tension = rows_of(out.tension, out.points[c]),
+                              before = rows_of(out.length, out.points[c]);
+        if (out.step[c] > 0) {
+            const CableWork of = work_of_cable(tension.first(tension.size() - 1), before, length);
+            out.work[c] += of.work / out.step[c];
+            out.dissipated[c] += of.dissipated / out.step[c];
+        }
+        std::ranges::copy(length, before.begin());
+        std::ranges::copy(impulse, tension.begin());
+        out.released[c] = block.released;
+        out.step[c] = kick;
+    }
+    return !blocks.block.empty();
+}
+
+CableMeasures measure_cables(const CableBlockTable& blocks) {
+    CableMeasures sum;
+    for (std::size_t b = static_cast<std::size_t>(blocks.first_solved); b < blocks.block.size(); ++b) {
+        sum.impulse += blocks.sum_impulse[b];
+        sum.work += blocks.work[b];
+    }
+    return sum;
+}
+
+}  // namespace skerry

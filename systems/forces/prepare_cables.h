@@ -1,0 +1,113 @@
+// Geometry, control and friction of the cables in a step (docs/methods/cables.md).
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+#include "components/cable_table.h"
+#include "components/collider_table.h"
+#include "components/node_table.h"
+#include "components/resting_nodes.h"
+#include "jobs/access.h"
+#include "systems/forces/anchors.h"
+
+namespace skerry {
+
+struct CableInputs {
+    std::span<const CableControl> control;
+    std::span<const Real> friction, released, step;
+    std::span<const Range> points, keys;
+    std::span<const Real> tension, length;  // by point
+    std::span<const TimeKey> key;
+    AnchorInputs anchor;
+    std::span<const Real> inverse_mass;         // by node [1/kg]
+    std::span<const std::uint8_t> body_asleep;  // column of BodyTable; empty if no body is asleep
+
+    static CableInputs bind(const Binder& binder, const CableTable& cable, const BodyTable& body, const NodeTable& node,
+                            const ColliderTable& collider, const bool& any_asleep) {
+        return {.control = binder.read(cable.control),
+                .friction = binder.read(cable.friction),
+                .released = binder.read(cable.released),
+                .step = binder.read(cable.step),
+                .points = binder.read(cable.points),
+                .keys = binder.read(cable.keys),
+                .tension = binder.read(cable.tension),
+                .length = binder.read(cable.length),
+                .key = binder.read(cable.key),
+                .anchor = AnchorInputs::bind(binder, cable.anchor, body, node, collider),
+                .inverse_mass = binder.read(node.inverse_mass),
+                .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)};
+    }
+
+    std::size_t size() const { return control.size(); }
+    std::span<const TimeKey> keys_of(std::size_t cable) const { return rows_of(key, keys[cable]); }
+    /// True if the cable acts by forces that are known before the step.
+    bool has_known_forces(std::size_t cable) const {
+        return control[cable] == CableControl::tension && friction[cable] == 0;
+    }
+    /// True if the control of the cable changes in the step of length `h` that starts at time `t`.
+    bool is_driven(std::size_t cable, Real t, Real h) const;
+    /// True if some body is asleep and no point of the cable can move in this step.
+    bool rests(std::size_t cable) const;
+    /// True if impulses can move a point of the cable.
+    bool moves(std::size_t cable) const;
+};
+
+/// Start, length and force interval of a step [s].
+struct CableTimes {
+    Real t = 0, h = 0, kick = 0;
+    Real recovery_speed = 0;  // greatest speed at which a cable that is too long is drawn in [m/s]
+
+    static CableTimes bind(const Binder& binder, const Real& t, const Real& h, const Real& kick,
+                           const Real& recovery_speed) {
+        return {binder.value(t), binder.value(h), binder.value(kick), binder.value(recovery_speed)};
+    }
+};
+
+/// Lists the cables that act in this step, first those with known forces. Returns false if there is no cable.
+bool prepare_cables(const CableInputs& cables, const CableTimes& times, CableBlockTable& blocks);
+
+/// Adds the forces of the cables with known forces to the forces on nodes. Returns false if there is none.
+bool add_cable_forces(const CableBlockTable& blocks, Real kick, std::span<Vec3> applied_force);
+
+/// Adds, for each body, an upper bound of the contribution of its cables to its squared natural frequencies [1/s^2].
+void add_cable_rates(const CableInputs& cables, std::span<Real> of_body);
+
+/// Marks the bodies of cables whose control changes in this step. Returns false if there is none.
+bool mark_driven_cables(const CableInputs& cables, Real t, Real h, std::span<std::uint8_t> marked);
+
+/// Work and loss of a cable during a motion.
+struct CableWork {
+    Real work = 0;        // work of the control on the cable [J]
+    Real dissipated = 0;  // energy that friction at the points dissipates [J]
+};
+/// Work while the segments change their lengths from `before` to `now` [m]. `tension`: by segment [N].
+CableWork work_of_cable(std::span<const Real> tension, std::span<const Real> before, std::span<const Real> now);
+
+/// Columns of CableTable that a committed step stores for the next step.
+struct CableMemory {
+    std::span<const Range> points;
+    std::span<Real> released, step, work, dissipated, tension, length;
+
+    static CableMemory bind(const Binder& binder, CableTable& cable) {
+        return {.points = binder.read(cable.points),
+                .released = binder.write(cable.released),
+                .step = binder.write(cable.step),
+                .work = binder.write(cable.work),
+                .dissipated = binder.write(cable.dissipated),
+                .tension = binder.write(cable.tension),
+                .length = binder.write(cable.length)};
+    }
+};
+
+/// Stores the tensions and lengths of the cables. Adds their work in the step before. Returns false if no cable acts.
+bool store_cables(const CableBlockTable& blocks, Real kick, const CableMemory& out);
+
+/// Impulse and work of the cables of a step that the region solver has solved.
+struct CableMeasures {
+    Vec3 impulse = Vec3::Zero();  // impulse that cables transmit from colliders and from held nodes [N s]
+    Real work = 0;                // work of the cables on the bodies [J]
+};
+CableMeasures measure_cables(const CableBlockTable& blocks);
+
+}  // namespace skerry

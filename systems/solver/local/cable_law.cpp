@@ -1,0 +1,109 @@
+#include "systems/solver/local/cable_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skerry {
+
+namespace {
+
+/// Sum of entries of a mobility matrix that may cancel, for example if a cable is straight through a point that moves.
+struct MobilitySum {
+    Real sum = 0, size = 0;  // sum of the entries, and of their absolute values [1/kg]
+
+    void add(Real entry) {
+        sum += entry;
+        size += std::abs(entry);
+    }
+    /// The sum, or 0 if it is only a rounding error.
+    Real value() const {
+        constexpr Real rounding = 1e-12;
+        return sum > rounding * size ? sum : 0;
+    }
+};
+
+}  // namespace
+
+void CableLaw::read(std::span<const Vec4> point, std::span<Real> impulse_of_segment) const {
+    Vec3 last = Vec3::Zero();
+    for (std::size_t s = 0; s < segments(); ++s) {
+        impulse_of_segment[s] = direction[s].dot(point[s].head<3>() + last);
+        last = impulse_of_segment[s] * direction[s];
+    }
+}
+
+void CableLaw::prepare() const {
+    MobilitySum of;
+    for (std::size_t s = segments(); s-- > 0;) {
+        of.add(entry(s, s));
+        for (std::size_t m = s + 1; m < segments(); ++m) {
+            of.add(entry(s, m));
+            of.add(entry(m, s));
+        }
+        far_mobility[s] = of.value();
+    }
+}
+
+Real CableLaw::far_rate(std::size_t s) const {
+    Real sum = 0;
+    for (std::size_t m = s; m < segments(); ++m) sum += rate[m];
+    return sum;
+}
+
+Real CableLaw::answer(std::size_t s, Real of) const {
+    if (s == 0 && !by_length) return wanted;
+    const Real excess = far_rate(s) - (s == 0 ? wanted : Real(0));
+    const Real next = of > 0 ? impulse[s] + excess / of : impulse[s];
+    if (s == 0) return std::max(Real(0), next);
+    return std::clamp(next, impulse[s - 1] / most_ratio[s], impulse[s - 1] * most_ratio[s]);
+}
+
+/// Applies the law to segment `s`. The impulses of the segments after it keep their ratios to its impulse. Returns the
+/// absolute change [N s].
+Real CableLaw::step(std::size_t s) const {
+    const std::size_t count = segments();
+    const Real present = impulse[s];
+    const auto ratio = [&](std::size_t m) { return present > 0 ? impulse[m] / present : Real(1); };
+    MobilitySum of;  // mobility of the far rate for such changes
+    for (std::size_t m = s; m < count; ++m)
+        for (std::size_t row = s; row < count; ++row) of.add(entry(row, m) * ratio(m));
+    const Real next = answer(s, of.value());
+    const Real change = next - present;
+    if (change == 0) return 0;
+    for (std::size_t m = count; m-- > s;) {
+        const Real part = ratio(m) * change;
+        for (std::size_t row = 0; row < count; ++row) rate[row] -= entry(row, m) * part;
+        impulse[m] += part;
+    }
+    impulse[s] = next;
+    return std::abs(change);
+}
+
+void CableLaw::solve() const {
+    // The sweeps of the region continue an unfinished solution, so the limit of the passes does not limit the accuracy.
+    constexpr int most_passes = 50;
+    constexpr Real rounding = 1e-15;
+    for (int pass = 0; pass < most_passes; ++pass) {
+        Real change = 0;
+        for (std::size_t s = 0; s < segments(); ++s) change = std::max(change, step(s));
+        if (change <= rounding * *std::ranges::max_element(impulse)) return;
+    }
+}
+
+Real CableLaw::squared_residual() const {
+    Real sum = 0;
+    for (std::size_t s = 0; s < segments(); ++s) {
+        const Real off = impulse[s] - answer(s, far_mobility[s]);
+        sum += far_mobility[s] * off * off;
+    }
+    return sum;
+}
+
+Real CableLaw::product(std::span<const Real> a, std::span<const Real> b) const {
+    Real sum = 0;
+    for (std::size_t row = 0; row < segments(); ++row)
+        for (std::size_t column = 0; column < segments(); ++column) sum += a[row] * entry(row, column) * b[column];
+    return sum;
+}
+
+}  // namespace skerry

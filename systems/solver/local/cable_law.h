@@ -1,0 +1,54 @@
+// Law of a cable that runs through points of bodies: prescribed length or tension, and friction at the points
+// (docs/methods/cables.md 2).
+#pragma once
+
+#include <span>
+
+#include "systems/solver/local/friction_law.h"
+
+namespace skerry {
+
+/// A cable with n segments. The tension of segment `s` has the impulse r_s >= 0 [N s] and changes the rates of length
+/// u [m/s] by -A r, with the mobility matrix A. At a point between the segments s - 1 and s, friction bounds the ratio
+/// of the tensions: r_(s-1) / e <= r_s <= r_(s-1) e.
+struct CableLaw {
+    Index first = 0;   // number of the first point among the rows of the region
+    Index moving = 0;  // number of the first point that impulses can move
+    bool by_length = false;
+    Real wanted = 0;                   // greatest sum of u [m/s] if `by_length`, else the impulse r_0 [N s]
+    std::span<const Vec3> direction;   // by segment: unit vector to the next point
+    std::span<const Real> most_ratio;  // by segment: e at the start of the segment
+    std::span<const Real> mobility;    // A, row by row [1/kg]
+    // Sum of the entries of A whose row and column are at least the segment, by segment [1/kg]. It is the mobility of
+    // the rate of length of the cable from the segment on.
+    std::span<Real> far_mobility;
+    // Present impulses and rates of length, by segment. Impulses before the present step of the solver, and in the
+    // sweep before.
+    std::span<Real> impulse, rate, before, previous;
+    static constexpr std::size_t numbers_by_segment = 5;  // number of the lists of numbers from far_mobility on
+
+    std::size_t segments() const { return impulse.size(); }
+    /// Computes the impulses of the segments from the impulses of the points, of which `point` lists those of the cable
+    /// first. At its two points a segment has the impulses r_s and -r_s along its direction.
+    void read(std::span<const Vec4> point, std::span<Real> impulse_of_segment) const;
+    /// Fills far_mobility.
+    void prepare() const;
+    /// Computes the impulses of the law from the present ones, while all contacts keep their impulses. Updates the
+    /// rates.
+    void solve() const;
+    /// Squared residual of the law at the present impulses and rates, in the energy norm [J] (docs/methods/errors.md
+    /// 1).
+    Real squared_residual() const;
+    /// Energy product a . A b of the impulses a and b [J].
+    Real product(std::span<const Real> a, std::span<const Real> b) const;
+
+private:
+    Real entry(std::size_t row, std::size_t column) const { return mobility[row * segments() + column]; }
+    /// Rate of length of the cable from segment `s` on [m/s].
+    Real far_rate(std::size_t s) const;
+    /// Impulse of segment `s` by the law, if its mobility is `of` [N s].
+    Real answer(std::size_t s, Real of) const;
+    Real step(std::size_t s) const;
+};
+
+}  // namespace skerry

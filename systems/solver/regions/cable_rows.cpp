@@ -1,0 +1,127 @@
+#include "systems/solver/regions/cable_rows.h"
+
+#include "systems/solver/local/rigid_part.h"
+
+namespace skerry {
+namespace {
+
+const CableBlock& block_of(const RegionStage& stage, Index cable) {
+    return stage.inputs.cables.block[static_cast<std::size_t>(cable)];
+}
+
+CableLaw& law_of(const RegionStage& stage, Index cable) {
+    return stage.memory.cable_law[static_cast<std::size_t>(cable)];
+}
+
+/// Writes the mobility matrix of a cable.
+void find_mobility(const CableLaw& law, const BodyMemory& memory, const ThroughGroups& walk, std::span<Real> mobility) {
+    const std::size_t count = law.segments(), first = static_cast<std::size_t>(law.first);
+    std::ranges::fill(mobility, Real(0));
+    // An impulse at point b changes the velocity of point a by the block of W. Point p ends segment p - 1 and begins
+    // segment p.
+    const auto for_each_segment = [&](std::size_t point, auto&& visit) {
+        if (point > 0) visit(point - 1, Real(1));
+        if (point < count) visit(point, Real(-1));
+    };
+    for (std::size_t a = 0; a <= count; ++a)
+        for (std::size_t b = 0; b <= count; ++b) {
+            const Mat3 block = walk.coupling(memory.contact[first + a], memory.contact[first + b]) +
+                               rigid_coupling(memory.part[first + a], memory.part[first + b]);
+            for_each_segment(a, [&](std::size_t row, Real of_row) {
+                for_each_segment(b, [&](std::size_t column, Real of_column) {
+                    mobility[row * count + column] +=
+                        of_row * of_column * law.direction[row].dot(block * law.direction[column]);
+                });
+            });
+        }
+}
+
+void add_to_sums(const CableLaw& law, LoadSums& sums) {
+    const Real mobility = law.far_mobility[0];
+    if (!(mobility > 0)) return;
+    Real rate = 0;
+    for (const Real of_segment : law.rate) rate += of_segment;
+    sums.moving += rate * rate / mobility;
+    const Real asked = law.squared_residual();
+    if (asked == 0) return;
+    sums.separating = false;
+    sums.asked += asked;
+}
+
+}  // namespace
+
+void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory, const ThroughGroups& walk, Index first,
+                LoadSums& sums) {
+    RegionMemory& data = stage.memory;
+    const CableBlock& block = block_of(stage, cable);
+    const auto points = static_cast<std::size_t>(block.points.size()), count = points - 1,
+               begin = static_cast<std::size_t>(block.points.begin), all = stage.inputs.cables.stencil.size();
+    const auto numbers = [&](std::size_t copy) { return data.cable_numbers.span().subspan(copy * all + begin, count); };
+    const std::span<Real> mobility =
+        data.cable_mobility.span().subspan(static_cast<std::size_t>(block.mobility), count * count);
+    CableLaw& law = law_of(stage, cable);
+    law = {.first = first,
+           .moving = first,
+           .by_length = block.by_length,
+           .wanted = block.wanted,
+           .direction = stage.inputs.cables.direction.subspan(begin, count),
+           .most_ratio = stage.inputs.cables.most_ratio.subspan(begin, count),
+           .mobility = mobility,
+           .far_mobility = numbers(0),
+           .impulse = numbers(1),
+           .rate = numbers(2),
+           .before = numbers(3),
+           .previous = numbers(4)};
+    while (memory.contact[static_cast<std::size_t>(law.moving)].inverse_diagonal == 0) ++law.moving;
+    find_mobility(law, memory, walk, mobility);
+    law.prepare();
+    std::ranges::fill(law.impulse, Real(0));
+    const auto velocity = [&](std::size_t p) {
+        const std::size_t i = static_cast<std::size_t>(first) + p;
+        const Vec4* const rows = memory.velocity.data();
+        return Vec3(
+            (memory.contact[i].offset +
+             add_rigid_velocities(memory.part[i], rows, add_node_velocities(memory.contact[i], rows, Vec4::Zero())))
+                .head<3>());
+    };
+    for (std::size_t s = 0; s < count; ++s) law.rate[s] = law.direction[s].dot(velocity(s + 1) - velocity(s));
+    add_to_sums(law, sums);
+}
+
+void take_cable_impulses(const RegionStage& stage, Index cable, const BodyMemory& memory) {
+    const CableLaw& law = law_of(stage, cable);
+    const Range points = block_of(stage, cable).points;
+    Vec3 last = Vec3::Zero();
+    for (Index p = 0; p < points.size(); ++p) {
+        const auto s = static_cast<std::size_t>(p);
+        const Vec3 next =
+            s < law.segments()
+                ? Vec3(stage.out.cable_impulse[static_cast<std::size_t>(points.begin + p)] * law.direction[s])
+                : Vec3(Vec3::Zero());
+        memory.impulse[static_cast<std::size_t>(law.first + p)] = padded(Vec3(next - last));
+        last = next;
+    }
+}
+
+void write_cable(const RegionStage& stage, Index cable, const BodyMemory& memory) {
+    const CableLaw& law = law_of(stage, cable);
+    const Range points = block_of(stage, cable).points;
+    law.read(memory.impulse.subspan(static_cast<std::size_t>(law.first)), law.impulse);
+    std::ranges::copy(law.impulse, rows_of(stage.out.cable_impulse, points).begin());
+    Real work = 0;
+    Vec3 sum = Vec3::Zero();
+    for (Index p = 0; p < points.size(); ++p) {
+        const Vec3 impulse = memory.impulse[static_cast<std::size_t>(law.first + p)].head<3>();
+        const Stencil& stencil = stage.inputs.cables.stencil[static_cast<std::size_t>(points.begin + p)];
+        for (std::size_t a = 0; a < 4; ++a) {
+            const auto node = static_cast<std::size_t>(stencil.node[a]);
+            if (stencil.weight[a] == 0 || !(stage.inputs.inverse_mass[node] > 0)) continue;
+            sum += stencil.weight[a] * impulse;
+            work += stencil.weight[a] / 2 * impulse.dot(stage.inputs.velocity[node] + stage.out.velocity_next[node]);
+        }
+    }
+    stage.out.cable_work[static_cast<std::size_t>(cable)] = work;
+    stage.out.cable_sum[static_cast<std::size_t>(cable)] = sum;
+}
+
+}  // namespace skerry

@@ -1,0 +1,24 @@
+// Rows of cables in a region. Each point of a cable has three rows like a contact, and the cable's law couples them
+// (docs/methods/cables.md 2).
+#pragma once
+
+#include <span>
+
+#include "systems/solver/local/load_sums.h"
+#include "systems/solver/operators/body_operator.h"
+#include "systems/solver/regions/region_stage.h"
+
+namespace skerry {
+
+/// Fills the law of a solved cable, whose points are loaded from row `first` of `memory` on. `walk`: traversal of the
+/// region. Adds the cable to the sums for the error scale.
+void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory, const ThroughGroups& walk, Index first,
+                LoadSums& sums);
+
+/// Sets the impulses of the points of a cable to those of the last step.
+void take_cable_impulses(const RegionStage& stage, Index cable, const BodyMemory& memory);
+
+/// Writes the impulses and the work of a cable. The velocities of its nodes must already be written.
+void write_cable(const RegionStage& stage, Index cable, const BodyMemory& memory);
+
+}  // namespace skerry
