@@ -5,6 +5,7 @@
 #include "components/attachment_table.h"
 #include "components/body_table.h"
 #include "components/bvh_table.h"
+#include "components/cavity_table.h"
 #include "components/collider_table.h"
 #include "components/collision_filter.h"
 #include "components/contact_table.h"
@@ -68,6 +69,7 @@ template std::span<const ColumnInfo> columns_of<AttachmentTable>();
 template std::span<const ColumnInfo> columns_of<BodyTable>();
 template std::span<const ColumnInfo> columns_of<BvhLeafTable>();
 template std::span<const ColumnInfo> columns_of<BvhTable>();
+template std::span<const ColumnInfo> columns_of<CavityTable>();
 template std::span<const ColumnInfo> columns_of<ColliderTable>();
 template std::span<const ColumnInfo> columns_of<ContactTable>();
 template std::span<const ColumnInfo> columns_of<DisabledPairTable>();
@@ -81,6 +83,7 @@ template std::span<const ColumnInfo> columns_of<MaterialTable>();
 template std::span<const ColumnInfo> columns_of<NodeBlockTable>();
 template std::span<const ColumnInfo> columns_of<NodeTable>();
 template std::span<const ColumnInfo> columns_of<PairTable>();
+template std::span<const ColumnInfo> columns_of<PipeTable>();
 template std::span<const ColumnInfo> columns_of<RegionTable>();
 template std::span<const ColumnInfo> columns_of<RestingContactTable>();
 template std::span<const ColumnInfo> columns_of<RigidBodyTable>();

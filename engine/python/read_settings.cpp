@@ -218,6 +218,12 @@ void read(nb::handle from, JointSettings& to) {
 void read(nb::handle from, JointMotor& to) {
     read_members(from, to);
 }
+void read(nb::handle from, GasFilling& to) {
+    read_members(from, to);
+}
+void read(nb::handle from, LiquidFilling& to) {
+    read_members(from, to);
+}
 void read(nb::handle from, ProblemSettings& to) {
     read_members(from, to);
 }
@@ -269,7 +275,7 @@ nb::object object_of(const SurfaceSettings& surface) {
 
 void bind_settings(nb::module_& module) {
     module.def("defaults", &defaults_of<Settings, MaterialSettings, SurfaceSettings, Pose, MotionKey, Motion, MotorKey,
-                                        JointMotor, ProblemSettings, Plane, Sphere, Box, Capsule, Cylinder, Bucket>);
+                                        JointMotor, GasFilling, LiquidFilling, ProblemSettings, Plane, Sphere, Box, Capsule, Cylinder, Bucket>);
 }
 
 }  // namespace skerry::python

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/world/world_state.h"
+#include "skerry/cavity.h"
 #include "skerry/joint.h"
 
 namespace skerry {
@@ -27,6 +28,10 @@ void hold_here(Model& model, std::size_t body, Real now);
 /// Enables all disabled pairs of a body or collider. Must be called before the slot of this object is reused.
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
+
+// control_cavities.cpp
+
+CavityState cavity_state(const WorldState& world, CavityHandle cavity);
 
 // control_joints.cpp
 

@@ -65,6 +65,12 @@ Index Model::row(AttachmentHandle attachment, const char* call) const {
 Index Model::row(JointHandle joint, const char* call) const {
     return live_row(joint_map, joint, call, "joint");
 }
+Index Model::row(CavityHandle cavity, const char* call) const {
+    return live_row(cavity_map, cavity, call, "cavity");
+}
+Index Model::row(PipeHandle pipe, const char* call) const {
+    return live_row(pipe_map, pipe, call, "pipe");
+}
 
 ElementInputs Model::all_elements() const {
     return ElementInputs::bind({}, elements, element_nodes, materials);

@@ -12,6 +12,7 @@
 #include "components/attachment_table.h"
 #include "components/body_table.h"
 #include "components/bvh_table.h"
+#include "components/cavity_table.h"
 #include "components/collider_table.h"
 #include "components/collision_filter.h"
 #include "components/element_table.h"
@@ -99,12 +100,16 @@ struct Model {
     ColliderTable colliders;
     AttachmentTable attachments;
     JointTable joints;
+    CavityTable cavities;
+    PipeTable pipes;
     DisabledPairTable disabled_pairs;
     HandleMap<MaterialHandle> material_map;
     HandleMap<BodyHandle> body_map;
     HandleMap<ColliderHandle> collider_map;
     HandleMap<AttachmentHandle> attachment_map;
     HandleMap<JointHandle> joint_map;
+    HandleMap<CavityHandle> cavity_map;
+    HandleMap<PipeHandle> pipe_map;
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
     std::vector<ColliderRecord> collider_records;  // one record for each row of ColliderTable
@@ -132,6 +137,8 @@ struct Model {
     Index row(MaterialHandle material, const char* call) const;
     Index row(AttachmentHandle attachment, const char* call) const;
     Index row(JointHandle joint, const char* call) const;
+    Index row(CavityHandle cavity, const char* call) const;
+    Index row(PipeHandle pipe, const char* call) const;
 
     /// All elements, including the elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
@@ -224,12 +231,18 @@ struct Model {
         visit("colliders", colliders);
         visit("attachments", attachments);
         visit("joints", joints);
+        visit("cavities", cavities);
+        visit("pipes", pipes);
         visit("disabled_pairs", disabled_pairs);
     }
     /// Visits the tables whose rows join bodies, each with its handles. The column role `body` marks the columns that
     /// contain the joined bodies. Generic code can therefore save, check, hash and renumber these tables, and erase
     /// their rows with a body.
-    void for_each_joining(auto&& visit) { visit("joints", joints, joint_map); }
+    void for_each_joining(auto&& visit) {
+        visit("joints", joints, joint_map);
+        visit("cavities", cavities, cavity_map);
+        visit("pipes", pipes, pipe_map);
+    }
 };
 
 }  // namespace skerry

@@ -1,6 +1,7 @@
 """The world, its bodies, colliders, attachments and joints, and their reports."""
 
 from .body import Attachment, Body
+from .cavity import Cavity, CavityState, Pipe, PipeState
 from .collider import Collider
 from .joint import Joint, JointState
 from .material import MaterialHandle
@@ -22,6 +23,8 @@ from .world import World
 __all__ = [
     "Attachment",
     "Body",
+    "Cavity",
+    "CavityState",
     "Collider",
     "DynamicsChoice",
     "DynamicsEstimate",
@@ -30,6 +33,8 @@ __all__ = [
     "JointState",
     "MaterialHandle",
     "Objects",
+    "Pipe",
+    "PipeState",
     "SelfCrossing",
     "StageReport",
     "StartMove",

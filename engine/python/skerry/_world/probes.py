@@ -14,6 +14,7 @@ from .._settings import Field, held
 
 if TYPE_CHECKING:
     from .body import Attachment, Body
+    from .cavity import Cavity
     from .collider import Collider
     from .joint import Joint
     from .objects import PosedObject
@@ -89,6 +90,16 @@ class JointProbe:
 
 
 @dataclass(frozen=True, slots=True)
+class CavityProbe:
+    """Pressure, volume, gas mass and energy of a cavity, and its force on the body.
+
+    cavity: the cavity.
+    """
+
+    cavity: Cavity
+
+
+@dataclass(frozen=True, slots=True)
 class EnergyProbe:
     """Kinetic, elastic, potential and dissipated energy of the world."""
 
@@ -160,6 +171,7 @@ Probe: TypeAlias = (
     | PoseProbe
     | VelocityProbe
     | NodesProbe
+    | CavityProbe
 )
 """A quantity that a recorder records."""
 
@@ -173,6 +185,7 @@ def recorded_probes(probes: Mapping[str, Probe], owner: World | None = None) -> 
 
 def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
     from .body import Attachment, Body
+    from .cavity import Cavity
     from .collider import Collider
     from .joint import Joint
 
@@ -194,6 +207,8 @@ def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
             return _core.reaction_probe(name, handle_of("attachment", Attachment))
         case JointProbe():
             return _core.joint_probe(name, handle_of("joint", Joint))
+        case CavityProbe():
+            return _core.cavity_probe(name, handle_of("cavity", Cavity))
         case EnergyProbe():
             return _core.energy_probe(name)
         case StressProbe():
@@ -228,6 +243,8 @@ def _object_of(world: World, value: Any) -> Any:
         return world._collider(value)
     if isinstance(value, _core.JointHandle):
         return world._joint(value)
+    if isinstance(value, _core.CavityHandle):
+        return world._cavity(value)
     return world._attachment(value) if isinstance(value, _core.AttachmentHandle) else value
 
 
