@@ -15,6 +15,7 @@ struct Built {
     const std::vector<ColliderHandle>& colliders;
     const std::vector<std::vector<AttachmentHandle>>& pins;  // indexed by body
     const std::vector<JointHandle>& joints;
+    const std::vector<CavityHandle>& cavities;
 };
 
 decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& built) {
@@ -45,6 +46,8 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
             return ReactionProbe{built.pins[*series.body][series.pin]};
         case ProbeQuantity::joint:
             return JointProbe{built.joints[series.joint]};
+        case ProbeQuantity::cavity:
+            return CavityProbe{built.cavities[series.cavity]};
         case ProbeQuantity::stress:
             return StressProbe{body, series.nodes};
         case ProbeQuantity::volume:
@@ -64,7 +67,10 @@ namespace {
 BodyHandle add_mesh_body(const ScenePlan& plan, const BodyPlan& body, const BodySettings& settings, World& world) {
     const Mesh& mesh = plan.meshes[body.mesh];
     try {
-        return world.add_body(mesh, settings);
+        if (body.sets.empty()) return world.add_body(mesh, settings);
+        Mesh with_sets = mesh;
+        with_sets.sets.insert(body.sets.begin(), body.sets.end());
+        return world.add_body(with_sets, settings);
     } catch (const SceneError&) {
         if (const std::filesystem::path& file = plan.mesh_files[body.mesh]; !file.empty())
             mesh::require_positive(mesh, file.string());
@@ -99,6 +105,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         BodySettings settings = body.settings;
         settings.material = materials[body.material];
         for (const auto& [label, row] : body.materials) settings.materials.emplace(label, materials[row]);
+        for (const auto& [set, row] : body.set_materials) settings.materials_of_sets.emplace(set, materials[row]);
         bodies.push_back(called_at(body.place, [&] {
             if (body.shape.sphere) return world.add_body(*body.shape.sphere, settings);
             if (body.shape.capsule) return world.add_body(*body.shape.capsule, settings);
@@ -108,8 +115,9 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         if (added) added(bodies.size());
         pins.emplace_back();
         for (const PinPlan& pin : body.pins)
-            pins.back().push_back(
-                called_at(pin.place, [&] { return world.attach(bodies.back(), pin.nodes, pin.motion, pin.pivot); }));
+            pins.back().push_back(called_at(pin.place, [&] {
+                return world.attach(bodies.back(), pin.nodes, pin.motion, pin.pivot, pin.directions);
+            }));
     }
     for (const ColliderPlan& collider : plan.colliders)
         colliders.push_back(
@@ -121,10 +129,11 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         if (joint.second) settings.second = bodies[*joint.second];
         joints.push_back(called_at(joint.place, [&] { return Joints(world).add(settings); }));
     }
+    const std::vector<CavityHandle> cavities = add_cavities(plan, bodies, world);
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     for (const SeriesPlan& series : plan.series)
-        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints})});
+        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints, cavities})});
     return scene;
 }
 

@@ -7,7 +7,9 @@
 #include <variant>
 #include <vector>
 
+#include "components/cavity_law.h"
 #include "engine/scene/values.h"
+#include "skerry/cavity.h"
 #include "skerry/joint.h"
 #include "skerry/settings.h"
 
@@ -51,6 +53,39 @@ struct RestBox {
     Vec3 lower = Vec3::Zero();  // lower corner in the mesh's own frame [m]
     Vec3 upper = Vec3::Zero();
 };
+enum class WorldAxis { x, y, z };
+template <>
+struct EnumNames<WorldAxis> {
+    static constexpr std::array<std::pair<WorldAxis, std::string_view>, 3> table{
+        {{WorldAxis::x, "x"}, {WorldAxis::y, "y"}, {WorldAxis::z, "z"}}};
+};
+/// A part of a body. At most one of the members is given; an entry that uses the part decides whether one is required.
+struct PartEntry {
+    std::optional<std::string> set;  // name of a set of the body
+    std::optional<RestBox> box;
+    std::vector<int> nodes;  // numbers of nodes in the mesh file
+    Place place;
+};
+struct SphereRegion {
+    Vec3 center = Vec3::Zero();  // in the mesh's own frame [m]
+    Real radius = 0;             // [m]
+};
+/// The side of a plane to which the normal points, including the plane.
+struct HalfSpaceRegion {
+    Vec3 point = Vec3::Zero();  // in the mesh's own frame [m]
+    Vec3 normal = {0, 0, 1};
+};
+/// A named set of a body: the part of the body that meets all given conditions.
+struct SetEntry {
+    OneOrMore<std::string> set;  // names of other sets, of which at least one must contain the part
+    std::optional<RestBox> box;
+    std::optional<SphereRegion> sphere;
+    std::optional<HalfSpaceRegion> half_space;
+    std::optional<int> label;
+    bool surface = false;
+    std::vector<int> nodes;  // numbers of nodes in the mesh file
+    Place place;
+};
 struct KeyEntry {
     Real time = 0;
     Vec3 position = Vec3::Zero();
@@ -61,12 +96,11 @@ struct MotionEntry {
     Vec3 angular_velocity = Vec3::Zero();
     std::vector<KeyEntry> keys;
 };
-struct PinEntry {
-    std::optional<RestBox> box;
-    std::vector<int> nodes;
+struct PinEntry : PartEntry {
     MotionEntry motion;
     Vec3 pivot = Vec3::Zero();
-    Place place;
+    std::optional<std::vector<WorldAxis>> axes;
+    std::optional<Vec3> direction;
 };
 /// A grid of copies of a body.
 struct RepeatEntry {
@@ -85,7 +119,8 @@ struct BodyEntry {
     std::optional<MeshEntry> mesh;
     std::optional<BodyShapeEntry> shape;
     std::string material;
-    ByNumber<std::string> materials;
+    Named<std::string> materials;  // by label or by name of a set of tetrahedra
+    Named<SetEntry> sets;
     Vec3 position = Vec3::Zero();
     Rotation rotation;
     std::vector<Vec3> positions;
@@ -139,12 +174,28 @@ struct JointEntry {
     bool bodies_touch = JointSettings{}.bodies_touch;
     Place place;
 };
+/// A cavity of a body. Without a part, it has the faces that CavitySettings::faces describes as default.
+struct CavityEntry : PartEntry {
+    std::string name;
+    std::string body;
+    std::optional<TimeTable> pressure;
+    std::optional<GasFilling> gas;
+    std::optional<LiquidFilling> liquid;
+    std::optional<Real> volume;
+};
+struct PipeEntry {
+    std::string first;
+    std::optional<std::string> second;
+    Real conductance = 0;
+    std::optional<TimeTable> pressure;
+    Place place;
+};
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
-enum class ProbeQuantity { contacts, motion, force, reaction, joint, energy, stress, volume };
+enum class ProbeQuantity { contacts, motion, force, reaction, joint, energy, stress, volume, cavity };
 template <>
 struct EnumNames<ProbeQuantity> {
-    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 8> table{{
+    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 9> table{{
         {ProbeQuantity::contacts, "contacts"},
         {ProbeQuantity::motion, "motion"},
         {ProbeQuantity::force, "force"},
@@ -153,12 +204,13 @@ struct EnumNames<ProbeQuantity> {
         {ProbeQuantity::energy, "energy"},
         {ProbeQuantity::stress, "stress"},
         {ProbeQuantity::volume, "volume"},
+        {ProbeQuantity::cavity, "cavity"},
     }};
 };
 struct ProbeEntry {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::contacts;
-    std::optional<std::string> body, collider, by, joint;
+    std::optional<std::string> body, collider, by, joint, cavity, set;
     std::optional<RestBox> box;
     std::optional<Vec3> point;  // position in the mesh's own frame [m]
     std::optional<int> pin;
@@ -177,6 +229,8 @@ struct SceneFile {
     std::vector<BodyEntry> bodies;
     std::vector<ColliderEntry> colliders;
     std::vector<JointEntry> joints;
+    std::vector<CavityEntry> cavities;
+    std::vector<PipeEntry> pipes;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;
 };

@@ -23,6 +23,14 @@ const Rule<MeshEntry>& rule_of<MeshEntry>();
 template <>
 const Rule<RestBox>& rule_of<RestBox>();
 template <>
+const Rule<PartEntry>& rule_of<PartEntry>();
+template <>
+const Rule<SphereRegion>& rule_of<SphereRegion>();
+template <>
+const Rule<HalfSpaceRegion>& rule_of<HalfSpaceRegion>();
+template <>
+const Rule<SetEntry>& rule_of<SetEntry>();
+template <>
 const Rule<KeyEntry>& rule_of<KeyEntry>();
 template <>
 const Rule<MotionEntry>& rule_of<MotionEntry>();
@@ -57,6 +65,14 @@ const Rule<MotorEntry>& rule_of<MotorEntry>();
 template <>
 const Rule<JointEntry>& rule_of<JointEntry>();
 template <>
+const Rule<GasFilling>& rule_of<GasFilling>();
+template <>
+const Rule<LiquidFilling>& rule_of<LiquidFilling>();
+template <>
+const Rule<CavityEntry>& rule_of<CavityEntry>();
+template <>
+const Rule<PipeEntry>& rule_of<PipeEntry>();
+template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();
 template <>
 const Rule<MaterialSettings>& rule_of<MaterialSettings>();
@@ -64,5 +80,8 @@ template <>
 const Rule<Settings>& rule_of<Settings>();
 template <>
 const Rule<SceneFile>& rule_of<SceneFile>();
+
+/// Documentation of the keys "set", "box" and "nodes" of an entry that derives from PartEntry.
+extern const KeyDoc part_set_doc, part_box_doc, part_nodes_doc;
 
 }  // namespace skerry

@@ -92,6 +92,7 @@ void bind_world(nb::module_& module) {
     bind_control(type);
     bind_joints(type);
     bind_cavities(type);
+    bind_sets(type);
     bind_views(type);
     bind_results(type);
     bind_problem_watch(type);
