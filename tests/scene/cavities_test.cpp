@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "skerry/cavity.h"
+#include "skerry/recorder.h"
+#include "skerry/scene.h"
 #include "tests/support/hollow_sphere.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/worlds.h"
@@ -353,6 +355,45 @@ TEST_CASE("a change of pressure, by table or by hand, wakes a body", "[scene][ca
     cavities.set_pressure(side, 3000);
     REQUIRE(world.advance(0.3).ok());
     CHECK(world.center_of_mass(block).x() < rest - 0.05);
+}
+
+TEST_CASE("cavities, pipes and their probes can be given in a scene", "[scene][cavities]") {
+    const auto text = [](const std::string& cavity, const std::string& pipe = "{\"first\": \"tank\", \"conductance\": 1}") {
+        return R"({"settings": {"gravity": [0, 0, 0]}, "materials": {"steel": {}}, "bodies": [
+            {"name": "piston", "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [1, 1, 1]}}, "material": "steel",
+             "dynamics": "rigid", "sets": {"end": {"half_space": {"point": [0.05, 0, 0], "normal": [1, 0, 0]}}}}],
+            "cavities": [{"name": "tank", "body": "piston", "set": "end", )" +
+               cavity + R"(}], "pipes": [)" + pipe + R"(],
+            "probes": [{"name": "air", "quantity": "cavity", "cavity": "tank"}]})";
+    };
+    Scene scene = load_scene_text(
+        text(R"("gas": {"pressure": 1000, "inflow": [[0, 0], [1, 1e-4]]}, "volume": 0.002)"), ".");
+    Cavities cavities(scene.world);
+    REQUIRE(cavities.all().size() == 1);
+    REQUIRE(cavities.pipes().size() == 1);
+    cavities.set_conductance(cavities.pipes()[0], 0);
+    Recorder recorder(scene.world, scene.recorded);
+    recorder.sample(scene.world);
+    CHECK(recorder.columns()[1].heading() == "air.pressure [Pa]");
+    CHECK(recorder.row(0)[1] == Approx(1000));
+    CHECK(recorder.row(0)[2] == Approx(0.002));
+    CHECK(recorder.row(0)[5] == Approx(-1000 * 0.1 * 0.1));
+    REQUIRE(scene.world.advance(0.1).ok());
+    CHECK(cavities.state(cavities.all()[0]).mass ==
+          Approx(1.204 * 0.002 * std::pow(1 + 1000 / standard_pressure, 1 / 1.4) + 1e-4 * 0.1 * 0.1 / 2));
+
+    using Catch::Matchers::Contains;
+    const auto refused = [&](const std::string& json, const char* part) {
+        CHECK_THROWS_WITH(load_scene_text(json, "."), Contains(part));
+    };
+    refused(text(R"("gas": {})"), "cavity 'tank'");
+    refused(text(R"("gas": {})"), "an open edge");
+    refused(text(R"("gas": {}, "pressure": 3)"), "pressure");
+    refused(text(R"("volume": 1)"), "liquid");
+    refused(text(R"("gas": {"exponent": 0.5}, "volume": 1)"), "exponent");
+    refused(text(R"("pressure": [[1, 0], [0, 5]])"), "pressure");
+    refused(text(R"("gas": {}, "volume": 1)", R"({"first": "tnak", "conductance": 1})"), "tank");
+    refused(text(R"("pressure": 3)"), "law pressure");
 }
 
 TEST_CASE("a cavity that cannot be is refused by the field at fault", "[scene][cavities]") {
