@@ -386,7 +386,7 @@ TEST_CASE("cavities, pipes and their probes can be given in a scene", "[scene][c
     const auto refused = [&](const std::string& json, const char* part) {
         CHECK_THROWS_WITH(load_scene_text(json, "."), Contains(part));
     };
-    refused(text(R"("gas": {})"), "cavity 'tank'");
+    refused(text(R"("gas": {})"), "cavity \"tank\"");
     refused(text(R"("gas": {})"), "an open edge");
     refused(text(R"("gas": {}, "pressure": 3)"), "pressure");
     refused(text(R"("volume": 1)"), "liquid");
