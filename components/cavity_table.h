@@ -48,9 +48,9 @@ struct CavityTable {
     Column<std::array<Index, 3>> face;  // node numbers in the mesh of the body
     // Columns: positions of the three nodes at the end of the last step. Unused for closed faces [m].
     Column<Mat3> corners;
-    Column<Vec3> area;        // area times the normal that points from the body into the cavity, in this step [m^2]
+    Column<Vec3> area;         // area times the normal that points from the body into the cavity, in this step [m^2]
     Column<Real> swept_parts;  // working memory of add_cavity_forces
-    Column<TimeKey> key;      // keys of all cavities
+    Column<TimeKey> key;       // keys of all cavities
 
     std::size_t size() const { return slot.size(); }
 
@@ -97,11 +97,11 @@ struct CavityTable {
 struct PipeTable {
     Column<std::uint32_t> slot;
     Column<Index> first_body, second_body;  // bodies of the cavities, rows of BodyTable; no_index for a reservoir
-    Column<std::uint32_t> first, second;    // CavityTable::slot of the cavities; `second` equals `first` for a reservoir
-    Column<Real> conductance;               // mass flow divided by the pressure difference [kg/(s Pa)]
-    Column<Range> keys;                     // rows of `key`; empty without a reservoir
-    Column<Real> flow;                      // mean mass flow in the last step, out of the first cavity [kg/s]
-    Column<TimeKey> key;                    // pressures of the reservoirs above ambient [Pa]
+    Column<std::uint32_t> first, second;  // CavityTable::slot of the cavities; `second` equals `first` for a reservoir
+    Column<Real> conductance;             // mass flow divided by the pressure difference [kg/(s Pa)]
+    Column<Range> keys;                   // rows of `key`; empty without a reservoir
+    Column<Real> flow;                    // mean mass flow in the last step, out of the first cavity [kg/s]
+    Column<TimeKey> key;                  // pressures of the reservoirs above ambient [Pa]
 
     std::size_t size() const { return slot.size(); }
     std::span<const TimeKey> keys_of(std::size_t row) const { return rows_of(key.span(), keys[row]); }

@@ -11,8 +11,9 @@ const Rule<GasFilling>& rule_of<GasFilling>() {
                  {.meaning = "pressure above ambient at the start; default: 0", .unit = "Pa"})
             .key("exponent", &GasFilling::exponent,
                  {.meaning = "polytropic exponent; 1: isothermal; default: 1.4, adiabatic air", .limits = at_least(1)})
-            .key("ambient", &GasFilling::ambient,
-                 {.meaning = "absolute pressure outside of the body; default: 101325", .unit = "Pa", .limits = above(0)})
+            .key(
+                "ambient", &GasFilling::ambient,
+                {.meaning = "absolute pressure outside of the body; default: 101325", .unit = "Pa", .limits = above(0)})
             .key("density", &GasFilling::density,
                  {.meaning = "density at ambient pressure; default: 1.204", .unit = "kg/m^3", .limits = above(0)})
             .key("inflow", &GasFilling::inflow,

@@ -39,11 +39,9 @@ void check_keys(const Place& place, const ProbeEntry& probe) {
     const KeysOf keys = keys_of(probe.quantity);
     const std::string of = "the quantity " + in_quotes(name_of(probe.quantity));
     const std::vector<std::pair<std::string, bool>> given{
-        {"body", probe.body.has_value()},   {"collider", probe.collider.has_value()},
-        {"by", probe.by.has_value()},       {"box", probe.box.has_value()},
-        {"point", probe.point.has_value()}, {"pin", probe.pin.has_value()},
-        {"joint", probe.joint.has_value()},
-        {"cavity", probe.cavity.has_value()}, {"set", probe.set.has_value()}};
+        {"body", probe.body.has_value()},   {"collider", probe.collider.has_value()}, {"by", probe.by.has_value()},
+        {"box", probe.box.has_value()},     {"point", probe.point.has_value()},       {"pin", probe.pin.has_value()},
+        {"joint", probe.joint.has_value()}, {"cavity", probe.cavity.has_value()},     {"set", probe.set.has_value()}};
     for (const auto& [key, is_given] : given) {
         const bool required = std::ranges::find(keys.required, key) != keys.required.end();
         if (required && !is_given)
@@ -81,7 +79,8 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
                  {.meaning = "recorded quantity: contacts (default); motion of a point or of the centre of mass; force "
                              "of contacts on a body or a collider; reaction of a pin; coordinate and forces of a "
                              "joint; energy of the world; largest "
-                             "stress; smallest ratio of current volume to rest volume; pressure, volume, gas mass, energy and force "
+                             "stress; smallest ratio of current volume to rest volume; pressure, volume, gas mass, "
+                             "energy and force "
                              "of a cavity"})
             .key("body", &P::body, {.meaning = "name of a body"})
             .key("collider", &P::collider, {.meaning = "for a force: name of the collider on which it acts"})

@@ -36,8 +36,7 @@ Real CavityInputs::volume_part(std::size_t c, std::size_t f) const {
     const Mat3 x = corners_now(c, f);
     if (closed[c]) {
         const Index first = body_nodes[static_cast<std::size_t>(body[c])].begin;
-        const auto origin =
-            static_cast<std::size_t>(first + face[static_cast<std::size_t>(faces[c].begin)].front());
+        const auto origin = static_cast<std::size_t>(first + face[static_cast<std::size_t>(faces[c].begin)].front());
         return -(x.col(0) - position[origin]).dot(cross_of_edges(x)) / 6;
     }
     // The corners move along straight lines. The area vector is then quadratic in time, so Simpson's rule is exact.
@@ -65,8 +64,7 @@ Real mass_of_gas(const CavityFluid& fluid, Real pressure, Real volume) {
 Real CavityFilling::pressure() const {
     if (law == CavityLaw::pressure) return amount;
     if (!(volume > 0)) return std::numeric_limits<Real>::quiet_NaN();
-    if (law == CavityLaw::gas)
-        return fluid.ambient * (std::pow(amount / (fluid.density * volume), fluid.exponent) - 1);
+    if (law == CavityLaw::gas) return fluid.ambient * (std::pow(amount / (fluid.density * volume), fluid.exponent) - 1);
     // A liquid boils rather than take a tension that exceeds the ambient pressure.
     return std::max(fluid.bulk_modulus * std::log(amount / volume), -fluid.ambient);
 }

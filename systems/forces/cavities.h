@@ -26,10 +26,10 @@ struct CavityInputs {
     std::span<const Range> keys;
     std::span<const TimeKey> key;
     std::span<const CavityFluid> fluid;
-    std::span<const Real> mass;             // of the gas [kg]
-    std::span<const Real> swept_volume;     // CavityTable::volume [m^3]
-    std::span<const Range> body_nodes;  // BodyTable
-    std::span<const Vec3> position;     // by node [m]
+    std::span<const Real> mass;          // of the gas [kg]
+    std::span<const Real> swept_volume;  // CavityTable::volume [m^3]
+    std::span<const Range> body_nodes;   // BodyTable
+    std::span<const Vec3> position;      // by node [m]
 
     static CavityInputs bind(const Binder& binder, const CavityTable& cavity, const BodyTable& body,
                              const NodeTable& node) {
@@ -101,9 +101,9 @@ struct CavityOutputs {
 };
 
 /// Adds the forces of the pressure in all cavities to the applied forces of nodes. Each corner of a face receives a
-/// third of pressure times area, against the normal of the body. `now`: time of the positions [s]. A prescribed pressure
-/// is the mean over the time from `now - lag` to `now - lag + kick`, during which the forces act. The volume of a liquid
-/// is that at time `now`. Returns false if there is no cavity.
+/// third of pressure times area, against the normal of the body. `now`: time of the positions [s]. A prescribed
+/// pressure is the mean over the time from `now - lag` to `now - lag + kick`, during which the forces act. The volume
+/// of a liquid is that at time `now`. Returns false if there is no cavity.
 bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real now, Real lag, Real kick,
                        const CavityOutputs& out);
 

@@ -1,6 +1,6 @@
 // Pressure on faces, and cavities with a gas or a liquid, against closed forms (docs/methods/cavities.md).
-#include <catch2/catch.hpp>
 #include <Eigen/Geometry>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -78,11 +78,11 @@ TEST_CASE("gas behind a piston is a spring of stiffness gamma p A^2 / V", "[scen
         mesh::box({side, side, side}, {1, 1, 1}),
         {.material = world.add_material({}), .velocity = {speed, 0, 0}, .dynamics = BodyDynamics::rigid});
     Cavities cavities(world);
-    const CavityHandle gas = cavities.add(
-        {.body = piston,
-         .faces = faces_where(world, piston, [](const Vec3& x) { return x.x() > side / 2 - 1e-9; }),
-         .filling = GasFilling{},
-         .volume = volume});
+    const CavityHandle gas =
+        cavities.add({.body = piston,
+                      .faces = faces_where(world, piston, [](const Vec3& x) { return x.x() > side / 2 - 1e-9; }),
+                      .filling = GasFilling{},
+                      .volume = volume});
     CHECK_FALSE(cavities.state(gas).closed);
     constexpr int half_periods = 40;
     int crossings = 0;
@@ -103,9 +103,10 @@ TEST_CASE("gas behind a piston is a spring of stiffness gamma p A^2 / V", "[scen
 
 TEST_CASE("the forces of a closed cavity cancel, and its gas gives a free body no momentum", "[scene][cavities]") {
     for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic}) {
-        HollowSphere sphere(pressurised, dynamics == BodyDynamics::implicit_elastic
-                                             ? MaterialSettings{.young_modulus = 1e6, .poisson_ratio = 0.3}
-                                             : rubber(),
+        HollowSphere sphere(pressurised,
+                            dynamics == BodyDynamics::implicit_elastic
+                                ? MaterialSettings{.young_modulus = 1e6, .poisson_ratio = 0.3}
+                                : rubber(),
                             dynamics);
         CHECK(sphere.state().closed);
         const Real volume = sphere.state().volume;
@@ -188,8 +189,9 @@ TEST_CASE("volume control leads a balloon past its greatest pressure", "[scene][
     cavities.set_liquid_volume(water, {{{0, start}, {duration, most * most * most * start}}});
     const Real shear = modulus / (2 * (1 + nu));
     // Pressure in an incompressible sphere whose inner surface has the stretch `l`: the integral of 2 s / r over the
-    // present radius r, with the stress difference s = mu (k^2 - 1 / k^4) at the stretch k. For a thin wall of thickness
-    // t it is 2 mu (t / R) (1 / l - 1 / l^7). The stable neo-Hookean law has mu = 4/3 shear (1 - 1 / (2 k^2 + 1 / k^4 + 1)).
+    // present radius r, with the stress difference s = mu (k^2 - 1 / k^4) at the stretch k. For a thin wall of
+    // thickness t it is 2 mu (t / R) (1 / l - 1 / l^7). The stable neo-Hookean law has mu = 4/3 shear (1 - 1 / (2 k^2 +
+    // 1 / k^4 + 1)).
     const auto pressure_at = [&](Real l) {
         constexpr int parts = 100;
         Real sum = 0;
@@ -226,14 +228,12 @@ TEST_CASE("a pressure on faces of a rigid body exerts its force and its moment",
     Settings settings = accurate(no_gravity);
     settings.step_size = step;
     World world(settings);
-    const BodyHandle block =
-        world.add_body(mesh::box({side, side, side}, {2, 2, 2}),
-                       {.material = world.add_material({}), .dynamics = BodyDynamics::rigid});
+    const BodyHandle block = world.add_body(mesh::box({side, side, side}, {2, 2, 2}),
+                                            {.material = world.add_material({}), .dynamics = BodyDynamics::rigid});
     Cavities cavities(world);
     const CavityHandle pressed = cavities.add(
         {.body = block,
-         .faces = faces_where(world, block,
-                              [](const Vec3& x) { return x.x() > side / 2 - 1e-9 && x.y() > -1e-9; }),
+         .faces = faces_where(world, block, [](const Vec3& x) { return x.x() > side / 2 - 1e-9 && x.y() > -1e-9; }),
          .filling = TimeTable(p)});
     const Real force = p * side * side / 2;
     CHECK((cavities.state(pressed).force - Vec3(-force, 0, 0)).norm() < 1e-14 * force);
@@ -315,11 +315,11 @@ TEST_CASE("cavities have the same bits on any number of threads, in copies and i
         const BodyHandle piston = world.add_body(
             mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}),
             {.material = world.add_material({}), .position = {1, 0, 0}, .dynamics = BodyDynamics::rigid});
-        const CavityHandle open = cavities.add(
-            {.body = piston,
-             .faces = faces_where(world, piston, [](const Vec3& x) { return x.x() > 1.05 - 1e-9; }),
-             .filling = GasFilling{.inflow = TimeTable({{0, 0}, {0.1, 1e-3}})},
-             .volume = 1e-3});
+        const CavityHandle open =
+            cavities.add({.body = piston,
+                          .faces = faces_where(world, piston, [](const Vec3& x) { return x.x() > 1.05 - 1e-9; }),
+                          .filling = GasFilling{.inflow = TimeTable({{0, 0}, {0.1, 1e-3}})},
+                          .volume = 1e-3});
         cavities.add({.first = sphere.cavity, .second = open, .conductance = 1e-7});
         cavities.add({.first = open, .conductance = 1e-8, .pressure = TimeTable({{0, 0}, {0.05, 3e4}})});
         REQUIRE(world.advance(0.02).ok());
@@ -333,14 +333,14 @@ TEST_CASE("a change of pressure, by table or by hand, wakes a body", "[scene][ca
     settings.sleep = true;
     World world(settings);
     world.add_collider(Plane{});
-    const BodyHandle block =
-        world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}),
-                       {.material = world.add_material({}), .position = {0, 0, 0.0505}, .dynamics = BodyDynamics::rigid});
+    const BodyHandle block = world.add_body(
+        mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}),
+        {.material = world.add_material({}), .position = {0, 0, 0.0505}, .dynamics = BodyDynamics::rigid});
     Cavities cavities(world);
-    const CavityHandle side = cavities.add(
-        {.body = block,
-         .faces = faces_where(world, block, [](const Vec3& x) { return x.x() > 0.05 - 1e-9; }),
-         .filling = TimeTable({{4, 10}, {4.1, 3000}})});
+    const CavityHandle side =
+        cavities.add({.body = block,
+                      .faces = faces_where(world, block, [](const Vec3& x) { return x.x() > 0.05 - 1e-9; }),
+                      .filling = TimeTable({{4, 10}, {4.1, 3000}})});
     REQUIRE(world.advance(3.5).ok());
     REQUIRE(world.asleep(block));
     REQUIRE(world.advance(1).ok());
@@ -358,7 +358,8 @@ TEST_CASE("a change of pressure, by table or by hand, wakes a body", "[scene][ca
 }
 
 TEST_CASE("cavities, pipes and their probes can be given in a scene", "[scene][cavities]") {
-    const auto text = [](const std::string& cavity, const std::string& pipe = "{\"first\": \"tank\", \"conductance\": 1}") {
+    const auto text = [](const std::string& cavity,
+                         const std::string& pipe = "{\"first\": \"tank\", \"conductance\": 1}") {
         return R"({"settings": {"gravity": [0, 0, 0]}, "materials": {"steel": {}}, "bodies": [
             {"name": "piston", "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [1, 1, 1]}}, "material": "steel",
              "dynamics": "rigid", "sets": {"end": {"half_space": {"point": [0.05, 0, 0], "normal": [1, 0, 0]}}}}],
@@ -366,8 +367,8 @@ TEST_CASE("cavities, pipes and their probes can be given in a scene", "[scene][c
                cavity + R"(}], "pipes": [)" + pipe + R"(],
             "probes": [{"name": "air", "quantity": "cavity", "cavity": "tank"}]})";
     };
-    Scene scene = load_scene_text(
-        text(R"("gas": {"pressure": 1000, "inflow": [[0, 0], [1, 1e-4]]}, "volume": 0.002)"), ".");
+    Scene scene =
+        load_scene_text(text(R"("gas": {"pressure": 1000, "inflow": [[0, 0], [1, 1e-4]]}, "volume": 0.002)"), ".");
     Cavities cavities(scene.world);
     REQUIRE(cavities.all().size() == 1);
     REQUIRE(cavities.pipes().size() == 1);
@@ -402,8 +403,9 @@ TEST_CASE("a cavity that cannot be is refused by the field at fault", "[scene][c
     const MaterialHandle material = world.add_material({});
     const BodyHandle block = world.add_body(mesh::box({1, 1, 1}, {1, 1, 1}),
                                             {.material = material, .dynamics = BodyDynamics::rigid, .name = "block"});
-    const BodyHandle ball = world.add_body(
-        Sphere{.radius = 0.1}, {.material = material, .position = {3, 0, 0}, .dynamics = BodyDynamics::rigid, .name = "ball"});
+    const BodyHandle ball =
+        world.add_body(Sphere{.radius = 0.1},
+                       {.material = material, .position = {3, 0, 0}, .dynamics = BodyDynamics::rigid, .name = "ball"});
     const BodyHandle shell = world.add_body(
         sphere_mesh(), {.material = material, .position = {6, 0, 0}, .dynamics = BodyDynamics::rigid, .name = "shell"});
     Cavities cavities(world);
@@ -412,7 +414,8 @@ TEST_CASE("a cavity that cannot be is refused by the field at fault", "[scene][c
         CHECK(cavities.all().empty());
     };
     const auto surface = world.surface(block);
-    refused({.body = block, .faces = {surface[0], surface[1]}, .filling = GasFilling{}}, "an open edge between the nodes");
+    refused({.body = block, .faces = {surface[0], surface[1]}, .filling = GasFilling{}},
+            "an open edge between the nodes");
     refused({.body = block, .filling = GasFilling{}}, "point into a hollow");
     refused({.body = block, .faces = {{0, 1, 99}}}, "the nodes 0, 1 and 99");
     refused({.body = block, .faces = {surface[1], surface[1]}}, "each face once");

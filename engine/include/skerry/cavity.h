@@ -96,7 +96,7 @@ public:
     void remove(PipeHandle pipe);
     bool alive(CavityHandle cavity) const;
     bool alive(PipeHandle pipe) const;
-    std::vector<CavityHandle> all() const;    // in the order added
+    std::vector<CavityHandle> all() const;  // in the order added
     std::vector<PipeHandle> pipes() const;  // in the order added
     CavityState state(CavityHandle cavity) const;
     PipeState state(PipeHandle pipe) const;

@@ -71,9 +71,8 @@ void bind_cavities(WorldClass& type) {
         .def("alive", guarded([](World& world, const PipeHandle& pipe) { return Cavities(world).alive(pipe); }))
         .def("cavities", guarded([](World& world) { return Cavities(world).all(); }))
         .def("pipes", guarded([](World& world) { return Cavities(world).pipes(); }))
-        .def("cavity_state", guarded([](World& world, const CavityHandle& cavity) {
-                 return values_of(Cavities(world).state(cavity));
-             }))
+        .def("cavity_state",
+             guarded([](World& world, const CavityHandle& cavity) { return values_of(Cavities(world).state(cavity)); }))
         .def("pipe_state",
              guarded([](World& world, const PipeHandle& pipe) { return values_of(Cavities(world).state(pipe)); }))
         .def("set_pressure", setter<&Cavities::set_pressure>())

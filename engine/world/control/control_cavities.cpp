@@ -173,7 +173,8 @@ CavityHandle Cavities::add(const CavitySettings& cavity) {
         require_above(object, "volume", *cavity.volume, 0, " (m^3)");
         if (closed || (!gas && !liquid))
             refuse(object, "volume", short_text(*cavity.volume),
-                   closed ? "no volume, because it follows from the faces" : "no volume, because only a gas or a liquid has one");
+                   closed ? "no volume, because it follows from the faces"
+                          : "no volume, because only a gas or a liquid has one");
     } else if (!closed && (gas || liquid)) {
         refuse(object, "faces",
                "an open edge between the nodes " + std::to_string(edge.first) + " and " + std::to_string(edge.second),
@@ -253,8 +254,7 @@ CavityState cavity_state(const WorldState& world, CavityHandle cavity) {
     const auto row = static_cast<std::size_t>(model.row(cavity, "cavity"));
     const CavityFilling filling = filling_of(model, row, world.clock.time);
     CavityState now;
-    now.body =
-        model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(table.body[row])]);
+    now.body = model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(table.body[row])]);
     now.law = table.law[row];
     now.faces = table.faces[row].size();
     now.closed = table.closed[row] != 0;
@@ -263,8 +263,8 @@ CavityState cavity_state(const WorldState& world, CavityHandle cavity) {
     now.mass = table.mass[row];
     now.energy = filling.energy();
     const CavityInputs cavities = cavities_of(model);
-    for (auto f = static_cast<std::size_t>(table.faces[row].begin);
-         f < static_cast<std::size_t>(table.faces[row].end); ++f)
+    for (auto f = static_cast<std::size_t>(table.faces[row].begin); f < static_cast<std::size_t>(table.faces[row].end);
+         ++f)
         now.force -= now.pressure * area_of(cavities.corners_now(row, f));
     return now;
 }
@@ -425,8 +425,8 @@ void Cavities::set_reservoir(PipeHandle pipe, const TimeTable& pressure) {
     if (model.pipes.keys[row].size() == 0)
         refuse("pipe", "set_reservoir", "a pipe between two cavities", "a pipe with a reservoir");
     require_table("set_reservoir", "pressure", pressure);
-    const auto first = static_cast<std::size_t>(
-        model.cavity_map.row(model.cavity_map.handle_of_slot(model.pipes.first[row])));
+    const auto first =
+        static_cast<std::size_t>(model.cavity_map.row(model.cavity_map.handle_of_slot(model.pipes.first[row])));
     for (const TimeKey& key : pressure.keys)
         require_above("set_reservoir", "pressure", key.value, -model.cavities.fluid[first].ambient,
                       " (Pa), which is vacuum");

@@ -420,7 +420,8 @@ void check_cavities(const SavedFile& file, const Model& model) {
     for (std::size_t p = 0; p < pipes.size(); ++p)
         for (const std::uint32_t slot : {pipes.first[p], pipes.second[p]}) {
             const bool lives = model.cavity_map.has_slot(slot);
-            const auto row = static_cast<std::size_t>(lives ? model.cavity_map.row(model.cavity_map.handle_of_slot(slot)) : 0);
+            const auto row =
+                static_cast<std::size_t>(lives ? model.cavity_map.row(model.cavity_map.handle_of_slot(slot)) : 0);
             if (!lives || table.law[row] != CavityLaw::gas)
                 file.complain("pipes/first, second", at_row(std::to_string(slot), p), "the slot of a cavity with gas");
         }

@@ -36,8 +36,8 @@ bool a_motor_moves(const Model& model, Real time, Real h) {
 }
 
 bool a_cavity_fills(const Model& model, Real time, Real h) {
-    return mark_filled(CavityInputs::bind({}, model.cavities, model.bodies, model.nodes), PipeInputs::bind({}, model.pipes),
-                       model.cavity_map, time, h, {});
+    return mark_filled(CavityInputs::bind({}, model.cavities, model.bodies, model.nodes),
+                       PipeInputs::bind({}, model.pipes), model.cavity_map, time, h, {});
 }
 
 /// True if a stable step is still to be evaluated for a stored shape. This can be so if a body was moving when its

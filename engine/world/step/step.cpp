@@ -122,7 +122,8 @@ void separate(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/mark_driven", mark_driven, inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep),
             value(w.clock.time), value(p.h), write(w.scratch.pressed), if_any_asleep);
     g.stage("forces/mark_filled", mark_filled, inputs<CavityInputs>(m.cavities, m.bodies, m.nodes),
-            inputs<PipeInputs>(m.pipes), value(m.cavity_map), value(w.clock.time), value(p.h), write(w.scratch.pressed), if_any_asleep);
+            inputs<PipeInputs>(m.pipes), value(m.cavity_map), value(w.clock.time), value(p.h), write(w.scratch.pressed),
+            if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));

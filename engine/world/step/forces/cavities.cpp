@@ -37,8 +37,8 @@ Real rate_of_nodes(const Model& model, const CavityInputs& cavities, std::size_t
          f < static_cast<std::size_t>(cavities.faces[c].end); ++f) {
         const Mat3 x = cavities.corners_now(c, f);
         const Vec3 third = area_of(x) / 3;
-        const Real longest = std::max({(x.col(1) - x.col(0)).norm(), (x.col(2) - x.col(1)).norm(),
-                                       (x.col(0) - x.col(2)).norm()});
+        const Real longest =
+            std::max({(x.col(1) - x.col(0)).norm(), (x.col(2) - x.col(1)).norm(), (x.col(0) - x.col(2)).norm()});
         for (const Index n : cavities.face[f]) {
             area[static_cast<std::size_t>(n)] += third;
             edges[static_cast<std::size_t>(n)] += longest;
@@ -67,8 +67,8 @@ Real rate_of_rigid(const Model& model, const CavityInputs& cavities, std::size_t
         moment += (x.rowwise().mean() - rigid.center[r]).cross(area_of(x));
     }
     const Vec3 about_axes = rigid.rotation[r].transpose() * moment;
-    return stiffness * (area.squaredNorm() / rigid.mass[r] +
-                        about_axes.cwiseAbs2().cwiseQuotient(rigid.moments[r]).sum());
+    return stiffness *
+           (area.squaredNorm() / rigid.mass[r] + about_axes.cwiseAbs2().cwiseQuotient(rigid.moments[r]).sum());
 }
 
 void add_cavity_rate(const Model& model, std::span<Real> of_body) {
@@ -81,12 +81,9 @@ void add_cavity_rate(const Model& model, std::span<Real> of_body) {
         if (law == CavityLaw::pressure)
             for (const TimeKey& key : cavities.keys_of(c)) p = std::max(p, std::abs(key.value));
         const Real stiffness =
-            law == CavityLaw::pressure
-                ? 0
-                : filling_stiffness(law, cavities.fluid[c], p, cavities.volume(c));
-        const Real rate = model.is_rigid(body)
-                              ? rate_of_rigid(model, cavities, c, stiffness)
-                              : rate_of_nodes(model, cavities, c, p, stiffness, model.has_frame(body));
+            law == CavityLaw::pressure ? 0 : filling_stiffness(law, cavities.fluid[c], p, cavities.volume(c));
+        const Real rate = model.is_rigid(body) ? rate_of_rigid(model, cavities, c, stiffness)
+                                               : rate_of_nodes(model, cavities, c, p, stiffness, model.has_frame(body));
         of_body[body] += rate;
     }
 }
