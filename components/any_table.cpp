@@ -6,6 +6,7 @@
 #include "components/body_table.h"
 #include "components/bvh_table.h"
 #include "components/cable_table.h"
+#include "components/cavity_table.h"
 #include "components/collider_table.h"
 #include "components/collision_filter.h"
 #include "components/contact_table.h"
@@ -73,6 +74,7 @@ template std::span<const ColumnInfo> columns_of<BvhLeafTable>();
 template std::span<const ColumnInfo> columns_of<BvhTable>();
 template std::span<const ColumnInfo> columns_of<CableBlockTable>();
 template std::span<const ColumnInfo> columns_of<CableTable>();
+template std::span<const ColumnInfo> columns_of<CavityTable>();
 template std::span<const ColumnInfo> columns_of<ColliderTable>();
 template std::span<const ColumnInfo> columns_of<ContactTable>();
 template std::span<const ColumnInfo> columns_of<DisabledPairTable>();
@@ -87,6 +89,7 @@ template std::span<const ColumnInfo> columns_of<MaterialTable>();
 template std::span<const ColumnInfo> columns_of<NodeBlockTable>();
 template std::span<const ColumnInfo> columns_of<NodeTable>();
 template std::span<const ColumnInfo> columns_of<PairTable>();
+template std::span<const ColumnInfo> columns_of<PipeTable>();
 template std::span<const ColumnInfo> columns_of<RegionTable>();
 template std::span<const ColumnInfo> columns_of<RestingContactTable>();
 template std::span<const ColumnInfo> columns_of<RigidBodyTable>();

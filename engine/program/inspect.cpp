@@ -266,6 +266,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"joints", plan.joints.size()},
                            {"ties", plan.ties.size()},
                            {"cables", plan.cables.size()},
+                           {"cavities", plan.cavities.size()},
                            {"nodes", report.nodes},
                            {"elements", report.elements},
                            {"stable_dt", stable_step},
@@ -294,7 +295,8 @@ int inspect_scene(const InspectOptions& options) {
               << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders"
               << (plan.joints.empty() ? "" : ", " + grouped(plan.joints.size()) + " joints")
               << (plan.ties.empty() ? "" : ", " + grouped(plan.ties.size()) + " ties")
-              << (plan.cables.empty() ? "" : ", " + grouped(plan.cables.size()) + " cables") << "\n"
+              << (plan.cables.empty() ? "" : ", " + grouped(plan.cables.size()) + " cables")
+              << (plan.cavities.empty() ? "" : ", " + grouped(plan.cavities.size()) + " cavities") << "\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
               << (report.stable_step_body.empty() ? "no body limits the step" : "limited by " + report.stable_step_body)

@@ -224,6 +224,12 @@ void read(nb::handle from, JointMotor& to) {
 void read(nb::handle from, TieSettings& to) {
     read_members(from, to);
 }
+void read(nb::handle from, GasFilling& to) {
+    read_members(from, to);
+}
+void read(nb::handle from, LiquidFilling& to) {
+    read_members(from, to);
+}
 void read(nb::handle from, ProblemSettings& to) {
     read_members(from, to);
 }
@@ -283,6 +289,9 @@ void bind_settings(nb::module_& module) {
     module.def("defaults", &defaults_of<Settings, MaterialSettings, SurfaceSettings, Pose, MotionKey, Motion, JointPassive,
                                         MotorKey, JointMotor, ProblemSettings, Plane, Sphere, Box, Capsule, Cylinder,
                                         Bucket>);
+    module.def("defaults",
+               &defaults_of<Settings, MaterialSettings, SurfaceSettings, Pose, MotionKey, Motion, MotorKey, JointMotor,
+                            GasFilling, LiquidFilling, ProblemSettings, Plane, Sphere, Box, Capsule, Cylinder, Bucket>);
 }
 
 }  // namespace skerry::python

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/python/bind.h"
+#include "skerry/cavity.h"
 #include "skerry/joint.h"
 #include "skerry/problem.h"
 #include "skerry/tie.h"
@@ -26,6 +27,8 @@ void read(nb::handle from, JointSettings& to);
 void read(nb::handle from, JointPassive& to);
 void read(nb::handle from, JointMotor& to);
 void read(nb::handle from, TieSettings& to);
+void read(nb::handle from, GasFilling& to);
+void read(nb::handle from, LiquidFilling& to);
 void read(nb::handle from, ProblemSettings& to);
 
 /// Reads a Plane, a Sphere or another of the shapes. The class of the Python object has the name of the C++ struct.

@@ -54,6 +54,9 @@ nb::tuple values_of(const RecordedProbe& probe) {
             } else if constexpr (std::is_same_v<Kind, CableProbe>) {
                 values["cable"] = what.cable;
                 return "CableProbe";
+            } else if constexpr (std::is_same_v<Kind, CavityProbe>) {
+                values["cavity"] = what.cavity;
+                return "CavityProbe";
             } else if constexpr (std::is_same_v<Kind, EnergyProbe>) {
                 return "EnergyProbe";
             } else if constexpr (std::is_same_v<Kind, StressProbe>) {
@@ -118,6 +121,9 @@ void bind_probes(nb::module_& module) {
     });
     module.def("cable_probe", [](const std::string& name, const CableHandle& cable) {
         return RecordedProbe{name, CableProbe{cable}};
+    });
+    module.def("cavity_probe", [](const std::string& name, const CavityHandle& cavity) {
+        return RecordedProbe{name, CavityProbe{cavity}};
     });
     module.def("energy_probe", [](const std::string& name) { return RecordedProbe{name, EnergyProbe{}}; });
     module.def("stress_probe", [](const std::string& name, const BodyHandle& body, const std::vector<Index>& nodes) {

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "skerry/cavity.h"
 #include "skerry/joint.h"
 #include "skerry/problem.h"
 #include "skerry/settings.h"
@@ -151,6 +152,20 @@ void for_each_setting(Is<TieSettings> auto& s, auto&& visit) {
     visit("bodies_touch", s.bodies_touch);
 }
 
+void for_each_setting(Is<GasFilling> auto& s, auto&& visit) {
+    visit("pressure", s.pressure);
+    visit("exponent", s.exponent);
+    visit("ambient", s.ambient);
+    visit("density", s.density);
+    visit("inflow", s.inflow);
+}
+
+void for_each_setting(Is<LiquidFilling> auto& s, auto&& visit) {
+    visit("bulk_modulus", s.bulk_modulus);
+    visit("volume", s.volume);
+    visit("ambient", s.ambient);
+}
+
 void for_each_setting(Is<ProblemSettings> auto& s, auto&& visit) {
     visit("method", s.method);
     visit("friction", s.friction);
@@ -206,6 +221,8 @@ static_assert(has_size<JointPassive, 4>);
 static_assert(has_size<MotorKey, 5>);
 static_assert(has_size<JointMotor, 6, std::vector<MotorKey>>);
 static_assert(has_size<TieSettings, 8, std::vector<Index>>);
+static_assert(has_size<GasFilling, 4, TimeTable>);
+static_assert(has_size<LiquidFilling, 2, std::optional<TimeTable>>);
 static_assert(has_size<ProblemSettings, 4>);
 
 /// True for the structs that have members listed here.
@@ -237,6 +254,10 @@ template <>
 inline constexpr const char* class_name<MotorKey> = "MotorKey";
 template <>
 inline constexpr const char* class_name<JointMotor> = "Motor";
+template <>
+inline constexpr const char* class_name<GasFilling> = "Gas";
+template <>
+inline constexpr const char* class_name<LiquidFilling> = "Liquid";
 template <>
 inline constexpr const char* class_name<ProblemSettings> = "ProblemSettings";
 template <>

@@ -17,6 +17,7 @@ struct Built {
     const std::vector<std::vector<AttachmentHandle>>& pins;  // indexed by body
     const std::vector<JointHandle>& joints;
     const std::vector<CableHandle>& cables;
+    const std::vector<CavityHandle>& cavities;
 };
 
 decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& built) {
@@ -49,6 +50,8 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
             return JointProbe{built.joints[series.joint]};
         case ProbeQuantity::cable:
             return CableProbe{built.cables[series.cable]};
+        case ProbeQuantity::cavity:
+            return CavityProbe{built.cavities[series.cavity]};
         case ProbeQuantity::stress:
             return StressProbe{body, series.nodes};
         case ProbeQuantity::volume:
@@ -156,10 +159,11 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
                 settings.points.push_back(anchor_of(point, plan, world, {bodies, colliders}));
             return Cables(world).add(settings);
         }));
+    const std::vector<CavityHandle> cavities = add_cavities(plan, bodies, world);
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     for (const SeriesPlan& series : plan.series)
-        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints, cables})});
+        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints, cables, cavities})});
     return scene;
 }
 

@@ -304,6 +304,7 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     for (std::size_t i = 0; i < scene.joints.size(); ++i) plan.joints.push_back(plan_joint(scene.joints[i], i, plan));
     for (const TieEntry& tie : scene.ties) plan.ties.push_back(plan_tie(tie, plan));
     for (std::size_t i = 0; i < scene.cables.size(); ++i) plan.cables.push_back(plan_cable(scene.cables[i], i, plan));
+    plan_cavities(scene, plan);
     for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);
     return plan;
 }

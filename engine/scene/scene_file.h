@@ -8,8 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "components/cavity_law.h"
 #include "engine/scene/values.h"
 #include "skerry/cable.h"
+#include "skerry/cavity.h"
 #include "skerry/joint.h"
 #include "skerry/settings.h"
 #include "skerry/tie.h"
@@ -207,14 +209,29 @@ struct CableEntry {
     std::vector<AnchorEntry> points;
     std::optional<TimeTable> tension, length, rate;
     Real friction = CableSettings{}.friction;
+};
+/// A cavity of a body. Without a part, it has the faces that CavitySettings::faces describes as default.
+struct CavityEntry : PartEntry {
+    std::string name;
+    std::string body;
+    std::optional<TimeTable> pressure;
+    std::optional<GasFilling> gas;
+    std::optional<LiquidFilling> liquid;
+    std::optional<Real> volume;
+};
+struct PipeEntry {
+    std::string first;
+    std::optional<std::string> second;
+    Real conductance = 0;
+    std::optional<TimeTable> pressure;
     Place place;
 };
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
-enum class ProbeQuantity { contacts, motion, force, reaction, joint, cable, energy, stress, volume };
+enum class ProbeQuantity { contacts, motion, force, reaction, joint, cable, energy, stress, volume, cavity };
 template <>
 struct EnumNames<ProbeQuantity> {
-    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 9> table{{
+    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 10> table{{
         {ProbeQuantity::contacts, "contacts"},
         {ProbeQuantity::motion, "motion"},
         {ProbeQuantity::force, "force"},
@@ -224,12 +241,13 @@ struct EnumNames<ProbeQuantity> {
         {ProbeQuantity::energy, "energy"},
         {ProbeQuantity::stress, "stress"},
         {ProbeQuantity::volume, "volume"},
+        {ProbeQuantity::cavity, "cavity"},
     }};
 };
 struct ProbeEntry {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::contacts;
-    std::optional<std::string> body, collider, by, joint, set, cable;
+    std::optional<std::string> body, collider, by, joint, set, cable, cavity;
     std::optional<RestBox> box;
     std::optional<Vec3> point;  // position in the mesh's own frame [m]
     std::optional<int> pin;
@@ -251,6 +269,8 @@ struct SceneFile {
     std::vector<JointEntry> joints;
     std::vector<TieEntry> ties;
     std::vector<CableEntry> cables;
+    std::vector<CavityEntry> cavities;
+    std::vector<PipeEntry> pipes;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;
 };

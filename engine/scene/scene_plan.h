@@ -77,6 +77,18 @@ struct CablePlan {
     CableSettings settings{};  // settings without points
     Place place{};
 };
+struct CavityPlan {
+    std::string name;
+    std::size_t body = 0;     // index in ScenePlan::bodies
+    CavitySettings settings;  // settings without body handle, because handles exist only in a built world
+    Place place;
+};
+struct PipePlan {
+    std::size_t first = 0;                // index in ScenePlan::cavities
+    std::optional<std::size_t> second{};  // index in ScenePlan::cavities
+    PipeSettings settings;                // settings without handles of cavities
+    Place place;
+};
 struct ProbePlan {
     std::string name;
     std::size_t body = 0;      // index in ScenePlan::bodies
@@ -90,6 +102,7 @@ struct SeriesPlan {
     std::optional<std::size_t> collider{}, by_collider{};  // indices in ScenePlan::colliders
     std::size_t joint = 0;                                 // index in ScenePlan::joints
     std::size_t cable = 0;                                 // index in ScenePlan::cables
+    std::size_t cavity = 0;                                // index in ScenePlan::cavities
     std::size_t pin = 0;                                   // index in BodyPlan::pins
     std::vector<Index> nodes;                              // local numbers
     std::optional<MaterialPoint> point;
@@ -113,6 +126,8 @@ struct ScenePlan {
     std::vector<JointPlan> joints;
     std::vector<TiePlan> ties;
     std::vector<CablePlan> cables;
+    std::vector<CavityPlan> cavities;
+    std::vector<PipePlan> pipes;
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;
     Real probe_step = 0;  // [s]
@@ -161,7 +176,15 @@ TiePlan plan_tie(const TieEntry& entry, const ScenePlan& plan);
 /// Resolves the names of a cable. The plan must already contain all bodies and colliders. `number`: index of the cable.
 CablePlan plan_cable(const CableEntry& entry, std::size_t number, const ScenePlan& plan);
 
-/// Adds a probe to a plan that already contains all bodies, colliders, joints and cables.
+/// Returns the index of a cavity of the plan. Throws SceneError if there is none of this name.
+std::size_t find_cavity(const ScenePlan& plan, const std::string& name, const Place& place);
+/// Adds the cavities and pipes of a scene to a plan that already contains all bodies.
+void plan_cavities(const SceneFile& scene, ScenePlan& plan);
+/// Adds the planned cavities and pipes to a world with the given bodies, in the order of ScenePlan::bodies. Returns the
+/// cavities.
+std::vector<CavityHandle> add_cavities(const ScenePlan& plan, const std::vector<BodyHandle>& bodies, World& world);
+
+/// Adds a probe to a plan that already contains all bodies, colliders, joints, cables and cavities.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 
 /// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.

@@ -308,6 +308,8 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("joints", &SceneFile::joints, {.meaning = "joints of rigid bodies"})
             .key("ties", &SceneFile::ties, {.meaning = "ties of deformable bodies to other objects"})
             .key("cables", &SceneFile::cables, {.meaning = "cables that run through points of bodies"})
+            .key("cavities", &SceneFile::cavities, {.meaning = "pressure on faces, and gas or liquid in cavities"})
+            .key("pipes", &SceneFile::pipes, {.meaning = "pipes between cavities with gas"})
             .key("probes", &SceneFile::probes,
                  {.meaning = "recorded quantities: contacts for the report, and time series for --probes"})
             .key("probe_step", &SceneFile::probe_step,

@@ -74,6 +74,13 @@ template <>
 const Rule<JointEntry>& rule_of<JointEntry>();
 template <>
 const Rule<TieEntry>& rule_of<TieEntry>();
+const Rule<GasFilling>& rule_of<GasFilling>();
+template <>
+const Rule<LiquidFilling>& rule_of<LiquidFilling>();
+template <>
+const Rule<CavityEntry>& rule_of<CavityEntry>();
+template <>
+const Rule<PipeEntry>& rule_of<PipeEntry>();
 template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();
 template <>

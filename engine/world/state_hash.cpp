@@ -202,6 +202,15 @@ void add_members_of_sets(Hash& hash, const SurfaceSetTable& table) {
     }
 }
 
+/// Hashes the faces of all rows of a table, and the stored positions of their corners.
+template <class Table>
+void add_faces(Hash& hash, const Table& table) {
+    for (const std::size_t row : in_slot_order(table.slot)) {
+        add_rows(hash, table.faces_of(row));
+        add_rows(hash, table.corners_of(row));
+    }
+}
+
 void add_collider(Hash& hash, Model& model, std::size_t c) {
     ColliderTable& table = model.colliders;
     add_row_state(hash, table, c);
@@ -282,6 +291,7 @@ std::uint64_t state_hash(WorldState& world) {
         for (std::size_t row : in_slot_order(table.slot)) add_joining_row(hash, model, table, row);
         if constexpr (requires { table.keys_of(0); }) add_keys(hash, table);
         if constexpr (requires { table.members_of(0); }) add_members_of_sets(hash, table);
+        if constexpr (requires { table.faces_of(0); }) add_faces(hash, table);
     });
     add_tied_nodes(hash, model.ties);
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));

@@ -7,6 +7,7 @@
 
 #include "engine/world/tuning.h"
 #include "jobs/executor.h"
+#include "skerry/cavity.h"
 #include "skerry/rollout.h"
 #include "tests/support/worlds.h"
 
@@ -140,6 +141,20 @@ TEST_CASE("leapfrog allocates nothing, either", "[determinism]") {
     World world = resting_balls(Backend::serial, 1, settings);
     const auto stiff = world.add_material({.young_modulus = 3e6, .friction = 0.5, .damping = 20});
     world.add_body(mesh::ball(0.05, 4), {.material = stiff, .position = {0.5, 0, 0.06}});
+    REQUIRE(world.advance(1.5).ok());
+    CHECK(allocations_of_a_fifth_second(world) == 0);
+}
+
+TEST_CASE("a pile of balls on a cavity with gas allocates nothing, either", "[determinism]") {
+    World world = resting_balls(Backend::serial, 1);
+    const BodyHandle ball = world.bodies().front();
+    Cavities cavities(world);
+    const auto surface = world.surface(ball);
+    const CavityHandle gas = cavities.add({.body = ball,
+                                           .faces = {surface.begin(), surface.begin() + 2},
+                                           .filling = GasFilling{.pressure = 10, .inflow = 1e-9},
+                                           .volume = 1e-4});
+    cavities.add({.first = gas, .conductance = 1e-12, .pressure = TimeTable({{0, 0}, {5, 20}})});
     REQUIRE(world.advance(1.5).ok());
     CHECK(allocations_of_a_fifth_second(world) == 0);
 }

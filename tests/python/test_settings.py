@@ -19,6 +19,8 @@ CLASSES = [
     _settings.Motion,
     _settings.MotorKey,
     _settings.Motor,
+    _settings.Gas,
+    _settings.Liquid,
     _settings.ProblemSettings,
     _settings.Plane,
     _settings.Sphere,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "components/cable_control.h"
+#include "components/cavity_law.h"
 #include "components/joint_kind.h"
 #include "skerry/world.h"
 
@@ -60,6 +61,10 @@ struct JointProbe {
 struct CableProbe {
     CableHandle cable{};
 };
+/// Records pressure, volume, gas mass and energy of a cavity, and its force on the body (CavityState).
+struct CavityProbe {
+    CavityHandle cavity{};
+};
 /// Records the kinetic, elastic, potential and dissipated energy of the world.
 struct EnergyProbe {};
 /// Records the largest von Mises stress at the given nodes of a body, or at all its nodes if none is given. `nodes` are
@@ -91,7 +96,7 @@ struct NodesProbe {
 struct RecordedProbe {
     std::string name;  // unique and not empty; not "." or "time"; without '/' and control characters
     std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, JointProbe, CableProbe,
-                 EnergyProbe, StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe>
+                 EnergyProbe, StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe, CavityProbe>
         what;
 };
 

@@ -177,6 +177,11 @@ void put_values(const World& world, TrackedProbe& probe, std::vector<Real>& valu
             [&](const ReactionProbe&) { put_force(probe.force, false, values); },
             [&](const JointProbe& joint) { put_joint(state_of(world, joint), values); },
             [&](const CableProbe& cable) { put_cable(state_of(world, cable), values); },
+            [&](const CavityProbe& cavity) {
+                const CavityState now = cavity_state(WorldAccess::state_of(world), cavity.cavity);
+                values.insert(values.end(), {now.pressure, now.volume, now.mass, now.energy});
+                put_vector(now.force, values);
+            },
             [&](const EnergyProbe&) {
                 const Energy energy = world.energy();
                 values.insert(values.end(), {energy.kinetic, energy.elastic, energy.potential, energy.dissipated});
@@ -241,6 +246,8 @@ void require_objects(const World& world, const RecordedProbe& probe) {
                           [&](const ReactionProbe& force) { require(force.attachment); },
                           [&](const JointProbe& joint) { require(joint.joint); },
                           [&](const CableProbe& cable) { require(cable.cable); }, [](const EnergyProbe&) {},
+                          [&](const JointProbe& joint) { require(joint.joint); }, [](const EnergyProbe&) {},
+                          [&](const CavityProbe& cavity) { require(cavity.cavity); },
                           [&](const BodyProbe& body) { require(body.body); },
                           [&](const VolumeProbe& volume) { require(volume.body); },
                           [&](const NodesProbe& nodes) { require(nodes.body); },
@@ -323,6 +330,13 @@ void add_columns(const World& world, const RecordedProbe& probe, std::vector<Ser
                           [&](const ColliderForceProbe&) { contact_force(); }, [&](const ReactionProbe&) { force(); },
                           [&](const JointProbe& joint) { of_joint(state_of(world, joint).kind); },
                           [&](const CableProbe& cable) { of_cable(state_of(world, cable).tension.size()); },
+                          [&](const CavityProbe&) {
+                              one("pressure", "Pa");
+                              one("volume", "m^3");
+                              one("mass", "kg");
+                              one("energy", "J");
+                              three("force", "N");
+                          },
                           [&](const EnergyProbe&) {
                               for (const char* part : {"kinetic", "elastic", "potential", "dissipated"}) one(part, "J");
                           },

@@ -13,7 +13,19 @@ from typing import Any, Generic, Literal, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import RotationLike, Vector, VectorLike, index_array, read_only, real_array, rotation, vector
+from ._arrays import (
+    RotationLike,
+    TimeTable,
+    TimeTableLike,
+    Vector,
+    VectorLike,
+    index_array,
+    read_only,
+    real_array,
+    rotation,
+    time_table,
+    vector,
+)
 
 Integrator: TypeAlias = Literal["symplectic_euler", "leapfrog"]
 Backend: TypeAlias = Literal["tbb", "openmp", "threads", "serial", "automatic"]
@@ -26,6 +38,7 @@ ElementKind: TypeAlias = Literal["linear", "smoothed", "edge_smoothed", "edge_no
 Dynamics: TypeAlias = Literal["explicit", "rigid", "implicit", "automatic"]
 JointKind: TypeAlias = Literal["ball", "hinge", "slider", "fixed"]
 TieKind: TypeAlias = Literal["weld", "slide"]
+CavityLaw: TypeAlias = Literal["pressure", "gas", "liquid"]
 
 Given = TypeVar("Given", contravariant=True)
 Held = TypeVar("Held", covariant=True)
@@ -397,6 +410,46 @@ class Motor:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Gas:
+    """A gas in a cavity, with p V^exponent = const while its mass is constant.
+
+    pressure: pressure above ambient at the start, > -ambient [Pa].
+    exponent: polytropic exponent, >= 1; 1: isothermal, 1.4: adiabatic air.
+    ambient: absolute pressure outside of the body, > 0 [Pa].
+    density: density at ambient pressure, > 0; default: air at 20 degrees Celsius [kg/m^3].
+    inflow: flow of gas into the cavity, a number or pairs (time, value); negative to draw gas out [kg/s].
+    """
+
+    pressure: float = 0.0
+    exponent: float = 1.4
+    ambient: float = 101325.0
+    density: float = 1.204
+    inflow: Field[TimeTableLike, TimeTable] = held(((0.0, 0.0),))
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "inflow", time_table(self.inflow, "Gas.inflow"))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Liquid:
+    """A liquid in a cavity, whose volume is prescribed, as by a syringe. A smaller bulk modulus allows longer steps.
+
+    bulk_modulus: bulk modulus, > 0; default: water [Pa].
+    volume: volume of the liquid at ambient pressure, a number or pairs (time, value), > 0; None: the volume of the
+        cavity when it is added [m^3].
+    ambient: absolute pressure outside of the body, >= 0 [Pa].
+    """
+
+    bulk_modulus: float = 2.2e9
+    volume: Field[TimeTableLike | None, TimeTable | None] = held(None)
+    ambient: float = 101325.0
+
+    def __post_init__(self) -> None:
+        if self.volume is not None:
+            object.__setattr__(self, "volume", time_table(self.volume, "Liquid.volume"))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ProblemSettings:
     """Settings of solve().
 
@@ -419,14 +472,17 @@ __all__ = [
     "Box",
     "Bucket",
     "Capsule",
+    "CavityLaw",
     "ContactRegions",
     "Cylinder",
     "Dynamics",
     "ElementKind",
     "Friction",
+    "Gas",
     "Integrator",
     "JointKind",
     "JointPassive",
+    "Liquid",
     "Material",
     "MaterialModel",
     "Motion",

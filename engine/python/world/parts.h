@@ -18,6 +18,7 @@ void bind_joints(WorldClass& type);
 void bind_cables(WorldClass& type);
 void bind_surface(WorldClass& type);
 void bind_ties(WorldClass& type);
+void bind_cavities(WorldClass& type);
 void bind_sets(WorldClass& type);
 void bind_views(WorldClass& type);
 void bind_results(WorldClass& type);

@@ -7,6 +7,7 @@
 #include "engine/python/bind.h"
 #include "engine/python/world/parts.h"
 #include "engine/python/world_object.h"
+#include "skerry/cavity.h"
 
 namespace skerry::python {
 
@@ -80,6 +81,8 @@ void bind_world(nb::module_& module) {
     bind_handle<CableHandle>(module, "CableHandle");
     bind_handle<SurfaceSetHandle>(module, "SurfaceSetHandle");
     bind_handle<TieHandle>(module, "TieHandle");
+    bind_handle<CavityHandle>(module, "CavityHandle");
+    bind_handle<PipeHandle>(module, "PipeHandle");
     module.def("end_calls", &CallScope::end_calls);
     module.def("note_fork", [] {
         Use::note_fork();
@@ -95,6 +98,7 @@ void bind_world(nb::module_& module) {
     bind_cables(type);
     bind_surface(type);
     bind_ties(type);
+    bind_cavities(type);
     bind_sets(type);
     bind_views(type);
     bind_results(type);

@@ -8,6 +8,7 @@
 #include "components/pair_table.h"
 #include "engine/world/world_state.h"
 #include "skerry/cable.h"
+#include "skerry/cavity.h"
 #include "skerry/joint.h"
 #include "skerry/tie.h"
 
@@ -38,6 +39,10 @@ void enable_pair(WorldState& world, PairKind kind, Index first, Index second);
 
 /// Returns the present shape and motion of a cable, and its tensions in the last step.
 CableState cable_state(const WorldState& state, CableHandle cable);
+
+// control_cavities.cpp
+
+CavityState cavity_state(const WorldState& world, CavityHandle cavity);
 
 // control_joints.cpp
 

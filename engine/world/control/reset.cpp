@@ -152,6 +152,8 @@ void World::reset(const World& saved) {
     now.model.joint_map.differ_from(before.model.joint_map);
     now.model.tie_map.differ_from(before.model.tie_map);
     now.model.cable_map.differ_from(before.model.cable_map);
+    now.model.cavity_map.differ_from(before.model.cavity_map);
+    now.model.pipe_map.differ_from(before.model.pipe_map);
     std::swap(now.executor, before.executor);
     now.record.tracing = before.record.tracing;
     std::swap(now.record.problem_watch, before.record.problem_watch);

@@ -457,6 +457,43 @@ void check_cables(const SavedFile& file, const Model& model) {
         file.complain("cables/points", std::to_string(end) + " points", std::to_string(points));
 }
 
+void check_cavities(const SavedFile& file, const Model& model) {
+    const CavityTable& table = model.cavities;
+    check_keys(file, "cavities", "keys", table.keys.span(), table.key.span());
+    expect_partition(file, "cavities/faces", table.faces, table.face.size());
+    expect_size(file, "cavities/corners", table.corners.size(), table.face.size());
+    expect_between(file, "cavities/mass", table.mass, 0.0, infinity);
+    for (std::size_t c = 0; c < table.size(); ++c) {
+        const auto require = [&](bool good, const char* column, const char* found, const char* expected) {
+            if (!good) file.complain(std::string("cavities/") + column, at_row(found, c), expected);
+        };
+        require(table.body[c] != no_index, "body", "-1", "the index of a body");
+        require(table.keys[c].size() > 0, "keys", "no keys", "at least one key");
+        require(table.closed[c] <= 1, "closed", "a value above 1", "0 or 1");
+        const CavityFluid& fluid = table.fluid[c];
+        const bool gas = table.law[c] == CavityLaw::gas, liquid = table.law[c] == CavityLaw::liquid;
+        require(!gas || (fluid.ambient > 0 && fluid.density > 0 && fluid.exponent >= 1), "fluid",
+                "a constant of a gas that is too small", "an ambient pressure and a density > 0, an exponent >= 1");
+        require(!liquid || (fluid.ambient >= 0 && fluid.bulk_modulus > 0), "fluid",
+                "a constant of a liquid that is too small", "an ambient pressure >= 0 and a bulk modulus > 0");
+        const Index nodes = model.bodies.nodes[table.body[c]].size();
+        for (const std::array<Index, 3>& face : table.faces_of(c))
+            for (const Index n : face)
+                require(n >= 0 && n < nodes, "face", "a node that the body does not have", "a node of the body");
+    }
+    const PipeTable& pipes = model.pipes;
+    check_keys(file, "pipes", "keys", pipes.keys.span(), pipes.key.span());
+    expect_between(file, "pipes/conductance", pipes.conductance, 0.0, infinity);
+    for (std::size_t p = 0; p < pipes.size(); ++p)
+        for (const std::uint32_t slot : {pipes.first[p], pipes.second[p]}) {
+            const bool lives = model.cavity_map.has_slot(slot);
+            const auto row =
+                static_cast<std::size_t>(lives ? model.cavity_map.row(model.cavity_map.handle_of_slot(slot)) : 0);
+            if (!lives || table.law[row] != CavityLaw::gas)
+                file.complain("pipes/first, second", at_row(std::to_string(slot), p), "the slot of a cavity with gas");
+        }
+}
+
 void check_implicit_nodes(const SavedFile& file, const ImplicitNodeTable& table) {
     for (std::size_t row = 0; row < table.size(); ++row) {
         const std::string found = "a value that is not finite at row " + std::to_string(row);
@@ -486,6 +523,7 @@ void check_model(const SavedFile& file, Model& model) {
     check_surface_rules(file, model);
     check_ties(file, model);
     check_cables(file, model);
+    check_cavities(file, model);
     check_implicit_nodes(file, model.implicit_nodes);
     check_watch(file, model);
 }

@@ -74,6 +74,12 @@ Index Model::row(TieHandle tie, const char* call) const {
 Index Model::row(CableHandle cable, const char* call) const {
     return live_row(cable_map, cable, call, "cable");
 }
+Index Model::row(CavityHandle cavity, const char* call) const {
+    return live_row(cavity_map, cavity, call, "cavity");
+}
+Index Model::row(PipeHandle pipe, const char* call) const {
+    return live_row(pipe_map, pipe, call, "pipe");
+}
 
 ElementInputs Model::all_elements() const {
     return ElementInputs::bind({}, elements, element_nodes, materials);

@@ -14,6 +14,7 @@
 #include "components/body_table.h"
 #include "components/bvh_table.h"
 #include "components/cable_table.h"
+#include "components/cavity_table.h"
 #include "components/collider_table.h"
 #include "components/collision_filter.h"
 #include "components/element_table.h"
@@ -108,6 +109,8 @@ struct Model {
     JointTable joints;
     TieTable ties;
     CableTable cables;
+    CavityTable cavities;
+    PipeTable pipes;
     DisabledPairTable disabled_pairs;
     MaterialPairTable material_pairs;
     SurfaceSetTable surface_sets;
@@ -120,6 +123,8 @@ struct Model {
     HandleMap<SurfaceSetHandle> surface_set_map;
     HandleMap<TieHandle> tie_map;
     HandleMap<CableHandle> cable_map;
+    HandleMap<CavityHandle> cavity_map;
+    HandleMap<PipeHandle> pipe_map;
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
     std::vector<ColliderRecord> collider_records;  // one record for each row of ColliderTable
@@ -153,6 +158,8 @@ struct Model {
     Index row(SurfaceSetHandle set, const char* call) const;
     Index row(TieHandle tie, const char* call) const;
     Index row(CableHandle cable, const char* call) const;
+    Index row(CavityHandle cavity, const char* call) const;
+    Index row(PipeHandle pipe, const char* call) const;
 
     /// All elements, including the elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
@@ -252,6 +259,8 @@ struct Model {
         visit("joints", joints);
         visit("ties", ties);
         visit("cables", cables);
+        visit("cavities", cavities);
+        visit("pipes", pipes);
         visit("disabled_pairs", disabled_pairs);
         visit("material_pairs", material_pairs);
         visit("surface_sets", surface_sets);
@@ -264,6 +273,8 @@ struct Model {
         visit("surface_sets", surface_sets, surface_set_map);
         visit("ties", ties, tie_map);
         visit("cables", cables, cable_map);
+        visit("cavities", cavities, cavity_map);
+        visit("pipes", pipes, pipe_map);
     }
 };
 

@@ -6,6 +6,7 @@
 #include "systems/dynamics/joints/prepare_joints.h"
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/forces/prepare_cables.h"
+#include "systems/forces/cavities.h"
 
 namespace skerry {
 
@@ -43,6 +44,11 @@ bool a_cable_is_driven(const Model& model, Real time, Real h) {
     return false;
 }
 
+bool a_cavity_fills(const Model& model, Real time, Real h) {
+    return mark_filled(CavityInputs::bind({}, model.cavities, model.bodies, model.nodes),
+                       PipeInputs::bind({}, model.pipes), model.cavity_map, time, h, {});
+}
+
 /// True if a stable step is still to be evaluated for a stored shape. This can be so if a body was moving when its
 /// shape was stored and has fallen asleep since.
 bool looks_are_due(const StepWatch& watch) {
@@ -60,7 +66,7 @@ bool nothing_moves(WorldState& world) {
     if (!model.any_asleep || !model.tuning.contact_budgets || !all_bodies_rest(model.bodies)) return false;
     if (scratch.contacts.size() > 0 || scratch.regions.size() > 0 || scratch.regions.pushed) return false;
     if (!world.cache.crossings.row.empty() || looks_are_due(model.watch)) return false;
-    if (a_motor_moves(model, time, h) || a_cable_is_driven(model, time, h)) return false;
+    if (a_motor_moves(model, time, h) || a_cable_is_driven(model, time, h) || a_cavity_fills(model, time, h)) return false;
     if (!all_stand_still(model.colliders, time, h) || !all_stand_still(model.attachments, time, h)) return false;
     drive_nodes(NodeMotionInputs::bind({}, model.attachments), h, model.nodes.position, model.nodes.velocity);
     return true;

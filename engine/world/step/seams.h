@@ -52,13 +52,13 @@ struct ConstraintLaw {
     ListStages remember = nullptr;  // stores the impulses for the next step, if the step can be committed
 };
 
-extern const ForceElement nodal_loads, cable_forces;
+extern const ForceElement nodal_loads, cable_forces, cavity_pressures;
 extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies, held_axes;
 extern const ConstraintLaw contact_law, joint_law, tie_law, cable_law;
 
 /// All force elements. Nodal loads come first: their stage sets the total force on each node, to which the other force
 /// elements add.
-inline constexpr std::array<const ForceElement*, 2> force_elements{&nodal_loads, &cable_forces};
+inline constexpr std::array<const ForceElement*, 3> force_elements{&nodal_loads, &cable_forces, &cavity_pressures};
 /// All motion models. The order matters where two models write the same columns. Rigid bodies come first, because the
 /// frames of implicit bodies move like rigid bodies. Held axes come last, because they correct velocities.
 inline constexpr std::array<const MotionModel*, 5> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,

@@ -18,6 +18,7 @@
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "systems/forces/add_nodal_loads.h"
 #include "systems/forces/prepare_cables.h"
+#include "systems/forces/cavities.h"
 
 namespace skerry {
 
@@ -129,6 +130,9 @@ void separate(WorldState& w, TaskGraph& g) {
     g.stage("forces/mark_driven_cables", mark_driven_cables,
             inputs<CableInputs>(m.cables, m.bodies, m.nodes, m.colliders, m.any_asleep), value(w.clock.time),
             value(p.h), write(w.scratch.pressed), if_any_asleep);
+    g.stage("forces/mark_filled", mark_filled, inputs<CavityInputs>(m.cavities, m.bodies, m.nodes),
+            inputs<PipeInputs>(m.pipes), value(m.cavity_map), value(w.clock.time), value(p.h), write(w.scratch.pressed),
+            if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints, w.scratch.cables),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
@@ -208,7 +212,11 @@ void measure_travel(WorldState& w, TaskGraph& g) {
 
 void keep_forces(WorldState& w, TaskGraph& g) {
     NodeTable& n = w.model.nodes;
+    CavityTable& c = w.model.cavities;
     const auto if_forced = only_if([](bool forced) { return forced; }, value(w.model.forced));
+    g.stage("forces/store_cavities", store_cavities, inputs<CavityInputs>(c, w.model.bodies, n),
+            inputs<PipeInputs>(w.model.pipes), value(w.model.cavity_map), read(c.volume_now), value(w.clock.time),
+            value(w.scratch.parameters.h), outputs<CavityMemory>(c, w.model.pipes), if_taken(w), if_forced);
     g.stage("forces/keep_applied_forces", keep_applied_forces, read(n.applied_force), write(n.applied_before),
             if_taken(w), if_forced);
 }

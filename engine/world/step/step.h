@@ -32,7 +32,7 @@ void note_forces(Model& model);
 /// Computes Model::force_rate for the present positions.
 void note_force_rates(Model& model);
 /// Must be called before steps. Computes Model::links again if rows that join bodies have changed, and Model::forced if
-/// the last force element was removed.
+/// the last force element was removed. Bounds that depend on positions are computed again.
 void note_changed_seams(Model& model);
 
 // stable_steps.cpp

@@ -18,6 +18,8 @@ ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, R
                 if (nodes.resting.contain(n)) continue;
                 part.impulse += kick * nodes.load[n];
                 part.work += h * nodes.load[n].dot(nodes.velocity_next[n]);
+                if (lag == 0 && nodes.is_free(n))
+                    part.work += h / 2 * nodes.load[n].dot(nodes.velocity[n] - nodes.velocity_next[n]);
                 if (lag != 0 && nodes.load[n] != nodes.load_before[n] && nodes.is_free(n))
                     part.work += lag * (nodes.load[n] - nodes.load_before[n]).dot(nodes.velocity[n]);
             }

@@ -3,6 +3,7 @@
 from .anchor import Anchor
 from .body import Attachment, Body
 from .cable import Cable, CableState
+from .cavity import Cavity, CavityState, Pipe, PipeState
 from .collider import Collider
 from .joint import Joint, JointState
 from .material import MaterialHandle
@@ -29,6 +30,8 @@ __all__ = [
     "Body",
     "Cable",
     "CableState",
+    "Cavity",
+    "CavityState",
     "Collider",
     "DynamicsChoice",
     "DynamicsEstimate",
@@ -37,6 +40,8 @@ __all__ = [
     "JointState",
     "MaterialHandle",
     "Objects",
+    "Pipe",
+    "PipeState",
     "SelfCrossing",
     "StageReport",
     "StartMove",

@@ -48,6 +48,7 @@ from .._settings import (
 from .anchor import Anchor
 from .body import Attachment, Body, Indices
 from .cable import Cable, drive_tables
+from .cavity import CavityBuilding
 from .changes import MaterialChanges
 from .collider import Collider
 from .joint import Joint, joint_label
@@ -68,7 +69,7 @@ class Arguments(SimpleNamespace):
     """Arguments of a call for the extension module. Its messages name the object by the attribute `of`."""
 
 
-class Building:
+class Building(CavityBuilding):
     """The part of World that adds, finds and removes objects."""
 
     __slots__ = (

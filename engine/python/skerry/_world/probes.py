@@ -15,6 +15,7 @@ from .._settings import Field, held
 if TYPE_CHECKING:
     from .body import Attachment, Body
     from .cable import Cable
+    from .cavity import Cavity
     from .collider import Collider
     from .joint import Joint
     from .objects import PosedObject
@@ -97,6 +98,13 @@ class CableProbe:
     """
 
     cable: Cable
+class CavityProbe:
+    """Pressure, volume, gas mass and energy of a cavity, and its force on the body.
+
+    cavity: the cavity.
+    """
+
+    cavity: Cavity
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,6 +180,7 @@ Probe: TypeAlias = (
     | PoseProbe
     | VelocityProbe
     | NodesProbe
+    | CavityProbe
 )
 """A quantity that a recorder records."""
 
@@ -186,6 +195,7 @@ def recorded_probes(probes: Mapping[str, Probe], owner: World | None = None) -> 
 def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
     from .body import Attachment, Body
     from .cable import Cable
+    from .cavity import Cavity
     from .collider import Collider
     from .joint import Joint
 
@@ -209,6 +219,8 @@ def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
             return _core.joint_probe(name, handle_of("joint", Joint))
         case CableProbe():
             return _core.cable_probe(name, handle_of("cable", Cable))
+        case CavityProbe():
+            return _core.cavity_probe(name, handle_of("cavity", Cavity))
         case EnergyProbe():
             return _core.energy_probe(name)
         case StressProbe():
@@ -245,6 +257,8 @@ def _object_of(world: World, value: Any) -> Any:
         return world._joint(value)
     if isinstance(value, _core.CableHandle):
         return world._cable(value)
+    if isinstance(value, _core.CavityHandle):
+        return world._cavity(value)
     return world._attachment(value) if isinstance(value, _core.AttachmentHandle) else value
 
 

@@ -1,0 +1,127 @@
+// Cavities, which are sets of faces of one body under one pressure, and pipes between cavities
+// (docs/methods/cavities.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "components/cavity_law.h"
+#include "components/column.h"
+#include "components/column_role.h"
+#include "components/key_lists.h"
+#include "components/range.h"
+#include "components/row_type.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// Constants of the filling of a cavity. A liquid uses `ambient` and `bulk_modulus`, a gas all others.
+struct CavityFluid {
+    Real ambient = 0;       // absolute pressure outside of the body [Pa]
+    Real density = 0;       // density of the gas at ambient pressure [kg/m^3]
+    Real exponent = 1;      // polytropic exponent of the gas
+    Real bulk_modulus = 0;  // bulk modulus of the liquid [Pa]
+
+    bool operator==(const CavityFluid&) const = default;
+};
+template <>
+struct NumbersOf<CavityFluid> : Reals<4> {};
+
+/// One row per cavity.
+struct CavityTable {
+    Column<std::uint32_t> slot;
+    Column<Index> body;  // row of BodyTable
+    Column<CavityLaw> law;
+    Column<std::uint8_t> closed;  // 1: every edge of the faces belongs to two of them
+    Column<Range> faces;          // rows of `face`
+    // Rows of `key`, at least one: the pressure [Pa], the flow of gas into the cavity [kg/s], or the volume that the
+    // liquid has at ambient pressure [m^3].
+    Column<Range> keys;
+    Column<CavityFluid> fluid;
+    Column<Real> mass;  // mass of the gas [kg]
+    // Volume of an open cavity when its faces were at `corners`. Unused for closed faces [m^3].
+    Column<Real> volume;
+    Column<Real> pressure_now;  // pressure above ambient in the last step [Pa]
+    Column<Real> volume_now;    // volume at the start of this step [m^3]
+    // The next columns have one row per face.
+    Column<std::array<Index, 3>> face;  // node numbers in the mesh of the body
+    // Columns: positions of the three nodes at the end of the last step. Unused for closed faces [m].
+    Column<Mat3> corners;
+    Column<Vec3> area;         // area times the normal that points from the body into the cavity, in this step [m^2]
+    Column<Real> swept_parts;  // working memory of add_cavity_forces
+    Column<TimeKey> key;       // keys of all cavities
+
+    std::size_t size() const { return slot.size(); }
+
+    std::span<const std::array<Index, 3>> faces_of(std::size_t row) const { return rows_of(face.span(), faces[row]); }
+    std::span<const Mat3> corners_of(std::size_t row) const { return rows_of(corners.span(), faces[row]); }
+    std::span<const TimeKey> keys_of(std::size_t row) const { return rows_of(key.span(), keys[row]); }
+    /// Erases the keys and the faces of one row.
+    void erase_keys_of(std::size_t row) {
+        erase_keys(keys, key, row);
+        const Range gone = faces[row];
+        const auto begin = static_cast<std::size_t>(gone.begin), count = static_cast<std::size_t>(gone.size());
+        face.erase(begin, count);
+        corners.erase(begin, count);
+        faces[row] = {};
+        for (Range& other : faces)
+            if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
+    }
+
+    /// Visits the columns with one row per cavity.
+    void for_each_row_column(auto&& visit) {
+        visit("slot", slot, ColumnRole::state);
+        visit("body", body, ColumnRole::body);
+        visit("law", law, ColumnRole::state);
+        visit("closed", closed, ColumnRole::state);
+        visit("faces", faces, ColumnRole::link);
+        visit("keys", keys, ColumnRole::link);
+        visit("fluid", fluid, ColumnRole::state);
+        visit("mass", mass, ColumnRole::state);
+        visit("volume", volume, ColumnRole::state);
+        visit("pressure_now", pressure_now, ColumnRole::state);
+        visit("volume_now", volume_now, ColumnRole::scratch);
+    }
+    void for_each_column(auto&& visit) {
+        for_each_row_column(visit);
+        visit("face", face, ColumnRole::link);
+        visit("corners", corners, ColumnRole::link);
+        visit("area", area, ColumnRole::scratch);
+        visit("swept_parts", swept_parts, ColumnRole::scratch);
+        visit("key", key, ColumnRole::state);
+    }
+};
+
+/// One row per pipe. A pipe connects two cavities with gas, or one such cavity and a reservoir.
+struct PipeTable {
+    Column<std::uint32_t> slot;
+    Column<Index> first_body, second_body;  // bodies of the cavities, rows of BodyTable; no_index for a reservoir
+    Column<std::uint32_t> first, second;  // CavityTable::slot of the cavities; `second` equals `first` for a reservoir
+    Column<Real> conductance;             // mass flow divided by the pressure difference [kg/(s Pa)]
+    Column<Range> keys;                   // rows of `key`; empty without a reservoir
+    Column<Real> flow;                    // mean mass flow in the last step, out of the first cavity [kg/s]
+    Column<TimeKey> key;                  // pressures of the reservoirs above ambient [Pa]
+
+    std::size_t size() const { return slot.size(); }
+    std::span<const TimeKey> keys_of(std::size_t row) const { return rows_of(key.span(), keys[row]); }
+    void erase_keys_of(std::size_t row) { erase_keys(keys, key, row); }
+
+    /// Visits the columns with one row per pipe.
+    void for_each_row_column(auto&& visit) {
+        visit("slot", slot, ColumnRole::state);
+        visit("first_body", first_body, ColumnRole::body);
+        visit("second_body", second_body, ColumnRole::body);
+        visit("first", first, ColumnRole::state);
+        visit("second", second, ColumnRole::state);
+        visit("conductance", conductance, ColumnRole::state);
+        visit("keys", keys, ColumnRole::link);
+        visit("flow", flow, ColumnRole::state);
+    }
+    void for_each_column(auto&& visit) {
+        for_each_row_column(visit);
+        visit("key", key, ColumnRole::state);
+    }
+};
+
+}  // namespace skerry

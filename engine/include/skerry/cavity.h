@@ -1,0 +1,119 @@
+// Pressure on faces of bodies, and cavities that contain a gas or a liquid (docs/methods/cavities.md).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "components/cavity_law.h"
+#include "components/handle.h"
+#include "components/types.h"
+#include "skerry/time_table.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+class World;
+
+inline constexpr Real standard_pressure = 101325;  // [Pa]
+
+/// A gas with p V^exponent = const while its mass is constant. p is the absolute pressure and V the volume. At ambient
+/// pressure the gas has the density `density`.
+struct GasFilling {
+    Real pressure = 0;                 // pressure above ambient at the start, > -ambient [Pa]
+    Real exponent = 1.4;               // polytropic exponent, >= 1; 1: isothermal, 1.4: adiabatic air
+    Real ambient = standard_pressure;  // absolute pressure outside of the body, > 0 [Pa]
+    Real density = 1.204;              // > 0; default: air at 20 degrees Celsius [kg/m^3]
+    TimeTable inflow{};                // flow of gas into the cavity, negative to draw gas out [kg/s]
+};
+
+/// A liquid whose volume is prescribed, as by a syringe. The pressure above ambient is bulk_modulus log(volume / V),
+/// with the volume V of the cavity, and at least -ambient. The smaller the bulk modulus, the longer the stable step. An
+/// error of pressure / bulk_modulus in the volume is often acceptable.
+struct LiquidFilling {
+    Real bulk_modulus = 2.2e9;  // > 0; default: water [Pa]
+    // volume of the liquid at ambient pressure, > 0; default: the volume of the cavity when it is added [m^3]
+    std::optional<TimeTable> volume{};
+    Real ambient = standard_pressure;  // absolute pressure outside of the body, >= 0 [Pa]
+};
+
+/// Faces of a body under one pressure. The pressure acts on the deformed faces, against the outward normal of the body.
+/// The alternatives of `filling` are a prescribed pressure above ambient [Pa], a gas and a liquid.
+struct CavitySettings {
+    BodyHandle body{};
+    // Faces of World::surface, each given by its three nodes. Default: the walls of all hollows inside of the body, or
+    // the whole surface of a body without hollows.
+    std::vector<std::array<Index, 3>> faces{};
+    std::variant<TimeTable, GasFilling, LiquidFilling> filling{};
+    // Volume of the gas or liquid at the start. Required if the faces do not enclose a volume, as those of a piston:
+    // the volume then changes by the volume that the faces sweep. Not allowed for faces that enclose a volume [m^3].
+    std::optional<Real> volume{};
+};
+
+/// Present state of a cavity.
+struct CavityState {
+    BodyHandle body{};
+    CavityLaw law = CavityLaw::pressure;
+    Index faces = 0;            // number of faces
+    bool closed = false;        // whether the faces enclose a volume
+    Real pressure = 0;          // above ambient [Pa]
+    Real volume = 0;            // 0 if neither faces nor settings define a volume [m^3]
+    Real mass = 0;              // mass of the gas; 0 for other fillings [kg]
+    Real energy = 0;            // work that the filling would do if it expanded to ambient pressure [J]
+    Vec3 force = Vec3::Zero();  // sum of the pressure forces on the body; zero for closed faces [N]
+};
+
+/// A pipe between two cavities with the same gas, or between a cavity and a reservoir of this gas. The mass flow is
+/// conductance times the difference of the pressures.
+struct PipeSettings {
+    CavityHandle first{};
+    std::optional<CavityHandle> second{};  // default: a reservoir
+    Real conductance = 0;                  // >= 0 [kg/(s Pa)]
+    TimeTable pressure{};                  // pressure of the reservoir above ambient; 0: the atmosphere [Pa]
+};
+
+struct PipeState {
+    CavityHandle first{};
+    std::optional<CavityHandle> second{};
+    Real conductance = 0;  // [kg/(s Pa)]
+    Real flow = 0;         // mean mass flow out of the first cavity in the last step [kg/s]
+};
+
+/// A view of the cavities and pipes of a world. It is valid until the world is moved or destroyed. Functions that
+/// change something may only be called between calls of advance. They throw SceneError and change nothing if a handle
+/// is stale or a value is out of range. Cavities and pipes belong to the state of the world: they are saved, cloned and
+/// hashed. Setting an equal value again changes no bit of the state.
+class Cavities {
+public:
+    explicit Cavities(World& world) : world_(&world) {}
+
+    /// Removing the body removes the cavity.
+    CavityHandle add(const CavitySettings& cavity);
+    /// Removing a cavity removes its pipes.
+    PipeHandle add(const PipeSettings& pipe);
+    void remove(CavityHandle cavity);
+    void remove(PipeHandle pipe);
+    bool alive(CavityHandle cavity) const;
+    bool alive(PipeHandle pipe) const;
+    std::vector<CavityHandle> all() const;  // in the order added
+    std::vector<PipeHandle> pipes() const;  // in the order added
+    CavityState state(CavityHandle cavity) const;
+    PipeState state(PipeHandle pipe) const;
+
+    /// Sets a prescribed pressure above ambient [Pa].
+    void set_pressure(CavityHandle cavity, const TimeTable& pressure);
+    /// Sets the flow of gas into a cavity [kg/s].
+    void set_inflow(CavityHandle cavity, const TimeTable& inflow);
+    /// Sets the volume of a liquid at ambient pressure [m^3].
+    void set_liquid_volume(CavityHandle cavity, const TimeTable& volume);
+    void set_conductance(PipeHandle pipe, Real conductance);
+    /// Sets the pressure of a reservoir above ambient [Pa].
+    void set_reservoir(PipeHandle pipe, const TimeTable& pressure);
+
+private:
+    World* world_;
+};
+
+}  // namespace skerry
+#pragma GCC visibility pop

@@ -1,0 +1,436 @@
+// Functions that add, remove and control cavities and pipes between steps (docs/methods/cavities.md).
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "engine/world/complaint.h"
+#include "engine/world/control/control.h"
+#include "engine/world/edit/joining_rows.h"
+#include "engine/world/step/step.h"
+#include "engine/world/validate.h"
+#include "systems/forces/cavities.h"
+
+namespace skerry {
+
+namespace {
+
+using Face = std::array<Index, 3>;
+
+std::string title_of_cavity(const Model& model, std::size_t body) {
+    return "cavity of body '" + model.body_records[body].name + "'";
+}
+
+void require_above(const std::string& object, const char* field, Real value, Real least, const char* unit) {
+    if (!(std::isfinite(value) && value > least))
+        refuse(object, field, short_text(value), "a number > " + short_text(least) + unit);
+}
+
+/// Checks a list of keys whose values must be finite and greater than `least`.
+void require_keys(const std::string& object, const char* field, const TimeTable& table, Real least, const char* unit) {
+    require_table(object, field, table);
+    for (const TimeKey& key : table.keys) require_above(object, field, key.value, least, unit);
+}
+
+Vec3 rest_area(const Model& model, std::size_t body, const Face& face, Vec3& corner) {
+    const Index first = model.bodies.nodes[body].begin;
+    Mat3 x;
+    for (int k = 0; k < 3; ++k) x.col(k) = model.nodes.rest_position[first + face[static_cast<std::size_t>(k)]];
+    corner = x.col(0);
+    return area_of(x);
+}
+
+/// Faces around all hollows inside of a body: the connected parts of its surface that enclose a volume outside of the
+/// body. If there is none, all faces.
+std::vector<Face> faces_of_hollows(const Model& model, std::size_t body) {
+    const std::vector<Face>& surface = model.body_records[body].surface;
+    std::vector<std::size_t> parent(static_cast<std::size_t>(model.bodies.nodes[body].size()));
+    std::iota(parent.begin(), parent.end(), std::size_t{0});
+    const auto root = [&](Index node) {
+        auto n = static_cast<std::size_t>(node);
+        while (parent[n] != n) n = parent[n] = parent[parent[n]];
+        return n;
+    };
+    for (const Face& face : surface)
+        for (const Index n : face) parent[root(n)] = root(face[0]);
+    std::vector<Real> outward(parent.size(), 0);  // volume inside of each part of the surface, by its root [m^3]
+    for (const Face& face : surface) {
+        Vec3 corner;
+        const Vec3 area = rest_area(model, body, face, corner);
+        outward[root(face[0])] += area.dot(corner) / 3;
+    }
+    std::vector<Face> faces;
+    for (const Face& face : surface)
+        if (outward[root(face[0])] < 0) faces.push_back(face);
+    return faces.empty() ? surface : faces;
+}
+
+Face sorted(Face face) {
+    std::ranges::sort(face);
+    return face;
+}
+
+/// Faces of a cavity, in the orientation of the surface.
+std::vector<Face> chosen_faces(const Model& model, std::size_t body, const std::string& object,
+                               const std::vector<Face>& wanted) {
+    if (model.bodies.core_nodes[body] > 0)
+        refuse(object, "body", std::string("a ") + model.round_name(body) + ", which has no faces",
+               "a body with a mesh");
+    if (wanted.empty()) return faces_of_hollows(model, body);
+    std::map<Face, Face> surface;  // faces by their sorted nodes
+    for (const Face& face : model.body_records[body].surface) surface.emplace(sorted(face), face);
+    std::vector<Face> faces;
+    for (const Face& face : wanted) {
+        const auto found = surface.extract(sorted(face));
+        if (found.empty())
+            refuse(object, "faces",
+                   "the nodes " + std::to_string(face[0]) + ", " + std::to_string(face[1]) + " and " +
+                       std::to_string(face[2]),
+                   "three nodes of a face of the surface, each face once");
+        faces.push_back(found.mapped());
+    }
+    return faces;
+}
+
+/// First edge that does not belong to two of the faces with opposite directions; {no_index, no_index} if the faces are
+/// closed.
+std::pair<Index, Index> open_edge(const std::vector<Face>& faces) {
+    std::map<std::pair<Index, Index>, int> sum;
+    for (const Face& face : faces)
+        for (std::size_t k = 0; k < face.size(); ++k) {
+            const Index a = face[k], b = face[(k + 1) % face.size()];
+            sum[std::minmax(a, b)] += a < b ? 1 : -1;
+        }
+    for (const auto& [edge, difference] : sum)
+        if (difference != 0) return edge;
+    return {no_index, no_index};
+}
+
+CavityFluid fluid_of(const std::string& object, const GasFilling& gas) {
+    require_above(object, "gas.ambient", gas.ambient, 0, " (Pa)");
+    require_above(object, "gas.pressure", gas.pressure, -gas.ambient, " (Pa), which is vacuum");
+    require_above(object, "gas.density", gas.density, 0, " (kg/m^3)");
+    if (!(std::isfinite(gas.exponent) && gas.exponent >= 1))
+        refuse(object, "gas.exponent", short_text(gas.exponent), "a number >= 1");
+    require_table(object, "gas.inflow", gas.inflow);
+    return {.ambient = gas.ambient, .density = gas.density, .exponent = gas.exponent};
+}
+
+CavityFluid fluid_of(const std::string& object, const LiquidFilling& liquid) {
+    require_above(object, "liquid.bulk_modulus", liquid.bulk_modulus, 0, " (Pa)");
+    if (!(std::isfinite(liquid.ambient) && liquid.ambient >= 0))
+        refuse(object, "liquid.ambient", short_text(liquid.ambient), "a number >= 0 (Pa)");
+    if (liquid.volume) require_keys(object, "liquid.volume", *liquid.volume, 0, " (m^3)");
+    return {.ambient = liquid.ambient, .bulk_modulus = liquid.bulk_modulus};
+}
+
+CavityInputs cavities_of(const Model& model) {
+    return CavityInputs::bind({}, model.cavities, model.bodies, model.nodes);
+}
+
+/// Present volume of a cavity; 0 if it is not defined [m^3].
+Real volume_of_cavity(const Model& model, std::size_t row) {
+    const bool known = model.cavities.closed[row] || model.cavities.law[row] != CavityLaw::pressure;
+    return known ? cavities_of(model).volume(row) : 0;
+}
+
+CavityFilling filling_of(const Model& model, std::size_t row, Real time) {
+    const CavityTable& table = model.cavities;
+    const bool gas = table.law[row] == CavityLaw::gas;
+    return {table.law[row], table.fluid[row], gas ? table.mass[row] : value_at(table.keys_of(row), time),
+            volume_of_cavity(model, row)};
+}
+
+void erase_cavity(Model& model, std::size_t row) {
+    std::vector<bool> gone(model.cavities.size(), false);
+    gone[row] = true;
+    erase_joining_rows(gone, model.cavities, model.cavity_map);
+    model.links_open = true;
+    note_forces(model);
+}
+
+}  // namespace
+
+CavityHandle Cavities::add(const CavitySettings& cavity) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("add");
+    Model& model = state.model;
+    const auto body = static_cast<std::size_t>(model.row(cavity.body, "add cavity"));
+    const std::string object = title_of_cavity(model, body);
+    const std::vector<Face> faces = chosen_faces(model, body, object, cavity.faces);
+    const auto edge = open_edge(faces);
+    const bool closed = edge.first == no_index;
+    const auto* const gas = std::get_if<GasFilling>(&cavity.filling);
+    const auto* const liquid = std::get_if<LiquidFilling>(&cavity.filling);
+    CavityFluid fluid;
+    if (gas) fluid = fluid_of(object, *gas);
+    if (liquid) fluid = fluid_of(object, *liquid);
+    if (!gas && !liquid) require_table(object, "pressure", std::get<TimeTable>(cavity.filling));
+    if (cavity.volume) {
+        require_above(object, "volume", *cavity.volume, 0, " (m^3)");
+        if (closed || (!gas && !liquid))
+            refuse(object, "volume", short_text(*cavity.volume),
+                   closed ? "no volume, because it follows from the faces"
+                          : "no volume, because only a gas or a liquid has one");
+    } else if (!closed && (gas || liquid)) {
+        refuse(object, "faces",
+               "an open edge between the nodes " + std::to_string(edge.first) + " and " + std::to_string(edge.second),
+               "faces that enclose a volume, or the volume at the start in `volume`");
+    }
+
+    CavityTable& table = model.cavities;
+    const std::size_t row = table.size();
+    AnyTable(table).resize(row + 1);
+    const CavityHandle handle = model.cavity_map.insert(static_cast<Index>(row));
+    table.slot[row] = handle.slot;
+    table.body[row] = static_cast<Index>(body);
+    table.law[row] = gas ? CavityLaw::gas : liquid ? CavityLaw::liquid : CavityLaw::pressure;
+    table.closed[row] = closed;
+    table.fluid[row] = fluid;
+    table.volume[row] = cavity.volume.value_or(0);
+    table.mass[row] = table.pressure_now[row] = table.volume_now[row] = 0;
+    table.keys[row] = {};
+    const auto begin = static_cast<Index>(table.face.size());
+    for (const Face& face : faces) {
+        table.face.push_back(face);
+        table.corners.push_back(Mat3::Zero());
+    }
+    table.faces[row] = {begin, static_cast<Index>(table.face.size())};
+    if (!closed && (gas || liquid))
+        for (auto f = static_cast<std::size_t>(begin); f < table.face.size(); ++f)
+            table.corners[f] = cavities_of(model).corners_now(row, f);
+    const Real volume = volume_of_cavity(model, row);
+    const TimeTable& keys = gas      ? gas->inflow
+                            : liquid ? liquid->volume.value_or(TimeTable(volume))
+                                     : std::get<TimeTable>(cavity.filling);
+    set_keys(table.keys, table.key, row, keys.keys);
+    if ((gas || liquid) && !(volume > 0)) {
+        erase_cavity(model, row);
+        refuse(object, "faces", "faces around " + short_text(volume) + " m^3 of hollow",
+               "faces whose outward normals, seen from the body, point into a hollow");
+    }
+    if (gas) table.mass[row] = mass_of_gas(fluid, gas->pressure, volume);
+    table.pressure_now[row] = filling_of(model, row, state.clock.time).pressure();
+    model.wake(body);
+    model.links_open = true;
+    note_forces(model);
+    return handle;
+}
+
+void Cavities::remove(CavityHandle cavity) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("remove");
+    Model& model = state.model;
+    const auto row = static_cast<std::size_t>(model.row(cavity, "remove"));
+    std::vector<bool> gone(model.pipes.size(), false);
+    for (std::size_t p = 0; p < gone.size(); ++p)
+        gone[p] = model.pipes.first[p] == cavity.slot || model.pipes.second[p] == cavity.slot;
+    erase_joining_rows(gone, model.pipes, model.pipe_map);
+    model.wake(static_cast<std::size_t>(model.cavities.body[row]));
+    erase_cavity(model, row);
+}
+
+bool Cavities::alive(CavityHandle cavity) const {
+    return WorldAccess::state_of(*world_).model.cavity_map.row(cavity) != no_index;
+}
+
+std::vector<CavityHandle> Cavities::all() const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    std::vector<CavityHandle> handles;
+    for (const std::uint32_t slot : model.cavities.slot) handles.push_back(model.cavity_map.handle_of_slot(slot));
+    return handles;
+}
+
+CavityState Cavities::state(CavityHandle cavity) const {
+    return cavity_state(WorldAccess::state_of(*world_), cavity);
+}
+
+CavityState cavity_state(const WorldState& world, CavityHandle cavity) {
+    const Model& model = world.model;
+    const CavityTable& table = model.cavities;
+    const auto row = static_cast<std::size_t>(model.row(cavity, "cavity"));
+    const CavityFilling filling = filling_of(model, row, world.clock.time);
+    CavityState now;
+    now.body = model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(table.body[row])]);
+    now.law = table.law[row];
+    now.faces = table.faces[row].size();
+    now.closed = table.closed[row] != 0;
+    now.pressure = filling.pressure();
+    now.volume = filling.volume;
+    now.mass = table.mass[row];
+    now.energy = filling.energy();
+    const CavityInputs cavities = cavities_of(model);
+    for (auto f = static_cast<std::size_t>(table.faces[row].begin); f < static_cast<std::size_t>(table.faces[row].end);
+         ++f)
+        now.force -= now.pressure * area_of(cavities.corners_now(row, f));
+    return now;
+}
+
+namespace {
+
+/// Replaces the keys of a row of a table. Returns false if they are equal to the present ones.
+template <class Table>
+bool replace_keys(Table& table, std::size_t row, const TimeTable& wanted) {
+    if (std::ranges::equal(table.keys_of(row), wanted.keys)) return false;
+    set_keys(table.keys, table.key, row, wanted.keys);
+    return true;
+}
+
+std::size_t row_with_law(const Model& model, CavityHandle cavity, CavityLaw law, const char* call) {
+    const auto row = static_cast<std::size_t>(model.row(cavity, call));
+    if (const CavityLaw found = model.cavities.law[row]; found != law)
+        refuse(title_of_cavity(model, static_cast<std::size_t>(model.cavities.body[row])), call,
+               "a cavity with the law " + std::string(name_of(found)),
+               "a cavity with the law " + std::string(name_of(law)));
+    return row;
+}
+
+void replace_keys_of_cavity(Model& model, std::size_t row, const TimeTable& wanted) {
+    if (!replace_keys(model.cavities, row, wanted)) return;
+    model.wake(static_cast<std::size_t>(model.cavities.body[row]));
+    note_forces(model);
+}
+
+void wake_ends(Model& model, std::size_t pipe) {
+    for (const Index body : {model.pipes.first_body[pipe], model.pipes.second_body[pipe]})
+        if (body != no_index) model.wake(static_cast<std::size_t>(body));
+}
+
+void require_conductance(Real conductance) {
+    if (!(std::isfinite(conductance) && conductance >= 0))
+        refuse("pipe", "conductance", short_text(conductance), "a number >= 0 (kg/(s Pa))");
+}
+
+/// Row of a cavity at the end of a pipe.
+std::size_t row_at_end(const Model& model, CavityHandle cavity, const char* field) {
+    const auto row = static_cast<std::size_t>(model.row(cavity, "add pipe"));
+    if (const CavityLaw law = model.cavities.law[row]; law != CavityLaw::gas)
+        refuse("pipe", field, "a cavity with the law " + std::string(name_of(law)), "a cavity with a gas");
+    return row;
+}
+
+}  // namespace
+
+void Cavities::set_pressure(CavityHandle cavity, const TimeTable& pressure) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("set_pressure");
+    const std::size_t row = row_with_law(state.model, cavity, CavityLaw::pressure, "set_pressure");
+    require_table("set_pressure", "pressure", pressure);
+    replace_keys_of_cavity(state.model, row, pressure);
+}
+
+void Cavities::set_inflow(CavityHandle cavity, const TimeTable& inflow) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("set_inflow");
+    const std::size_t row = row_with_law(state.model, cavity, CavityLaw::gas, "set_inflow");
+    require_table("set_inflow", "inflow", inflow);
+    replace_keys_of_cavity(state.model, row, inflow);
+}
+
+void Cavities::set_liquid_volume(CavityHandle cavity, const TimeTable& volume) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("set_liquid_volume");
+    const std::size_t row = row_with_law(state.model, cavity, CavityLaw::liquid, "set_liquid_volume");
+    require_keys("set_liquid_volume", "volume", volume, 0, " (m^3)");
+    replace_keys_of_cavity(state.model, row, volume);
+}
+
+PipeHandle Cavities::add(const PipeSettings& pipe) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("add");
+    Model& model = state.model;
+    const std::size_t first = row_at_end(model, pipe.first, "first");
+    const std::size_t second = pipe.second ? row_at_end(model, *pipe.second, "second") : first;
+    require_conductance(pipe.conductance);
+    require_table("pipe", "pressure", pipe.pressure);
+    if (pipe.second && first == second)
+        refuse("pipe", "second", "the first cavity", "another cavity, or none for a reservoir");
+    if (pipe.second && pipe.pressure != TimeTable())
+        refuse("pipe", "pressure", "a pressure of a reservoir", "no pressure for a pipe between two cavities");
+    if (model.cavities.fluid[first] != model.cavities.fluid[second])
+        refuse("pipe", "second", "a cavity whose gas has another exponent, density or ambient pressure",
+               "a cavity with the gas of the first cavity");
+    for (const TimeKey& key : pipe.pressure.keys)
+        require_above("pipe", "pressure", key.value, -model.cavities.fluid[first].ambient, " (Pa), which is vacuum");
+    PipeTable& table = model.pipes;
+    const std::size_t row = table.size();
+    AnyTable(table).resize(row + 1);
+    const PipeHandle handle = model.pipe_map.insert(static_cast<Index>(row));
+    table.slot[row] = handle.slot;
+    table.first[row] = pipe.first.slot;
+    table.second[row] = pipe.second.value_or(pipe.first).slot;
+    table.first_body[row] = model.cavities.body[first];
+    table.second_body[row] = pipe.second ? model.cavities.body[second] : no_index;
+    table.conductance[row] = pipe.conductance;
+    table.flow[row] = 0;
+    table.keys[row] = {};
+    if (!pipe.second) set_keys(table.keys, table.key, row, pipe.pressure.keys);
+    wake_ends(model, row);
+    model.links_open = true;
+    return handle;
+}
+
+void Cavities::remove(PipeHandle pipe) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("remove");
+    Model& model = state.model;
+    const auto row = static_cast<std::size_t>(model.row(pipe, "remove"));
+    wake_ends(model, row);
+    std::vector<bool> gone(model.pipes.size(), false);
+    gone[row] = true;
+    erase_joining_rows(gone, model.pipes, model.pipe_map);
+    model.links_open = true;
+}
+
+bool Cavities::alive(PipeHandle pipe) const {
+    return WorldAccess::state_of(*world_).model.pipe_map.row(pipe) != no_index;
+}
+
+std::vector<PipeHandle> Cavities::pipes() const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    std::vector<PipeHandle> handles;
+    for (const std::uint32_t slot : model.pipes.slot) handles.push_back(model.pipe_map.handle_of_slot(slot));
+    return handles;
+}
+
+PipeState Cavities::state(PipeHandle pipe) const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    const auto row = static_cast<std::size_t>(model.row(pipe, "pipe"));
+    PipeState now;
+    now.first = model.cavity_map.handle_of_slot(model.pipes.first[row]);
+    if (model.pipes.keys[row].size() == 0) now.second = model.cavity_map.handle_of_slot(model.pipes.second[row]);
+    now.conductance = model.pipes.conductance[row];
+    now.flow = model.pipes.flow[row];
+    return now;
+}
+
+void Cavities::set_conductance(PipeHandle pipe, Real conductance) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("set_conductance");
+    const auto row = static_cast<std::size_t>(state.model.row(pipe, "set_conductance"));
+    require_conductance(conductance);
+    if (state.model.pipes.conductance[row] == conductance) return;
+    state.model.pipes.conductance[row] = conductance;
+    wake_ends(state.model, row);
+}
+
+void Cavities::set_reservoir(PipeHandle pipe, const TimeTable& pressure) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("set_reservoir");
+    Model& model = state.model;
+    const auto row = static_cast<std::size_t>(model.row(pipe, "set_reservoir"));
+    if (model.pipes.keys[row].size() == 0)
+        refuse("pipe", "set_reservoir", "a pipe between two cavities", "a pipe with a reservoir");
+    require_table("set_reservoir", "pressure", pressure);
+    const auto first =
+        static_cast<std::size_t>(model.cavity_map.row(model.cavity_map.handle_of_slot(model.pipes.first[row])));
+    for (const TimeKey& key : pressure.keys)
+        require_above("set_reservoir", "pressure", key.value, -model.cavities.fluid[first].ambient,
+                      " (Pa), which is vacuum");
+    if (replace_keys(model.pipes, row, pressure)) wake_ends(model, row);
+}
+
+}  // namespace skerry

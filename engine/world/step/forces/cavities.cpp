@@ -1,0 +1,96 @@
+// Force element for pressure on faces and in cavities, and its contribution to the stable step
+// (docs/methods/cavities.md 3).
+#include "systems/forces/cavities.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <vector>
+
+#include "engine/world/step/seams.h"
+
+namespace skerry {
+
+namespace {
+
+bool any_cavity(const Model& model) {
+    return model.cavities.size() > 0;
+}
+
+void list_cavity_forces(WorldState& w, TaskGraph& g) {
+    CavityTable& c = w.model.cavities;
+    const StepParameters& p = w.scratch.parameters;
+    const auto if_any = only_if([](std::span<const CavityLaw> law) { return !law.empty(); }, read(c.law));
+    g.stage("forces/add_cavity_forces", add_cavity_forces, inputs<CavityInputs>(c, w.model.bodies, w.model.nodes),
+            value(w.clock.time), value(p.lag), value(p.kick), outputs<CavityOutputs>(c, w.model.nodes), if_any);
+}
+
+/// Bounds of the squared frequencies of the nodes of a body by the pressure of one cavity. `p`: pressure [Pa].
+/// `stiffness`: of the filling [Pa/m^3].
+Real rate_of_nodes(const Model& model, const CavityInputs& cavities, std::size_t c, Real p, Real stiffness,
+                   bool is_implicit) {
+    const Range nodes = model.bodies.nodes[static_cast<std::size_t>(cavities.body[c])];
+    static thread_local std::vector<Vec3> area;
+    static thread_local std::vector<Real> edges;
+    area.assign(static_cast<std::size_t>(nodes.size()), Vec3::Zero());
+    edges.assign(static_cast<std::size_t>(nodes.size()), 0);
+    for (auto f = static_cast<std::size_t>(cavities.faces[c].begin);
+         f < static_cast<std::size_t>(cavities.faces[c].end); ++f) {
+        const Mat3 x = cavities.corners_now(c, f);
+        const Vec3 third = area_of(x) / 3;
+        const Real longest =
+            std::max({(x.col(1) - x.col(0)).norm(), (x.col(2) - x.col(1)).norm(), (x.col(0) - x.col(2)).norm()});
+        for (const Index n : cavities.face[f]) {
+            area[static_cast<std::size_t>(n)] += third;
+            edges[static_cast<std::size_t>(n)] += longest;
+        }
+    }
+    Real of_filling = 0, of_turning = 0;
+    for (Index n = 0; n < nodes.size(); ++n) {
+        const Real inverse_mass = model.nodes.inverse_mass[nodes.begin + n];
+        of_filling += inverse_mass * area[static_cast<std::size_t>(n)].squaredNorm();
+        of_turning = std::max(of_turning, inverse_mass * edges[static_cast<std::size_t>(n)] / 2);
+    }
+    return stiffness * of_filling + (is_implicit ? 0 : p * of_turning);
+}
+
+/// Bound of the squared frequency of a rigid body by the filling of one cavity.
+Real rate_of_rigid(const Model& model, const CavityInputs& cavities, std::size_t c, Real stiffness) {
+    const auto body = static_cast<std::size_t>(cavities.body[c]);
+    if (model.is_held(body)) return 0;
+    const auto r = static_cast<std::size_t>(model.bodies.rigid[body].begin);
+    const RigidBodyTable& rigid = model.rigid_bodies;
+    Vec3 area = Vec3::Zero(), moment = Vec3::Zero();
+    for (auto f = static_cast<std::size_t>(cavities.faces[c].begin);
+         f < static_cast<std::size_t>(cavities.faces[c].end); ++f) {
+        const Mat3 x = cavities.corners_now(c, f);
+        area += area_of(x);
+        moment += (x.rowwise().mean() - rigid.center[r]).cross(area_of(x));
+    }
+    const Vec3 about_axes = rigid.rotation[r].transpose() * moment;
+    return stiffness *
+           (area.squaredNorm() / rigid.mass[r] + about_axes.cwiseAbs2().cwiseQuotient(rigid.moments[r]).sum());
+}
+
+void add_cavity_rate(const Model& model, std::span<Real> of_body) {
+    const CavityTable& table = model.cavities;
+    const CavityInputs cavities = CavityInputs::bind({}, table, model.bodies, model.nodes);
+    for (std::size_t c = 0; c < cavities.size(); ++c) {
+        const auto body = static_cast<std::size_t>(cavities.body[c]);
+        const CavityLaw law = cavities.law[c];
+        Real p = std::abs(table.pressure_now[c]);
+        if (law == CavityLaw::pressure)
+            for (const TimeKey& key : cavities.keys_of(c)) p = std::max(p, std::abs(key.value));
+        const Real stiffness =
+            law == CavityLaw::pressure ? 0 : filling_stiffness(law, cavities.fluid[c], p, cavities.volume(c));
+        const Real rate = model.is_rigid(body) ? rate_of_rigid(model, cavities, c, stiffness)
+                                               : rate_of_nodes(model, cavities, c, p, stiffness, model.has_frame(body));
+        of_body[body] += rate;
+    }
+}
+
+}  // namespace
+
+constinit const ForceElement cavity_pressures{
+    .any = any_cavity, .add_forces = list_cavity_forces, .add_rate = add_cavity_rate};
+
+}  // namespace skerry

@@ -1,0 +1,208 @@
+#include "systems/forces/cavities.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#include "jobs/parallel_for.h"
+#include "jobs/reduce.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t faces_per_part = 1024;
+
+/// Twice the area vector of a triangle [m^2].
+Vec3 cross_of_edges(const Mat3& x) {
+    return (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0));
+}
+
+}  // namespace
+
+Vec3 area_of(const Mat3& corners) {
+    return cross_of_edges(corners) / 2;
+}
+
+Mat3 CavityInputs::corners_now(std::size_t c, std::size_t f) const {
+    const Index first = body_nodes[static_cast<std::size_t>(body[c])].begin;
+    Mat3 x;
+    for (int k = 0; k < 3; ++k)
+        x.col(k) = position[static_cast<std::size_t>(first + face[f][static_cast<std::size_t>(k)])];
+    return x;
+}
+
+Real CavityInputs::volume_part(std::size_t c, std::size_t f) const {
+    const Mat3 x = corners_now(c, f);
+    if (closed[c]) {
+        const Index first = body_nodes[static_cast<std::size_t>(body[c])].begin;
+        const auto origin = static_cast<std::size_t>(first + face[static_cast<std::size_t>(faces[c].begin)].front());
+        return -(x.col(0) - position[origin]).dot(cross_of_edges(x)) / 6;
+    }
+    // The corners move along straight lines. The area vector is then quadratic in time, so Simpson's rule is exact.
+    const Mat3& before = corners[f];
+    const Vec3 area = (area_of(before) + 4 * area_of((before + x) / 2) + area_of(x)) / 6;
+    return -area.dot((x - before).rowwise().mean());
+}
+
+Real CavityInputs::volume(std::size_t c) const {
+    Real sum = closed[c] ? 0 : swept_volume[c];
+    for (auto f = static_cast<std::size_t>(faces[c].begin); f < static_cast<std::size_t>(faces[c].end); ++f)
+        sum += volume_part(c, f);
+    return sum;
+}
+
+Real filling_stiffness(CavityLaw law, const CavityFluid& fluid, Real pressure, Real volume) {
+    if (law == CavityLaw::pressure) return 0;
+    return (law == CavityLaw::gas ? fluid.exponent * (pressure + fluid.ambient) : fluid.bulk_modulus) / volume;
+}
+
+Real mass_of_gas(const CavityFluid& fluid, Real pressure, Real volume) {
+    return fluid.density * volume * std::pow((pressure + fluid.ambient) / fluid.ambient, 1 / fluid.exponent);
+}
+
+Real CavityFilling::pressure() const {
+    if (law == CavityLaw::pressure) return amount;
+    if (!(volume > 0)) return std::numeric_limits<Real>::quiet_NaN();
+    if (law == CavityLaw::gas) return fluid.ambient * (std::pow(amount / (fluid.density * volume), fluid.exponent) - 1);
+    // A liquid boils rather than take a tension that exceeds the ambient pressure.
+    return std::max(fluid.bulk_modulus * std::log(amount / volume), -fluid.ambient);
+}
+
+Real CavityFilling::pressure_per_mass() const {
+    const Real at_ambient = fluid.density * volume;
+    return fluid.exponent * fluid.ambient / at_ambient * std::pow(amount / at_ambient, fluid.exponent - 1);
+}
+
+Real CavityFilling::energy() const {
+    if (law == CavityLaw::pressure) return 0;
+    const Real p = pressure();
+    if (law == CavityLaw::gas) {
+        const Real free = amount / fluid.density;  // volume of the gas at ambient pressure [m^3]
+        if (free == 0) return fluid.ambient * volume;
+        const Real outer = fluid.ambient * (volume - free);
+        if (fluid.exponent == 1) return outer - fluid.ambient * free * std::log(volume / free);
+        return outer + ((p + fluid.ambient) * volume - fluid.ambient * free) / (fluid.exponent - 1);
+    }
+    // Volume above which the liquid boils [m^3].
+    const Real most = amount * std::exp(fluid.ambient / fluid.bulk_modulus), v = std::min(volume, most);
+    return fluid.bulk_modulus * (amount - v - v * std::log(amount / v)) + fluid.ambient * (volume - v);
+}
+
+bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real now, Real lag, Real kick,
+                       const CavityOutputs& out) {
+    Column<Vec3>& area = out.area;
+    if (area.size() != cavities.face.size()) area.resize(cavities.face.size());
+    for (std::size_t c = 0; c < cavities.size(); ++c) {
+        const auto begin = static_cast<std::size_t>(cavities.faces[c].begin);
+        const Real sum = reduce(
+            executor, static_cast<std::size_t>(cavities.faces[c].size()), faces_per_part, out.swept_parts, Real(0),
+            [&](std::size_t first, std::size_t last) {
+                Real part = 0;
+                for (std::size_t f = begin + first; f < begin + last; ++f) {
+                    area[f] = area_of(cavities.corners_now(c, f));
+                    part += cavities.volume_part(c, f);
+                }
+                return part;
+            },
+            [](Real a, Real b) { return a + b; });
+        out.volume_now[c] = cavities.closed[c] ? sum : cavities.swept_volume[c] + sum;
+        const CavityLaw law = cavities.law[c];
+        const Real amount = law == CavityLaw::pressure ? mean_value(cavities.keys_of(c), now - lag, kick)
+                            : law == CavityLaw::gas    ? cavities.mass[c]
+                                                       : value_at(cavities.keys_of(c), now);
+        out.pressure_now[c] = CavityFilling{law, cavities.fluid[c], amount, out.volume_now[c]}.pressure();
+        const Real third = -out.pressure_now[c] / 3;
+        const Index first = cavities.body_nodes[static_cast<std::size_t>(cavities.body[c])].begin;
+        for (auto f = begin; f < static_cast<std::size_t>(cavities.faces[c].end); ++f)
+            for (const Index n : cavities.face[f])
+                out.applied_force[static_cast<std::size_t>(first + n)] += third * area[f];
+    }
+    return cavities.size() > 0;
+}
+
+namespace {
+
+/// A gas in a cavity or in a reservoir, as it is at one end of a pipe.
+struct PipeEnd {
+    Real pressure;       // above ambient [Pa]
+    Real per_mass;       // increase of the pressure per increase of mass [Pa/kg]; 0 for a reservoir
+    std::size_t cavity;  // row of CavityTable
+    bool is_cavity;
+};
+
+std::size_t row_of_slot(const HandleMap<CavityHandle>& map, std::uint32_t slot) {
+    return static_cast<std::size_t>(map.row(map.handle_of_slot(slot)));
+}
+
+PipeEnd end_at(const CavityInputs& cavities, std::size_t c, std::span<const Real> mass, Real volume) {
+    const CavityFilling gas{CavityLaw::gas, cavities.fluid[c], mass[c], volume};
+    return {gas.pressure(), gas.pressure_per_mass(), c, true};
+}
+
+/// Mass that flows from the first to the second end in the time `h` [kg]. Exact if both pressures are linear in mass.
+Real flow_between(const PipeEnd& first, const PipeEnd& second, Real conductance, Real h) {
+    const Real decay = conductance * (first.per_mass + second.per_mass) * h;
+    const Real share = decay > 0 ? -std::expm1(-decay) / decay : Real(1);
+    return conductance * (first.pressure - second.pressure) * h * share;
+}
+
+}  // namespace
+
+bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
+                    std::span<const Real> volume_now, Real t, Real h, const CavityMemory& out) {
+    for (std::size_t c = 0; c < cavities.size(); ++c) {
+        if (cavities.law[c] == CavityLaw::gas)
+            out.mass[c] = std::max(out.mass[c] + h * mean_value(cavities.keys_of(c), t, h), Real(0));
+        if (cavities.closed[c] || cavities.law[c] == CavityLaw::pressure) continue;
+        out.volume[c] = cavities.volume(c);
+        for (auto f = static_cast<std::size_t>(cavities.faces[c].begin);
+             f < static_cast<std::size_t>(cavities.faces[c].end); ++f)
+            out.corners[f] = cavities.corners_now(c, f);
+    }
+    for (std::size_t p = 0; p < pipes.size(); ++p) {
+        const std::size_t a = row_of_slot(cavity_map, pipes.first[p]), b = row_of_slot(cavity_map, pipes.second[p]);
+        const bool to_reservoir = pipes.keys[p].size() > 0;
+        const PipeEnd first = end_at(cavities, a, out.mass, volume_now[a]),
+                      second = to_reservoir ? PipeEnd{mean_value(pipes.keys_of(p), t, h), 0, b, false}
+                                            : end_at(cavities, b, out.mass, volume_now[b]);
+        const Real moved = flow_between(first, second, pipes.conductance[p], h);
+        out.flow[p] = moved / h;
+        out.mass[a] -= moved;
+        if (!to_reservoir) out.mass[b] += moved;
+    }
+    return cavities.size() > 0;
+}
+
+bool mark_filled(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
+                 Real t, Real h, std::span<std::uint8_t> marked) {
+    // Below this share of the pressures, flow through a pipe does not keep bodies awake.
+    constexpr Real still_share = 1e-9;
+    bool any = false;
+    const auto mark = [&](Index body) {
+        any = true;
+        if (!marked.empty() && body != no_index) marked[static_cast<std::size_t>(body)] = 1;
+    };
+    for (std::size_t c = 0; c < cavities.size(); ++c) {
+        const std::span<const TimeKey> keys = cavities.keys_of(c);
+        if (changes(keys, t, h) || (cavities.law[c] == CavityLaw::gas && value_at(keys, t) != 0))
+            mark(cavities.body[c]);
+    }
+    for (std::size_t p = 0; p < pipes.size(); ++p) {
+        const std::size_t a = row_of_slot(cavity_map, pipes.first[p]), b = row_of_slot(cavity_map, pipes.second[p]);
+        const auto pressure = [&](std::size_t c) {
+            return end_at(cavities, c, cavities.mass, cavities.volume(c)).pressure;
+        };
+        const bool to_reservoir = pipes.keys[p].size() > 0;
+        const Real first = pressure(a), second = to_reservoir ? value_at(pipes.keys_of(p), t) : pressure(b);
+        const Real size = first + second + 2 * cavities.fluid[a].ambient;
+        if (!(pipes.conductance[p] > 0)) continue;
+        if (!(std::abs(first - second) > still_share * size) && !(to_reservoir && changes(pipes.keys_of(p), t, h)))
+            continue;
+        mark(pipes.first_body[p]);
+        mark(pipes.second_body[p]);
+    }
+    return any;
+}
+
+}  // namespace skerry

@@ -1,0 +1,156 @@
+// Force element: pressure on the faces of cavities, which may contain a gas or a liquid (docs/methods/cavities.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "components/body_table.h"
+#include "components/cavity_table.h"
+#include "components/column.h"
+#include "components/handle.h"
+#include "components/node_table.h"
+#include "components/types.h"
+#include "jobs/access.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+struct CavityInputs {
+    std::span<const CavityLaw> law;
+    std::span<const Index> body;
+    std::span<const std::uint8_t> closed;
+    std::span<const Range> faces;
+    std::span<const std::array<Index, 3>> face;
+    std::span<const Mat3> corners;
+    std::span<const Range> keys;
+    std::span<const TimeKey> key;
+    std::span<const CavityFluid> fluid;
+    std::span<const Real> mass;          // of the gas [kg]
+    std::span<const Real> swept_volume;  // CavityTable::volume [m^3]
+    std::span<const Range> body_nodes;   // BodyTable
+    std::span<const Vec3> position;      // by node [m]
+
+    static CavityInputs bind(const Binder& binder, const CavityTable& cavity, const BodyTable& body,
+                             const NodeTable& node) {
+        return {.law = binder.read(cavity.law),
+                .body = binder.read(cavity.body),
+                .closed = binder.read(cavity.closed),
+                .faces = binder.read(cavity.faces),
+                .face = binder.read(cavity.face),
+                .corners = binder.read(cavity.corners),
+                .keys = binder.read(cavity.keys),
+                .key = binder.read(cavity.key),
+                .fluid = binder.read(cavity.fluid),
+                .mass = binder.read(cavity.mass),
+                .swept_volume = binder.read(cavity.volume),
+                .body_nodes = binder.read(body.nodes),
+                .position = binder.read(node.position)};
+    }
+
+    std::size_t size() const { return law.size(); }
+    std::span<const TimeKey> keys_of(std::size_t c) const { return rows_of(key, keys[c]); }
+    /// Present positions of the corners of a face of cavity `c`, as columns [m].
+    Mat3 corners_now(std::size_t c, std::size_t f) const;
+    /// Contribution of a face of cavity `c` to its volume [m^3]. If the cavity is closed, it is the signed volume
+    /// between the face and the first corner of the first face. If the cavity is open, it is the volume that the face
+    /// has swept since the end of the last step.
+    Real volume_part(std::size_t c, std::size_t f) const;
+    /// Present volume of cavity `c` [m^3].
+    Real volume(std::size_t c) const;
+};
+
+/// Area vector of a triangle, which is its area times its normal [m^2]. `corners`: positions as columns [m].
+Vec3 area_of(const Mat3& corners);
+
+/// State of the filling of a cavity.
+struct CavityFilling {
+    CavityLaw law;
+    CavityFluid fluid;
+    // Mass of the gas [kg], volume of the liquid at ambient pressure [m^3] or prescribed pressure [Pa].
+    Real amount;
+    Real volume;  // [m^3]
+
+    /// Pressure above ambient pressure [Pa]; NaN if the volume of a gas or a liquid is not positive.
+    Real pressure() const;
+    /// Increase of the pressure per increase of the mass of the gas [Pa/kg].
+    Real pressure_per_mass() const;
+    /// Work of the filling on the faces if it expanded to ambient pressure [J]; 0 for a prescribed pressure.
+    Real energy() const;
+};
+
+/// Decrease of the pressure per increase of the volume of a filling, or more for a liquid that boils [Pa/m^3].
+/// `pressure`: above ambient [Pa].
+Real filling_stiffness(CavityLaw law, const CavityFluid& fluid, Real pressure, Real volume);
+/// Mass of a gas at a pressure above ambient [kg].
+Real mass_of_gas(const CavityFluid& fluid, Real pressure, Real volume);
+
+struct CavityOutputs {
+    Column<Vec3>& area;
+    Column<Real>& swept_parts;
+    std::span<Real> pressure_now, volume_now;
+    std::span<Vec3> applied_force;  // by node [N]
+
+    static CavityOutputs bind(const Binder& binder, CavityTable& cavity, NodeTable& node) {
+        return {.area = binder.make(cavity.area),
+                .swept_parts = binder.make(cavity.swept_parts),
+                .pressure_now = binder.write(cavity.pressure_now),
+                .volume_now = binder.write(cavity.volume_now),
+                .applied_force = binder.write(node.applied_force)};
+    }
+};
+
+/// Adds the forces of the pressure in all cavities to the applied forces of nodes. Each corner of a face receives a
+/// third of pressure times area, against the normal of the body. `now`: time of the positions [s]. A prescribed
+/// pressure is the mean over the time from `now - lag` to `now - lag + kick`, during which the forces act. The volume
+/// of a liquid is that at time `now`. Returns false if there is no cavity.
+bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real now, Real lag, Real kick,
+                       const CavityOutputs& out);
+
+struct PipeInputs {
+    std::span<const Index> first_body, second_body;
+    std::span<const std::uint32_t> first, second;
+    std::span<const Real> conductance;
+    std::span<const Range> keys;
+    std::span<const TimeKey> key;
+
+    static PipeInputs bind(const Binder& binder, const PipeTable& pipe) {
+        return {.first_body = binder.read(pipe.first_body),
+                .second_body = binder.read(pipe.second_body),
+                .first = binder.read(pipe.first),
+                .second = binder.read(pipe.second),
+                .conductance = binder.read(pipe.conductance),
+                .keys = binder.read(pipe.keys),
+                .key = binder.read(pipe.key)};
+    }
+
+    std::size_t size() const { return first.size(); }
+    std::span<const TimeKey> keys_of(std::size_t p) const { return rows_of(key, keys[p]); }
+};
+
+struct CavityMemory {
+    std::span<Real> mass, volume;
+    std::span<Mat3> corners;
+    std::span<Real> flow;  // PipeTable
+
+    static CavityMemory bind(const Binder& binder, CavityTable& cavity, PipeTable& pipe) {
+        return {.mass = binder.write(cavity.mass),
+                .volume = binder.write(cavity.volume),
+                .corners = binder.write(cavity.corners),
+                .flow = binder.write(pipe.flow)};
+    }
+};
+
+/// After a step of length `h` that began at time `t`: adds the flow of gas to the masses in cavities, lets gas flow
+/// through pipes one after the other, and adds the swept volumes to open cavities. `volume_now`: column of CavityTable.
+/// A cavity that contains no gas supplies none. Returns false if there is no cavity.
+bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
+                    std::span<const Real> volume_now, Real t, Real h, const CavityMemory& out);
+
+/// Marks the bodies of cavities whose prescribed values change from `t` to `t + h`, or into which gas flows. A pipe
+/// counts as flowing while the pressures at its ends differ by more than 1e-9 of their sum. `marked` may be empty.
+/// Returns false if there is no such body.
+bool mark_filled(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
+                 Real t, Real h, std::span<std::uint8_t> marked);
+
+}  // namespace skerry
