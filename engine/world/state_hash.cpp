@@ -167,6 +167,16 @@ void add_keys(Hash& hash, const Table& table) {
     }
 }
 
+/// Hashes the nodes and weights of all loads.
+void add_shares(Hash& hash, const LoadTable& loads) {
+    for (const std::size_t row : in_slot_order(loads.slot)) {
+        if (loads.nodes[row].size() == 0) continue;
+        hash.add(loads.slot[row]);
+        add_rows(hash, loads.nodes_of(row));
+        add_rows(hash, loads.weights_of(row));
+    }
+}
+
 void add_collider(Hash& hash, Model& model, std::size_t c) {
     ColliderTable& table = model.colliders;
     add_row_state(hash, table, c);
@@ -246,6 +256,7 @@ std::uint64_t state_hash(WorldState& world) {
         for (std::size_t row : in_slot_order(table.slot)) add_joining_row(hash, model, table, row);
         if constexpr (requires { table.keys_of(0); }) add_keys(hash, table);
     });
+    add_shares(hash, model.loads);
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
     const AnyTable warm_start(world.cache.warm_start);
     for (const ColumnInfo& info : warm_start.columns()) {

@@ -28,6 +28,12 @@ void hold_here(Model& model, std::size_t body, Real now);
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
 
+// control_dynamics.cpp
+
+/// Sets the strains of the springs of an explicit body as if the body had been held in its present shape for a long
+/// time, so that all viscous stress has relaxed.
+void relax_fully(Model& model, std::size_t body);
+
 // control_joints.cpp
 
 /// Returns the present pose and motion of a joint, and its force and moment in the last step.

@@ -135,6 +135,7 @@ void World::reset(const World& saved) {
     now.model.collider_map.differ_from(before.model.collider_map);
     now.model.attachment_map.differ_from(before.model.attachment_map);
     now.model.joint_map.differ_from(before.model.joint_map);
+    now.model.load_map.differ_from(before.model.load_map);
     std::swap(now.executor, before.executor);
     now.record.tracing = before.record.tracing;
     std::swap(now.record.problem_watch, before.record.problem_watch);

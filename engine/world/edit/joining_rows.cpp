@@ -19,6 +19,10 @@ void for_each_joined_body(AnyTable table, auto&& visit) {
     }
 }
 
+bool joins_bodies(AnyTable table) {
+    return std::ranges::count(table.columns(), ColumnRole::body, &ColumnInfo::role) > 1;
+}
+
 }  // namespace
 
 void erase_rows_joining(std::size_t body, Model& model) {
@@ -37,9 +41,19 @@ void erase_rows_joining(std::size_t body, Model& model) {
 bool has_rows_joining(std::size_t body, Model& model) {
     bool found = false;
     model.for_each_joining([&](const char*, auto& table, auto&) {
+        if (!joins_bodies(table)) return;
         for_each_joined_body(table, [&](std::size_t, Index joined) { found |= joined == static_cast<Index>(body); });
     });
     return found;
+}
+
+void hand_over_rows(std::size_t before, std::size_t after, Model& model) {
+    model.for_each_joining([&](const char*, auto& table, auto&) {
+        if (joins_bodies(table)) return;
+        for_each_joined_body(table, [&](std::size_t, Index& body) {
+            if (body == static_cast<Index>(before)) body = static_cast<Index>(after);
+        });
+    });
 }
 
 void renumber_joining_rows(std::span<const Index> body_now, Model& model) {

@@ -33,8 +33,13 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
 /// removed. Wakes all bodies of the removed rows.
 void erase_rows_joining(std::size_t body, Model& model);
 
-/// True if a row, such as a joint, joins the body to another body or to the world.
+/// True if a row of a table with several bodies in each row, such as a joint, joins the body to another body or to the
+/// world.
 bool has_rows_joining(std::size_t body, Model& model);
+
+/// Hands rows that act on one body only, such as loads, over from the body `before` to the body `after` with the same
+/// mesh.
+void hand_over_rows(std::size_t before, std::size_t after, Model& model);
 
 /// Renumbers the bodies in joining rows after other bodies were removed. `body_now`: new row of each body, by its old
 /// row in BodyTable.

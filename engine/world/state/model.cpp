@@ -65,6 +65,9 @@ Index Model::row(AttachmentHandle attachment, const char* call) const {
 Index Model::row(JointHandle joint, const char* call) const {
     return live_row(joint_map, joint, call, "joint");
 }
+Index Model::row(LoadHandle load, const char* call) const {
+    return live_row(load_map, load, call, "load");
+}
 
 ElementInputs Model::all_elements() const {
     return ElementInputs::bind({}, elements, element_nodes, materials);

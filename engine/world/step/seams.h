@@ -25,6 +25,9 @@ struct ForceElement {
     // of the body [1/s^2]. This bound limits the stable step. The pointer is null if the forces do not depend on
     // positions.
     void (*add_rate)(const Model&, std::span<Real> of_body) = nullptr;
+    // For each body, adds the rate c of forces -c m v that oppose the velocities v of its nodes of mass m [1/s]. The
+    // pointer is null if the forces do not depend on velocities.
+    void (*add_damping)(const Model&, std::span<Real> of_body) = nullptr;
 };
 
 /// A motion model: the rule by which the degrees of freedom of some bodies move in a step. Each member is a function
@@ -50,13 +53,13 @@ struct ConstraintLaw {
     ListStages remember = nullptr;  // stores the impulses for the next step, if the step can be committed
 };
 
-extern const ForceElement nodal_loads;
+extern const ForceElement nodal_loads, loads_and_fields;
 extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies;
 extern const ConstraintLaw contact_law, joint_law;
 
 /// All force elements. Nodal loads come first: their stage sets the total force on each node, to which the other force
 /// elements add.
-inline constexpr std::array<const ForceElement*, 1> force_elements{&nodal_loads};
+inline constexpr std::array<const ForceElement*, 2> force_elements{&nodal_loads, &loads_and_fields};
 /// All motion models. The order matters where two models write the same columns. Rigid bodies come first, because the
 /// frames of implicit bodies move like rigid bodies.
 inline constexpr std::array<const MotionModel*, 4> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,

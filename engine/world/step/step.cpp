@@ -15,6 +15,7 @@
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
+#include "systems/forces/add_loads.h"
 #include "systems/forces/add_nodal_loads.h"
 
 namespace skerry {
@@ -120,6 +121,8 @@ void separate(WorldState& w, TaskGraph& g) {
             make(w.scratch.pressed), if_any_asleep);
     g.stage("dynamics/mark_driven", mark_driven, inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep),
             value(w.clock.time), value(p.h), write(w.scratch.pressed), if_any_asleep);
+    g.stage("forces/mark_loaded", mark_loaded, inputs<LoadedBodies>(m.loads, m.bodies), value(w.clock.time), value(p.h),
+            write(w.scratch.pressed), if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
@@ -211,7 +214,8 @@ void put_to_rest(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/rest_bodies", w.scratch.findings.rest, rest_bodies,
                         inputs<TouchInputs>(w.scratch.contacts, m.links),
-                        inputs<RestInputs>(m.attachments, m.bodies, m.materials, n, r), value(p.sleep), value(p.h),
+                        inputs<RestInputs>(m.attachments, m.bodies, m.materials, n, r, w.scratch.driven),
+                        value(p.sleep), value(p.h),
                         make(w.scratch.sleep_memory), outputs<RestOutputs>(m.bodies, n, r, m.implicit_nodes),
                         if_taken(w), if_sleepy(w));
 }
