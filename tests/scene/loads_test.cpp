@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "skerry/load.h"
+#include "skerry/relax.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
@@ -43,13 +44,12 @@ std::vector<Index> nodes_where(const World& world, BodyHandle body, auto&& insid
     return list;
 }
 
-std::vector<Index> faces_where(const World& world, BodyHandle body, auto&& inside) {
-    std::vector<Index> list;
+std::vector<std::array<Index, 3>> faces_where(const World& world, BodyHandle body, auto&& inside) {
+    std::vector<std::array<Index, 3>> list;
     const auto nodes = world.positions(body);
-    const auto faces = world.surface(body);
-    for (std::size_t f = 0; f < faces.size(); ++f)
-        if (std::ranges::all_of(faces[f], [&](Index n) { return inside(nodes[static_cast<std::size_t>(n)]); }))
-            list.push_back(static_cast<Index>(f));
+    for (const std::array<Index, 3>& face : world.surface(body))
+        if (std::ranges::all_of(face, [&](Index n) { return inside(nodes[static_cast<std::size_t>(n)]); }))
+            list.push_back(face);
     return list;
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("a field of one body leaves other bodies alone", "[scene]") {
     loads.add(DragField{.body = other, .rate = 1, .wind = {0, 1, 0}});
     REQUIRE(flight.world.advance(0.5).ok());
     CHECK(flight.velocity().isApprox(Vec3(0, 0, 1), 1e-12));
-    CHECK(flight.world.velocity(other).velocity.z() == 0);
+    CHECK(std::abs(flight.world.velocity(other).velocity.z()) < 1e-15);
     CHECK(flight.world.velocity(other).velocity.y() > 0.3);
 }
 
@@ -196,12 +196,11 @@ TEST_CASE("a force on the tip bends a beam as the beam formula says", "[scene]")
                                      {.material = material, .dynamics = BodyDynamics::implicit_elastic});
     world.attach(beam, nodes_where(world, beam, [](const Vec3& x) { return x.x() < -0.4999; }));
     const auto tip = nodes_where(world, beam, [](const Vec3& x) { return x.x() > 0.4999; });
-    Loads(world).add(ForceLoad{beam, tip, {0, 0, -F}, TimeTable({{0, 0}, {0.5, 1}})});
-    REQUIRE(world.advance(3).ok());
+    Loads(world).add(ForceLoad{beam, tip, {0, 0, -F}});
+    REQUIRE(relax(world, {.tolerance = 1e-5}).converged);
     Real sunk = 0;
     for (const Index n : tip) sunk -= world.positions(beam)[static_cast<std::size_t>(n)].z() / static_cast<Real>(tip.size());
-    // Positions of the mesh are symmetric about z = 0.
-    CHECK(sunk == Approx(expected).epsilon(0.03));
+    CHECK(sunk == Approx(expected).epsilon(0.02));
 }
 
 TEST_CASE("loads are counted in the balance of energy", "[scene]") {
@@ -340,9 +339,11 @@ TEST_CASE("loads that cannot be are refused by name, and change nothing", "[scen
     CHECK_THAT(message([&] { loads.add(ForceLoad{flight.body, {}, {1, 0, 0}}); }),
                Contains("nodes") && Contains("an empty list"));
     CHECK_THAT(message([&] { loads.add(ForceLoad{flight.body, {1, 27}, {1, 0, 0}}); }),
-               Contains("27") && Contains("numbers from 0 to 26, as in body 'cube'"));
-    CHECK_THAT(message([&] { loads.add(ForceLoad{flight.body, {1, 1}, {1, 0, 0}}); }), Contains("1 twice"));
-    CHECK_THAT(message([&] { loads.add(TractionLoad{round, {0}, {1, 0, 0}}); }), Contains("a body with faces"));
+               Contains("cube") && Contains("node 27") && Contains("0 to 26"));
+    CHECK_THAT(message([&] { loads.add(ForceLoad{flight.body, {1, 1}, {1, 0, 0}}); }), Contains("node 1 twice"));
+    CHECK_THAT(message([&] { loads.add(TractionLoad{round, {{0, 1, 2}}, {1, 0, 0}}); }), Contains("which is a sphere"));
+    CHECK_THAT(message([&] { loads.add(TractionLoad{flight.body, {{0, 1, 26}}, {1, 0, 0}}); }),
+               Contains("nodes 0, 1 and 26") && Contains("surface of body 'cube'"));
     CHECK_THAT(message([&] { loads.add(DragField{.rate = 0}); }), Contains("rate") && Contains("> 0"));
     CHECK_THAT(message([&] { loads.add(AccelerationField{.acceleration = {NAN, 0, 0}}); }), Contains("acceleration"));
     CHECK_THAT(message([&] { loads.add(ForceLoad{flight.body, {1}, {1, 0, 0}, TimeTable({{1, 0}, {1, 2}})}); }),

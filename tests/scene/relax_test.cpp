@@ -50,25 +50,25 @@ TEST_CASE("a hanging bar stretches by rho g L^2 / (2 E)", "[scene]") {
     }
 }
 
-TEST_CASE("a ball comes to rest where the dynamic run ends, at a fraction of the steps", "[scene]") {
+TEST_CASE("a ball comes to rest where the dynamic run ends, in a tenth of the steps", "[scene]") {
     const auto make = [](Index threads) {
         Settings settings;
         settings.threads = threads;
         World world(settings);
-        const auto rubber = world.add_material({.young_modulus = 2e4});
+        // Without friction there is only one equilibrium.
+        const auto rubber = world.add_material({.young_modulus = 2e4, .friction = 0});
         world.add_collider(Plane{});
         world.add_body(mesh::ball(0.1, 6),
                        {.material = rubber, .position = {0, 0, 0.15}, .dynamics = BodyDynamics::explicit_elastic});
         return world;
     };
     World dynamic = make(1), relaxed = make(1), threads = make(3);
-    REQUIRE(dynamic.advance(6).ok());
+    REQUIRE(dynamic.advance(20).ok());  // until the vibration has decayed to 1e-5 of the deflection
     const RelaxReport report = relax(relaxed);
     REQUIRE(report.converged);
     const auto height = [](const World& world) { return world.center_of_mass(world.bodies()[0]).z(); };
-    CHECK(0.1 - height(relaxed) == Approx(0.1 - height(dynamic)).epsilon(0.01));
-    CHECK(static_cast<std::uint64_t>(report.steps) < dynamic.report().steps / 3);
-    UNSCOPED_INFO(report.steps << " steps instead of " << dynamic.report().steps);
+    CHECK(0.1 - height(relaxed) == Approx(0.1 - height(dynamic)).epsilon(1e-3));
+    CHECK(static_cast<std::uint64_t>(report.steps) < dynamic.report().steps / 10);
     REQUIRE(relax(threads).converged);
     CHECK(threads.state_hash() == relaxed.state_hash());
 }
@@ -118,14 +118,9 @@ TEST_CASE("values over time and motions stay at the present time", "[scene]") {
     CHECK(world.pose(held).position == place);
     CHECK(world.time() == 0.1);
     CHECK(loads.state(load).force.z() == Approx(-1));
-    Vec3 holding = Vec3::Zero();
-    world.measure_forces(true);
-    REQUIRE(world.advance(1e-9).ok());
-    CHECK(loads.state(load).scale == Approx(1).epsilon(1e-6));
     REQUIRE(world.advance(0.1).ok());
     CHECK(world.pose(held).position.x() == Approx(place.x() + 0.1).epsilon(1e-6));
     CHECK(loads.state(load).scale == Approx(5).epsilon(1e-6));
-    (void)holding;
 }
 
 TEST_CASE("a relaxation that fails or is refused leaves the world whole", "[scene]") {

@@ -1,6 +1,7 @@
 // Loads on nodes and faces, and force fields, with values that change over time (docs/methods/loads.md).
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -30,7 +31,8 @@ struct ForceLoad {
 /// faces in the rest shape (dead load). The nodes of a face share its force equally.
 struct TractionLoad {
     BodyHandle body{};
-    std::vector<Index> faces{};  // indices in World::surface(body), at least one, each at most once
+    // Faces as World::surface(body) lists them: numbers of nodes in any order; at least one face, each at most once.
+    std::vector<std::array<Index, 3>> faces{};
     Vec3 traction = Vec3::Zero();  // force per area, in world axes [Pa]
     TimeTable scale = 1;
 };

@@ -1,7 +1,9 @@
 // Functions that add, remove and change loads between steps (docs/methods/loads.md).
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -69,19 +71,37 @@ Index body_of_field(const Model& model, const std::optional<BodyHandle>& body) {
     return body ? model.row(*body, "add_load") : no_index;
 }
 
-/// Throws SceneError if the list is empty, or if a number in it is out of range or appears twice.
-void require_numbers(std::span<const Index> numbers, Index count, const char* field, const std::string& body) {
-    if (numbers.empty()) refuse("load", field, "an empty list", "at least one number");
-    std::vector<bool> listed(static_cast<std::size_t>(count), false);
-    for (const Index number : numbers) {
-        if (number < 0 || number >= count)
-            refuse("load", field, std::to_string(number),
-                   count == 0 ? "a body with faces; body '" + body + "' has none"
-                              : "numbers from 0 to " + std::to_string(count - 1) + ", as in body '" + body + "'");
-        if (listed[static_cast<std::size_t>(number)])
-            refuse("load", field, "the number " + std::to_string(number) + " twice", "each number at most once");
-        listed[static_cast<std::size_t>(number)] = true;
-    }
+/// Throws SceneError if the list is empty, or if a node is out of range or appears twice.
+void require_different_nodes(std::span<const Index> nodes, Index count, const std::string& body) {
+    if (nodes.empty()) refuse("load", "nodes", "an empty list", "at least one node");
+    require_nodes("load on body '" + body + "'", nodes, count);
+    std::set<Index> listed;
+    for (const Index node : nodes)
+        if (!listed.insert(node).second)
+            refuse("load", "nodes", "node " + std::to_string(node) + " twice", "each node at most once");
+}
+
+std::array<Index, 3> sorted(std::array<Index, 3> face) {
+    std::ranges::sort(face);
+    return face;
+}
+
+/// Throws SceneError if the list is empty, if a face is not on the surface of the body, or if it appears twice.
+void require_faces(std::span<const std::array<Index, 3>> faces, const Model& model, std::size_t body) {
+    const BodyRecord& record = model.body_records[body];
+    if (model.bodies.core_nodes[body] > 0)
+        refuse("load", "faces",
+               "faces of body '" + record.name + "', which is a " + std::string(model.round_name(body)),
+               "a body with a mesh");
+    if (faces.empty()) refuse("load", "faces", "an empty list", "at least one face");
+    std::set<std::array<Index, 3>> left;
+    for (const std::array<Index, 3>& face : record.surface) left.insert(sorted(face));
+    for (const std::array<Index, 3>& face : faces)
+        if (left.erase(sorted(face)) == 0)
+            refuse("load", "faces",
+                   "the face of the nodes " + std::to_string(face[0]) + ", " + std::to_string(face[1]) + " and " +
+                       std::to_string(face[2]),
+                   "faces of the surface of body '" + record.name + "', each at most once");
 }
 
 const std::string& name_of_row(const Model& model, Index body) {
@@ -123,7 +143,7 @@ LoadHandle Loads::add(const ForceLoad& load) {
     const Index body = model.row(load.body, "add_load");
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(body)];
     require_finite("load", "force", load.force);
-    require_numbers(load.nodes, nodes.size(), "nodes", name_of_row(model, body));
+    require_different_nodes(load.nodes, nodes.size(), name_of_row(model, body));
     LoadRow row{.kind = LoadKind::force, .body = body, .vector = load.force, .node = load.nodes};
     Real whole = 0;
     for (const Index node : load.nodes) whole += model.nodes.mass[nodes.begin + node];
@@ -136,19 +156,15 @@ LoadHandle Loads::add(const TractionLoad& load) {
     const Model& model = model_between_steps(*world_, "add_load");
     const Index body = model.row(load.body, "add_load");
     require_finite("load", "traction", load.traction);
-    const std::vector<std::array<Index, 3>>& surface = model.body_records[static_cast<std::size_t>(body)].surface;
-    const bool round = model.bodies.core_nodes[static_cast<std::size_t>(body)] > 0;
-    require_numbers(load.faces, round ? 0 : static_cast<Index>(surface.size()), "faces", name_of_row(model, body));
     const std::span<const Vec3> rest =
         rows_of(model.nodes.rest_position, model.bodies.nodes[static_cast<std::size_t>(body)]);
+    require_faces(load.faces, model, static_cast<std::size_t>(body));
     std::vector<Real> of_node(rest.size(), 0);  // area [m^2]
-    for (const Index face : load.faces) {
-        const auto& [a, b, c] = surface[static_cast<std::size_t>(face)];
-        const Real area = (rest[static_cast<std::size_t>(b)] - rest[static_cast<std::size_t>(a)])
-                              .cross(rest[static_cast<std::size_t>(c)] - rest[static_cast<std::size_t>(a)])
-                              .norm() /
-                          2;
-        for (const Index node : {a, b, c}) of_node[static_cast<std::size_t>(node)] += area / 3;
+    for (const auto& [a, b, c] : load.faces) {
+        const Vec3& first = rest[static_cast<std::size_t>(a)];
+        const Vec3 twice_area =
+            (rest[static_cast<std::size_t>(b)] - first).cross(rest[static_cast<std::size_t>(c)] - first);
+        for (const Index node : {a, b, c}) of_node[static_cast<std::size_t>(node)] += twice_area.norm() / 6;
     }
     LoadRow row{.kind = LoadKind::traction, .body = body, .vector = load.traction};
     for (std::size_t n = 0; n < of_node.size(); ++n) {

@@ -79,15 +79,30 @@ void set_for_relaxation(WorldState& world, bool sleep, Real tolerance) {
     world.scratch.parameters.kick = kick;  // the contacts of the last step are reported with this value
 }
 
+/// Gives the world after a relaxation the record of the run before it. Only the list of contacts is new.
+void keep_record(RunRecord& before, RunRecord& now) {
+    now.counters = before.counters;
+    now.self_crossings = std::move(before.self_crossings);
+    now.limits = before.limits;
+    now.held = before.held;
+    now.balance = before.balance;
+    now.balance.close();
+    now.tracing = before.tracing;
+    now.forces = before.forces;
+    std::swap(now.problem_watch, before.problem_watch);
+    std::swap(now.step_watch, before.step_watch);
+    now.contact_view_is_current = false;
+}
+
 void stop_body(Model& model, std::size_t body) {
-    std::ranges::fill(rows_of(model.nodes.velocity, model.bodies.nodes[body]), Vec3::Zero());
-    if (!model.has_frame(body)) {
+    if (model.has_frame(body)) {
+        std::ranges::fill(rows_of(model.implicit_nodes.velocity, model.bodies.implicit[body]), Vec3::Zero());
+        std::ranges::fill(rows_of(model.implicit_nodes.left, model.bodies.implicit[body]), Vec3::Zero());
+        stop_rigid_body(model, body);
+    } else {
         relax_fully(model, body);
-        return;
     }
-    stop_rigid_body(model, body);
-    std::ranges::fill(rows_of(model.implicit_nodes.velocity, model.bodies.implicit[body]), Vec3::Zero());
-    std::ranges::fill(rows_of(model.implicit_nodes.left, model.bodies.implicit[body]), Vec3::Zero());
+    std::ranges::fill(rows_of(model.nodes.velocity, model.bodies.nodes[body]), Vec3::Zero());
 }
 
 /// Forces and motion of a body in one step.
@@ -251,9 +266,7 @@ RelaxReport relax(World& world, const RelaxSettings& settings) {
     now.model.settings.threads = given.threads;
     now.clock = before.clock;
     std::swap(now.executor, before.executor);
-    std::swap(now.record, before.record);
-    now.record.balance.close();
-    now.record.contact_view_is_current = false;
+    keep_record(before.record, now.record);
     world = std::move(copy);
     return report;
 }
