@@ -1,6 +1,7 @@
 // Static equilibrium: where the bodies of a world come to rest under their loads (docs/methods/relax.md).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -40,7 +41,11 @@ struct RelaxReport {
 /// attachments do not move, and the report of the run does not count the steps. Viscous stress is fully relaxed at the
 /// end. If the residual stays above the tolerance, for example of a sliding body, or if a step cannot be completed, the
 /// world does not change. Throws the errors of World::settle_start(), and SceneError if a setting is out of range.
-RelaxReport relax(World& world, const RelaxSettings& settings = {});
+///
+/// Calls `go_on`, if given, with the report so far after each step; if it returns false, the relaxation ends and the
+/// world does not change.
+RelaxReport relax(World& world, const RelaxSettings& settings = {},
+                  const std::function<bool(const RelaxReport&)>& go_on = {});
 
 }  // namespace skerry
 #pragma GCC visibility pop

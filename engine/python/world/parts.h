@@ -3,6 +3,7 @@
 
 #include "engine/python/world_object.h"
 #include "skerry/joint.h"
+#include "skerry/load.h"
 #include "skerry/report.h"
 
 namespace skerry::python {
@@ -14,6 +15,7 @@ void bind_advance(WorldClass& type);
 void bind_state(WorldClass& type);
 void bind_control(WorldClass& type);
 void bind_joints(WorldClass& type);
+void bind_loads(WorldClass& type);
 void bind_views(WorldClass& type);
 void bind_results(WorldClass& type);
 void bind_problem_watch(WorldClass& type);

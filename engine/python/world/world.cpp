@@ -77,6 +77,7 @@ void bind_world(nb::module_& module) {
     bind_handle<ColliderHandle>(module, "ColliderHandle");
     bind_handle<AttachmentHandle>(module, "AttachmentHandle");
     bind_handle<JointHandle>(module, "JointHandle");
+    bind_handle<LoadHandle>(module, "LoadHandle");
     module.def("end_calls", &CallScope::end_calls);
     module.def("note_fork", [] {
         Use::note_fork();
@@ -89,6 +90,7 @@ void bind_world(nb::module_& module) {
     bind_state(type);
     bind_control(type);
     bind_joints(type);
+    bind_loads(type);
     bind_views(type);
     bind_results(type);
     bind_problem_watch(type);

@@ -13,6 +13,7 @@
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 #include "engine/world/world_state.h"
+#include "jobs/arithmetic_scope.h"
 #include "systems/dynamics/motion/move_colliders.h"
 
 namespace skerry {
@@ -127,7 +128,7 @@ public:
             if (moves(b)) stop_body(state_.model, b);
     }
 
-    RelaxReport run() {
+    RelaxReport run(const std::function<bool(const RelaxReport&)>& go_on) {
         RelaxReport report;
         int calm = 0;
         Real calm_time = 0;  // [s]
@@ -152,6 +153,7 @@ public:
                 report.converged = true;
                 break;
             }
+            if (go_on && !go_on(std::as_const(report))) break;
             damp();
         }
         for (std::size_t b = 0; b < bodies_.size(); ++b)
@@ -240,11 +242,13 @@ private:
 
 }  // namespace
 
-RelaxReport relax(World& world, const RelaxSettings& settings) {
+RelaxReport relax(World& world, const RelaxSettings& settings,
+                  const std::function<bool(const RelaxReport&)>& go_on) {
     if (!(settings.tolerance > 0 && settings.tolerance < 1))
         refuse("relax", "tolerance", short_text(settings.tolerance), "a number > 0 and < 1");
     if (settings.max_steps < 1) refuse("relax", "max_steps", std::to_string(settings.max_steps), "a number >= 1");
     WorldAccess::state_of(world).require_between_steps("relax");
+    const ArithmeticScope arithmetic;  // the decisions must not depend on the floating-point mode of the caller
     world.settle_start();
     World copy = world.clone();
     WorldState& before = WorldAccess::state_of(world);
@@ -256,7 +260,7 @@ RelaxReport relax(World& world, const RelaxSettings& settings) {
     hold_poses(now.model.attachments, before.clock.time);
     now.model.wake_all();
     note_changed_seams(now.model);
-    const RelaxReport report = Relaxation(copy, settings).run();
+    const RelaxReport report = Relaxation(copy, settings).run(go_on);
     if (!report.converged) return report;
     take_values(now.model, before.model);
     take_motion(now.model.colliders, before.model.colliders);

@@ -3,8 +3,10 @@
 from .body import Attachment, Body
 from .collider import Collider
 from .joint import Joint, JointState
+from .load import Load, LoadKind, LoadState
 from .material import MaterialHandle
 from .objects import Objects
+from .relax import RelaxReport
 from .reports import (
     DynamicsChoice,
     DynamicsEstimate,
@@ -28,8 +30,12 @@ __all__ = [
     "Energy",
     "Joint",
     "JointState",
+    "Load",
+    "LoadKind",
+    "LoadState",
     "MaterialHandle",
     "Objects",
+    "RelaxReport",
     "SelfCrossing",
     "StageReport",
     "StartMove",

@@ -31,6 +31,7 @@ from .body import Attachment, Body, Indices
 from .changes import MaterialChanges
 from .collider import Collider
 from .joint import Joint, joint_label
+from .load import Load
 from .material import MaterialHandle
 from .objects import Objects, PosedObject
 from .reports import StepReport
@@ -236,9 +237,9 @@ class Building:
         other = None if second is None else self._own(second, "second", Body)
         return self._joint(self._core.add_joint(one, other, given))
 
-    def remove(self, removed: PosedObject | Joint) -> None:
-        """Removes a body, a collider, an attachment or a joint. BufferError: arrays of views() are in use."""
-        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint)
+    def remove(self, removed: PosedObject | Joint | Load) -> None:
+        """Removes a body, a collider, an attachment, a joint or a load. BufferError: arrays of views() are in use."""
+        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint, Load)
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)
 
