@@ -1,4 +1,4 @@
-// Static equilibria by dynamic relaxation, against closed forms and dynamic runs (docs/methods/relax.md).
+// Static equilibria by dynamic relaxation, against closed forms and dynamic runs (docs/methods/loads.md 3).
 #include <catch2/catch.hpp>
 #include <cmath>
 

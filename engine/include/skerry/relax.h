@@ -1,4 +1,4 @@
-// Static equilibrium: where the bodies of a world come to rest under their loads (docs/methods/relax.md).
+// Static equilibrium: where the bodies of a world come to rest under their loads (docs/methods/loads.md 3).
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Static equilibrium by dynamic relaxation with kinetic damping (docs/methods/relax.md).
+// Static equilibrium by dynamic relaxation with kinetic damping (docs/methods/loads.md 3).
 #include "skerry/relax.h"
 
 #include <algorithm>

@@ -184,10 +184,7 @@ class World(Building, WorldLoads, WorldResults, WorldOutput):
         because a body slides, the world does not change.
 
         tolerance: largest out-of-balance force of a body, relative to the sum of the forces that act on it.
-        max_steps: largest number of steps. SceneError: a recorder is in its `with` block. BufferError: arrays of
-        views() are in use."""
-        for follower in self._followers:
-            follower.require_no_jump()
+        max_steps: largest number of steps. BufferError: arrays of views() are in use."""
         values = self._core.relax(real(tolerance, "tolerance"), whole(max_steps, "max_steps"))
         if values["worst"] is not None:
             values["worst"] = self._body(values["worst"])
