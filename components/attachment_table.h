@@ -11,6 +11,11 @@
 
 namespace skerry {
 
+/// True if an attachment holds its nodes along all directions. `held`: columns are orthonormal directions or zero.
+inline bool holds_completely(const Mat3& held) {
+    return held.isIdentity(0);
+}
+
 struct AttachmentTable {
     Column<std::uint32_t> slot;
     Column<Index> body;   // row of BodyTable
@@ -19,6 +24,9 @@ struct AttachmentTable {
     Column<RigidMotion> motion;
     Column<RigidMotion> initial;  // pose and motion of the attachment at the start of the script
     Column<MotionScript> script;
+    // Columns of the matrix: orthonormal directions along which the nodes are held. A zero column holds no direction.
+    // The identity matrix stands for nodes that are held completely; only such nodes have the inverse mass 0.
+    Column<Mat3> held;
     Column<Index> node;         // held nodes of all attachments: rows of NodeTable
     Column<Vec3> anchor;        // position of `node` in the frame of the attachment [m]
     Column<Keyframe> keyframe;  // keyframes of all attachments; each script refers to a range of these rows
@@ -30,6 +38,7 @@ struct AttachmentTable {
         visit("motion", motion, ColumnRole::memory);
         visit("initial", initial, ColumnRole::state);
         visit("script", script, ColumnRole::link);
+        visit("held", held, ColumnRole::state);
     }
     void for_each_column(auto&& visit) {
         for_each_row_column(visit);

@@ -88,6 +88,8 @@ MeshReport inspect(const Mesh& mesh) {
     const std::vector<BoundaryTriangle> triangles = boundary_triangles(mesh.tetrahedra);
     report.boundary_triangles = triangles.size();
     report.labels = mesh::count_labels(mesh);
+    for (const auto& [name, set] : mesh.sets)
+        report.sets[name] = {set.nodes.size(), set.faces.size(), set.tetrahedra.size()};
     report.boundary_fault = mesh::manifold_fault(triangles);
     report.closed_manifold = report.boundary_fault.empty();
     report.components = mesh::count_parts(mesh);

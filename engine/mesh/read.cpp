@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
+#include <span>
 #include <utility>
 
 #include "engine/mesh/formats/raw_mesh.h"
+#include "engine/mesh/sets.h"
 #include "engine/mesh/tetrahedron.h"
 #include "skerry/error.h"
 #include "skerry/mesh.h"
@@ -100,14 +103,44 @@ void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* n
                          " tetrahedra list their nodes in the opposite order (negative volume) and were turned");
 }
 
+/// Takes over the sets of a file. `used`: numbers in the file of the nodes of the mesh. Sets without a part in the mesh
+/// are dropped, with a note.
+void take_sets(const std::string& path, std::map<std::string, MeshSet>& raw, std::span<const Index> used,
+               std::size_t raw_nodes, Mesh& mesh, std::vector<std::string>* notes) {
+    std::vector<Index> place(raw_nodes, no_index);
+    for (std::size_t n = 0; n < used.size(); ++n) place[static_cast<std::size_t>(used[n])] = static_cast<Index>(n);
+    const auto renumber = [&](Index& n) { n = place[static_cast<std::size_t>(n)]; };
+    std::size_t dropped = 0;
+    for (auto& [name, set] : raw) {
+        std::ranges::for_each(set.nodes, renumber);
+        std::erase(set.nodes, no_index);
+        for (std::array<Index, 3>& face : set.faces) std::ranges::for_each(face, renumber);
+        dropped += std::erase_if(set.faces, [](const auto& face) { return std::ranges::count(face, no_index) > 0; });
+    }
+    mesh.sets = std::move(raw);
+    dropped += match_faces(mesh.tetrahedra, mesh.sets);
+    if (dropped > 0 && notes)
+        notes->push_back(path + ": " + std::to_string(dropped) +
+                         " triangles are not faces of a tetrahedron and were dropped from the sets of faces");
+    for (auto& [name, set] : mesh.sets) {
+        tidy(set);
+        if (set.empty() && notes)
+            notes->push_back(path + ": the set " + in_quotes(name) +
+                             " contains no node of a tetrahedron and was dropped");
+    }
+    std::erase_if(mesh.sets, [](const auto& item) { return item.second.empty(); });
+}
+
 Mesh take_tetrahedra(const std::string& path, RawMesh& raw, std::vector<std::string>* notes) {
     Mesh mesh;
+    const std::size_t raw_nodes = raw.nodes.size();
     UsedNodes used = drop_unused(raw.nodes, raw.tetrahedra);
     mesh.nodes = std::move(used.nodes);
-    if (mesh.nodes.size() < raw.nodes.size()) mesh.file_number = std::move(used.number);
     mesh.tetrahedra = std::move(raw.tetrahedra);
     mesh.label = std::move(raw.label);
     turn_valid(path, mesh, notes);
+    if (!raw.sets.empty()) take_sets(path, raw.sets, used.number, raw_nodes, mesh, notes);
+    if (mesh.nodes.size() < raw_nodes) mesh.file_number = std::move(used.number);
     return mesh;
 }
 

@@ -124,6 +124,7 @@ int report_mesh(const InspectOptions& options, const Mesh& mesh, const std::vect
         print_bound(bound, "                ");
     }
     if (!report.labels.empty()) std::cout << "  labels        " << labels_text(report) << "\n";
+    for (const auto& [name, count] : report.sets) std::cout << "  set           " << set_text(name, count) << "\n";
     print_notes(notes);
     print_problems(problems);
     return exit_ok;

@@ -88,6 +88,8 @@ void print_table(const RepairedMesh& repaired, const RepairTask& task) {
     if (repaired.parted > 0)
         std::printf("  %s split, because tetrahedra were connected there without a common face\n",
                     (grouped(repaired.parted) + (repaired.parted == 1 ? " node" : " nodes")).c_str());
+    if (!a.mesh.sets.empty() && b.mesh.sets.empty())
+        std::printf("  the new mesh has none of the sets of the mesh, because its nodes have other numbers\n");
     if (!repaired.kept.empty()) std::printf("  the tetrahedra are unchanged: %s\n", repaired.kept.c_str());
     if (repaired.collapsed + repaired.flipped == 0) {
         std::printf("  the surface is unchanged\n");

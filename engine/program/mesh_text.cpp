@@ -1,5 +1,7 @@
 #include "engine/program/mesh_text.h"
 
+#include <array>
+
 #include "engine/program/number_text.h"
 #include "engine/program/start_text.h"
 
@@ -26,6 +28,9 @@ Problems problems_of(const MeshReport& r) {
 Json mesh_json(const MeshReport& r) {
     Json labels = Json::object();
     for (const auto& [label, tetrahedra] : r.labels) labels[std::to_string(label)] = tetrahedra;
+    Json sets = Json::object();
+    for (const auto& [name, count] : r.sets)
+        sets[name] = {{"nodes", count[0]}, {"faces", count[1]}, {"tetrahedra", count[2]}};
     return {{"nodes", r.nodes},
             {"tetrahedra", r.tetrahedra},
             {"boundary_triangles", r.boundary_triangles},
@@ -40,7 +45,8 @@ Json mesh_json(const MeshReport& r) {
             {"flat", r.flat},
             {"slivers", r.slivers},
             {"closed_manifold", r.closed_manifold},
-            {"labels", labels}};
+            {"labels", labels},
+            {"sets", sets}};
 }
 
 std::string labels_text(const MeshReport& report) {
@@ -53,6 +59,16 @@ std::string labels_text(const MeshReport& report) {
             (listed++ > 0 ? ", label " : "label ") + std::to_string(label) + ": " + grouped(tetrahedra) + " tetrahedra";
     }
     return text;
+}
+
+std::string set_text(const std::string& name, const std::array<std::size_t, 3>& count) {
+    constexpr std::array<const char*, 3> one{"node", "face", "tetrahedron"}, more{"nodes", "faces", "tetrahedra"};
+    std::string text;
+    for (std::size_t kind = 0; kind < 3; ++kind)
+        if (count[kind] > 0)
+            text +=
+                (text.empty() ? "" : ", ") + grouped(count[kind]) + " " + (count[kind] == 1 ? one[kind] : more[kind]);
+    return in_quotes(name) + ": " + text;
 }
 
 std::string mesh_of_body_text(const ScenePlan& plan, std::size_t body) {

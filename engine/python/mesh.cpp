@@ -4,7 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "engine/python/bind.h"
+#include "engine/mesh/sets.h"
+#include "engine/python/mesh_sets.h"
 
 namespace skerry::python {
 
@@ -14,20 +15,27 @@ using Notes = std::vector<std::string>;
 
 /// A mesh with exactly these arrays.
 Mesh same_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels,
-               const std::optional<Indices>& file_number) {
+               const std::optional<Indices>& file_number, const nb::dict& sets) {
     const auto points = span_of(nodes);
     const auto rows = span_of(tetrahedra);
     Mesh mesh{.nodes{points.begin(), points.end()}, .tetrahedra{rows.begin(), rows.end()}};
     if (labels) mesh.label.assign(span_of(*labels).begin(), span_of(*labels).end());
     if (file_number) mesh.file_number.assign(span_of(*file_number).begin(), span_of(*file_number).end());
+    mesh.sets = sets_of(sets);
     return mesh;
 }
 
-/// A mesh whose inverted tetrahedra are turned, and notes about this.
-nb::tuple new_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels) {
-    Mesh mesh = same_mesh(nodes, tetrahedra, labels, {});
+/// A mesh whose inverted tetrahedra are turned, and notes about this. Faces of sets get the orientation of the surface.
+nb::tuple new_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels,
+                   const nb::dict& sets) {
+    Mesh mesh = same_mesh(nodes, tetrahedra, labels, {}, sets);
     Notes notes;
     mesh::turn_inverted(mesh, "mesh", &notes);
+    for (auto& [name, set] : mesh.sets) {
+        mesh::require_set("mesh", name, set, mesh.nodes.size(), mesh.tetrahedra);
+        mesh::tidy(set);
+    }
+    mesh::match_faces(mesh.tetrahedra, mesh.sets);
     return nb::make_tuple(std::move(mesh), notes);
 }
 
@@ -87,6 +95,9 @@ nb::dict inspect_mesh(const Mesh& mesh) {
     nb::dict labels;
     for (const auto& [label, count] : report.labels) labels[nb::cast(label)] = count;
     values["labels"] = labels;
+    nb::dict sets;
+    for (const auto& [name, count] : report.sets) sets[nb::cast(name)] = nb::make_tuple(count[0], count[1], count[2]);
+    values["sets"] = sets;
     return values;
 }
 
@@ -104,12 +115,18 @@ void bind_mesh(nb::module_& module) {
                  if (mesh.label.empty()) return nb::none();
                  return nb::cast(array_of<Index>(std::span<const int>(mesh.label)));
              })
-        .def("file_number", [](const Mesh& mesh) -> nb::object {
-            if (mesh.file_number.empty()) return nb::none();
-            return nb::cast(array_of<Index>(std::span<const Index>(mesh.file_number)));
+        .def("file_number",
+             [](const Mesh& mesh) -> nb::object {
+                 if (mesh.file_number.empty()) return nb::none();
+                 return nb::cast(array_of<Index>(std::span<const Index>(mesh.file_number)));
+             })
+        .def("sets", [](const Mesh& mesh) {
+            nb::dict sets;
+            for (const auto& [name, set] : mesh.sets) sets[nb::cast(name)] = arrays_of(set);
+            return sets;
         });
-    module.def("new_mesh", &new_mesh, nb::arg(), nb::arg(), nb::arg().none());
-    module.def("same_mesh", &same_mesh, nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none());
+    module.def("new_mesh", &new_mesh, nb::arg(), nb::arg(), nb::arg().none(), nb::arg());
+    module.def("same_mesh", &same_mesh, nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg());
     module.def("read_mesh", &read);
     module.def("read_surface", &read_surface);
     module.def("box", [](const Vec3& size, const std::array<int, 3>& cells) { return mesh::box(size, cells); });

@@ -64,7 +64,10 @@ namespace {
 BodyHandle add_mesh_body(const ScenePlan& plan, const BodyPlan& body, const BodySettings& settings, World& world) {
     const Mesh& mesh = plan.meshes[body.mesh];
     try {
-        return world.add_body(mesh, settings);
+        if (body.sets.empty()) return world.add_body(mesh, settings);
+        Mesh with_sets = mesh;
+        with_sets.sets.insert(body.sets.begin(), body.sets.end());
+        return world.add_body(with_sets, settings);
     } catch (const SceneError&) {
         if (const std::filesystem::path& file = plan.mesh_files[body.mesh]; !file.empty())
             mesh::require_positive(mesh, file.string());
@@ -99,6 +102,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         BodySettings settings = body.settings;
         settings.material = materials[body.material];
         for (const auto& [label, row] : body.materials) settings.materials.emplace(label, materials[row]);
+        for (const auto& [set, row] : body.set_materials) settings.materials_of_sets.emplace(set, materials[row]);
         bodies.push_back(called_at(body.place, [&] {
             if (body.shape.sphere) return world.add_body(*body.shape.sphere, settings);
             if (body.shape.capsule) return world.add_body(*body.shape.capsule, settings);
@@ -108,8 +112,9 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         if (added) added(bodies.size());
         pins.emplace_back();
         for (const PinPlan& pin : body.pins)
-            pins.back().push_back(
-                called_at(pin.place, [&] { return world.attach(bodies.back(), pin.nodes, pin.motion, pin.pivot); }));
+            pins.back().push_back(called_at(pin.place, [&] {
+                return world.attach(bodies.back(), pin.nodes, pin.motion, pin.pivot, pin.directions);
+            }));
     }
     for (const ColliderPlan& collider : plan.colliders)
         colliders.push_back(
@@ -121,6 +126,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         if (joint.second) settings.second = bodies[*joint.second];
         joints.push_back(called_at(joint.place, [&] { return Joints(world).add(settings); }));
     }
+    for (const LoadPlan& load : plan.loads) called_at(load.place, [&] { return add_planned(load, bodies, world); });
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     for (const SeriesPlan& series : plan.series)

@@ -3,29 +3,9 @@
 #include <algorithm>
 #include <cctype>
 
-#include "engine/world/complaint.h"
-
 namespace skerry {
 
 namespace {
-
-/// Optimal string alignment distance: Levenshtein distance in which two swapped letters count as one change.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::vector<std::size_t>> cost(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-    for (std::size_t i = 0; i <= a.size(); ++i) cost[i][0] = i;
-    for (std::size_t j = 0; j <= b.size(); ++j) cost[0][j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i)
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const auto same = [](char x, char y) {
-                return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
-            };
-            cost[i][j] = std::min(
-                {cost[i - 1][j] + 1, cost[i][j - 1] + 1, cost[i - 1][j - 1] + (same(a[i - 1], b[j - 1]) ? 0u : 1u)});
-            if (i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]))
-                cost[i][j] = std::min(cost[i][j], cost[i - 2][j - 2] + 1);
-        }
-    return cost[a.size()][b.size()];
-}
 
 bool is_plain_name(std::string_view name) {
     return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
@@ -86,23 +66,6 @@ std::string described(const Json& value) {
     if (value.is_string()) return "the text " + shown;
     if (value.is_number()) return "the number " + shown;
     return shown;
-}
-
-std::string nearest_name(std::string_view text, std::span<const std::string> names) {
-    const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
-        return edit_distance(text, a) < edit_distance(text, b);
-    });
-    return nearest == names.end() ? std::string() : *nearest;
-}
-
-std::string nearest_hint(std::string_view text, std::span<const std::string> names) {
-    const std::string nearest = nearest_name(text, names);
-    // A name is suggested if at most one in this number of letters differs. With more differences the text is probably
-    // another word, not a typing mistake.
-    constexpr std::size_t letters_per_slip = 3;
-    const std::size_t most = std::max<std::size_t>(1, std::max(text.size(), nearest.size()) / letters_per_slip);
-    return nearest.empty() || edit_distance(text, nearest) > most ? std::string()
-                                                                  : "did you mean " + in_quotes(nearest) + "?";
 }
 
 }  // namespace skerry

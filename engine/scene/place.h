@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/world/complaint.h"
 #include "skerry/error.h"
 
 namespace skerry {
@@ -61,10 +62,5 @@ std::string in_quotes(std::string_view text);
 std::string listed(std::span<const std::string> names);
 /// Describes a JSON value for error messages: the text "x", the number 3, a list of 2 values, ...
 std::string described(const Json& value);
-/// Returns the name closest to `text`: the one with the fewest changed, missing, added or swapped letters. Empty if
-/// there are no names.
-std::string nearest_name(std::string_view text, std::span<const std::string> names);
-/// Returns a hint that contains the nearest name. Empty if more than a third of the letters differ.
-std::string nearest_hint(std::string_view text, std::span<const std::string> names);
 
 }  // namespace skerry

@@ -7,22 +7,6 @@ namespace skerry {
 
 namespace {
 
-const char* const own_frame = "coordinates are those of the mesh, before rotation and position of the body are applied";
-
-}  // namespace
-
-std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Place& place) {
-    std::vector<Index> inside;
-    for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
-        if ((mesh.nodes[i].array() >= box.lower.array()).all() && (mesh.nodes[i].array() <= box.upper.array()).all())
-            inside.push_back(static_cast<Index>(i));
-    if (inside.empty())
-        place.key("box").refuse("a box that contains no node of the mesh", "a box around at least one node", own_frame);
-    return inside;
-}
-
-namespace {
-
 constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 
 /// Returns the index of a name in a list of plans, or `nowhere`.
@@ -79,6 +63,10 @@ void find_partner(const ProbeEntry& entry, const ScenePlan& plan, SeriesPlan& se
                  nearest_hint(*entry.by, names));
 }
 
+PartEntry part_of(const ProbeEntry& entry) {
+    return {.set = entry.set, .box = entry.box, .nodes = {}, .place = entry.place};
+}
+
 MaterialPoint find_point(const ProbeEntry& entry, const Mesh& mesh) {
     Vec3 lower = mesh.nodes.front(), upper = lower;
     for (const Vec3& node : mesh.nodes) {
@@ -108,7 +96,7 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
     if (series.body) {
         const BodyPlan& body = plan.bodies[*series.body];
         const Mesh& mesh = plan.meshes[body.mesh];
-        if (entry.box) series.nodes = nodes_inside(mesh, *entry.box, entry.place);
+        if (entry.box || entry.set) series.nodes = nodes_of(part_of(entry), body, plan);
         if (entry.point) series.point = find_point(entry, mesh);
         if (entry.quantity == ProbeQuantity::reaction) {
             series.pin = static_cast<std::size_t>(entry.pin.value_or(0));
@@ -131,9 +119,10 @@ void plan_probe(const ProbeEntry& entry, ScenePlan& plan) {
         entry.place.key("name").refuse(in_quotes(entry.name) + ", which is already the name of a probe",
                                        "a different name for every probe");
     if (entry.quantity != ProbeQuantity::contacts) return plan_series(entry, plan);
+    if (!entry.box && !entry.set)
+        entry.place.refuse("neither \"box\" nor \"set\"", "the part of the body whose contacts are recorded");
     const std::size_t body = find_body(plan, *entry.body, entry.place.key("body"));
-    plan.probes.push_back(
-        {entry.name, body, nodes_inside(plan.meshes[plan.bodies[body].mesh], *entry.box, entry.place)});
+    plan.probes.push_back({entry.name, body, nodes_of(part_of(entry), plan.bodies[body], plan)});
 }
 
 }  // namespace skerry

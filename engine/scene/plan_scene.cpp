@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -60,38 +61,22 @@ Motion make_motion(const MotionEntry& entry) {
     return motion;
 }
 
-/// Returns the index in mesh.nodes of a node that the scene names by its number in the mesh file.
-Index node_of_file(const Mesh& mesh, int number, const Place& place) {
-    if (mesh.file_number.empty()) {
-        if (static_cast<std::size_t>(number) >= mesh.nodes.size())
-            place.refuse("node " + std::to_string(number), "a node number below " + std::to_string(mesh.nodes.size()));
-        return number;
-    }
-    const auto found = std::ranges::lower_bound(mesh.file_number, number);
-    if (found == mesh.file_number.end() || *found != number)
-        place.refuse("node " + std::to_string(number) + ", which no tetrahedron of the mesh file uses",
-                     "the number of a node of a tetrahedron, from " + std::to_string(mesh.file_number.front()) +
-                         " to " + std::to_string(mesh.file_number.back()),
-                     "count all nodes of the file from 0, in their order in the file");
-    return static_cast<Index>(found - mesh.file_number.begin());
+/// Directions along which a pin holds its nodes; empty: all directions.
+std::vector<Vec3> held_directions(const PinEntry& entry) {
+    if (entry.direction) return {*entry.direction};
+    std::vector<Vec3> directions;
+    if (!entry.axes) return directions;
+    for (const WorldAxis axis : *entry.axes) directions.push_back(Vec3::Unit(static_cast<Index>(axis)));
+    if (directions.empty()) entry.place.key("axes").refuse("an empty list", "at least one of \"x\", \"y\", \"z\"");
+    return directions;
 }
 
-PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh) {
-    PinPlan pin{.nodes = {}, .motion = make_motion(entry.motion), .pivot = entry.pivot, .place = entry.place};
-    if (entry.box) {
-        pin.nodes = nodes_inside(mesh, *entry.box, entry.place);
-        return pin;
-    }
-    if (entry.nodes.empty()) entry.place.key("nodes").refuse("an empty list", "at least one node number");
-    for (std::size_t i = 0; i < entry.nodes.size(); ++i) {
-        const Place place = entry.place.key("nodes").item(i);
-        const Index node = node_of_file(mesh, entry.nodes[i], place);
-        if (std::find(pin.nodes.begin(), pin.nodes.end(), node) != pin.nodes.end())
-            place.refuse("node " + std::to_string(entry.nodes[i]) + " for the second time", "every node at most once",
-                         "delete the repeated number");
-        pin.nodes.push_back(node);
-    }
-    return pin;
+PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh, const std::map<std::string, MeshSet>& sets) {
+    return {.nodes = nodes_of(entry, mesh, sets),
+            .motion = make_motion(entry.motion),
+            .pivot = entry.pivot,
+            .directions = held_directions(entry),
+            .place = entry.place};
 }
 
 /// Returns the positions of all copies of a body.
@@ -124,21 +109,26 @@ std::size_t find_material(const ScenePlan& plan, const std::string& wanted, cons
     return static_cast<std::size_t>(found - names.begin());
 }
 
-std::vector<std::pair<int, std::size_t>> find_materials_by_label(const ScenePlan& plan, const BodyEntry& entry,
-                                                                 const Mesh& mesh) {
-    std::vector<std::pair<int, std::size_t>> found;
+/// Writes the materials of labels and sets to a planned body. A whole number is a label, any other key is a set.
+void plan_materials(const BodyEntry& entry, const Mesh& mesh, const ScenePlan& plan, BodyPlan& body) {
     const std::map<int, std::size_t> labels = mesh::count_labels(mesh);
-    for (const auto& [label, name] : entry.materials.items) {
-        const Place place = entry.place.key("materials").key(std::to_string(label));
+    for (const auto& [key, name] : entry.materials.items) {
+        const Place place = entry.place.key("materials").key(key);
+        int label = 0;
+        const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), label);
+        if (error != std::errc{} || end != key.data() + key.size() || std::to_string(label) != key) {
+            if (!mesh.sets.contains(key) && !body.sets.contains(key))
+                place.refuse("the key " + in_quotes(key),
+                             mesh::expected_label(mesh) + ", or " + expected_set(mesh, body.sets));
+            body.set_materials.emplace_back(key, find_material(plan, name, place));
+            continue;
+        }
         if (!labels.contains(label))
             place.refuse(
-                "label " + std::to_string(label), mesh::expected_label(mesh),
-                labels.empty()
-                    ? "use a mesh file with labels, or delete the key \"materials\" of the body (scenes/README.md)"
-                    : "");
-        found.emplace_back(label, find_material(plan, name, place));
+                "label " + key, mesh::expected_label(mesh),
+                labels.empty() ? "use a mesh file with labels, or name a set of tetrahedra (scenes/README.md)" : "");
+        body.materials.emplace_back(label, find_material(plan, name, place));
     }
-    return found;
 }
 
 /// Names and mesh files of the bodies that have been planned so far.
@@ -165,15 +155,18 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
     const std::size_t material = find_material(plan, entry.material, entry.place.key("material"));
     const std::size_t of_plan = plan_mesh(entry, so_far, plan);
     const Mesh& mesh = plan.meshes[of_plan];
-    const std::vector<std::pair<int, std::size_t>> materials = find_materials_by_label(plan, entry, mesh);
-    std::vector<PinPlan> pins;
-    for (const PinEntry& pin : entry.pin.items) pins.push_back(plan_pin(pin, mesh));
+    if (entry.shape && !entry.sets.items.empty())
+        entry.place.key("sets").refuse("sets of a body without a mesh", "a body with \"mesh\"");
+    BodyPlan planned;
+    planned.sets = plan_sets(entry.sets, mesh, entry.place.key("sets"));
+    plan_materials(entry, mesh, plan, planned);
+    for (const PinEntry& pin : entry.pin.items) planned.pins.push_back(plan_pin(pin, mesh, planned.sets));
 
     const std::string name = entry.name.empty() ? "body_" + std::to_string(number) : entry.name;
     const bool copies = entry.repeat || !entry.positions.empty();
     const std::vector<Vec3> positions = positions_of(entry);
     for (std::size_t copy = 0; copy < positions.size(); ++copy) {
-        BodyPlan body;
+        BodyPlan body = planned;
         body.settings.position = positions[copy];
         body.settings.rotation = entry.rotation.value;
         body.settings.velocity = entry.velocity;
@@ -181,7 +174,7 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
         body.settings.contact_distance = entry.contact_distance;
         body.settings.self_contact = entry.self_contact;
         // Bodies with pinned nodes are explicit unless the scene chooses their dynamics.
-        body.settings.dynamics = entry.dynamics == BodyDynamics::automatic && !pins.empty()
+        body.settings.dynamics = entry.dynamics == BodyDynamics::automatic && !planned.pins.empty()
                                      ? BodyDynamics::explicit_elastic
                                      : entry.dynamics;
         body.settings.collision_group = entry.collision_group;
@@ -191,8 +184,6 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
         body.mesh = of_plan;
         if (entry.shape) body.shape = *entry.shape;
         body.material = material;
-        body.materials = materials;
-        body.pins = pins;
         body.place = entry.place;
         if (!so_far.names.insert(body.settings.name).second)
             entry.place.key("name").refuse(in_quotes(body.settings.name) + ", which is already the name of a body",
@@ -288,6 +279,7 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
         plan.colliders.push_back(plan_collider(scene.colliders[i], i, plan.notes));
     for (std::size_t i = 0; i < scene.joints.size(); ++i) plan.joints.push_back(plan_joint(scene.joints[i], i, plan));
+    for (const LoadEntry& load : scene.loads) plan.loads.push_back(plan_load(load, plan));
     for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);
     return plan;
 }

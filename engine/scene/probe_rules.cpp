@@ -14,7 +14,7 @@ struct KeysOf {
 KeysOf keys_of(ProbeQuantity quantity) {
     switch (quantity) {
         case ProbeQuantity::contacts:
-            return {{"body", "box"}, {}};
+            return {{"body"}, {"box", "set"}};
         case ProbeQuantity::motion:
             return {{"body"}, {"point"}};
         case ProbeQuantity::force:
@@ -26,7 +26,7 @@ KeysOf keys_of(ProbeQuantity quantity) {
         case ProbeQuantity::energy:
             return {{}, {}};
         case ProbeQuantity::stress:
-            return {{"body"}, {"box"}};
+            return {{"body"}, {"box", "set"}};
         case ProbeQuantity::volume:
             return {{"body"}, {}};
     }
@@ -37,9 +37,10 @@ void check_keys(const Place& place, const ProbeEntry& probe) {
     const KeysOf keys = keys_of(probe.quantity);
     const std::string of = "the quantity " + in_quotes(name_of(probe.quantity));
     const std::vector<std::pair<std::string, bool>> given{
-        {"body", probe.body.has_value()},  {"collider", probe.collider.has_value()}, {"by", probe.by.has_value()},
-        {"box", probe.box.has_value()},    {"point", probe.point.has_value()},       {"pin", probe.pin.has_value()},
-        {"joint", probe.joint.has_value()}};
+        {"body", probe.body.has_value()},   {"collider", probe.collider.has_value()},
+        {"by", probe.by.has_value()},       {"box", probe.box.has_value()},
+        {"point", probe.point.has_value()}, {"pin", probe.pin.has_value()},
+        {"joint", probe.joint.has_value()}, {"set", probe.set.has_value()}};
     for (const auto& [key, is_given] : given) {
         const bool required = std::ranges::find(keys.required, key) != keys.required.end();
         if (required && !is_given)
@@ -86,12 +87,14 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
             .key("joint", &P::joint, {.meaning = "for a joint: name of the joint"})
             .key("box", &P::box,
                  {.meaning = "box around the recorded nodes, in the mesh's own frame; default for a stress: all nodes"})
+            .key("set", &P::set, {.meaning = "set of the body that contains the recorded nodes, instead of \"box\""})
             .key("point", &P::point,
                  {.meaning = "for a motion: recorded point, in the mesh's own frame; default: the centre of mass",
                   .unit = "m"})
             .key("pin", &P::pin,
                  {.meaning = "for a reaction: number of the pin of the body, counted from 0; default: the first pin",
                   .limits = at_least(0)})
+            .at_most_one({"box", "set"})
             .check(check_keys);
     return rule;
 }

@@ -112,9 +112,10 @@ public:
     /// `name` is the title of the definition in the schema. In error messages it precedes the object's own name.
     Rule(std::string name, std::string meaning) : RuleTable(std::move(name), std::move(meaning)) {}
 
-    template <class V>
-    Rule& key(std::string_view name, V T::*member, const KeyDoc& doc) {
-        add_key(name, doc, member_offset(member), {read_value<V>, Value<V>::schema});
+    /// `Base`: T, or a base class of T.
+    template <class V, class Base>
+    Rule& key(std::string_view name, V Base::*member, const KeyDoc& doc) {
+        add_key(name, doc, member_offset(static_cast<V T::*>(member)), {read_value<V>, Value<V>::schema});
         return *this;
     }
     Rule& exactly_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::exactly_one, std::move(keys)); }

@@ -7,9 +7,11 @@
 #include <variant>
 #include <vector>
 
+#include "components/load_kind.h"
 #include "engine/scene/values.h"
 #include "skerry/joint.h"
 #include "skerry/settings.h"
+#include "skerry/time_table.h"
 
 namespace skerry {
 
@@ -51,6 +53,39 @@ struct RestBox {
     Vec3 lower = Vec3::Zero();  // lower corner in the mesh's own frame [m]
     Vec3 upper = Vec3::Zero();
 };
+enum class WorldAxis { x, y, z };
+template <>
+struct EnumNames<WorldAxis> {
+    static constexpr std::array<std::pair<WorldAxis, std::string_view>, 3> table{
+        {{WorldAxis::x, "x"}, {WorldAxis::y, "y"}, {WorldAxis::z, "z"}}};
+};
+/// A part of a body. At most one of the members is given; an entry that uses the part decides whether one is required.
+struct PartEntry {
+    std::optional<std::string> set;  // name of a set of the body
+    std::optional<RestBox> box;
+    std::vector<int> nodes;  // numbers of nodes in the mesh file
+    Place place;
+};
+struct SphereRegion {
+    Vec3 center = Vec3::Zero();  // in the mesh's own frame [m]
+    Real radius = 0;             // [m]
+};
+/// The side of a plane to which the normal points, including the plane.
+struct HalfSpaceRegion {
+    Vec3 point = Vec3::Zero();  // in the mesh's own frame [m]
+    Vec3 normal = {0, 0, 1};
+};
+/// A named set of a body: the part of the body that meets all given conditions.
+struct SetEntry {
+    OneOrMore<std::string> set;  // names of other sets, of which at least one must contain the part
+    std::optional<RestBox> box;
+    std::optional<SphereRegion> sphere;
+    std::optional<HalfSpaceRegion> half_space;
+    std::optional<int> label;
+    bool surface = false;
+    std::vector<int> nodes;  // numbers of nodes in the mesh file
+    Place place;
+};
 struct KeyEntry {
     Real time = 0;
     Vec3 position = Vec3::Zero();
@@ -61,12 +96,11 @@ struct MotionEntry {
     Vec3 angular_velocity = Vec3::Zero();
     std::vector<KeyEntry> keys;
 };
-struct PinEntry {
-    std::optional<RestBox> box;
-    std::vector<int> nodes;
+struct PinEntry : PartEntry {
     MotionEntry motion;
     Vec3 pivot = Vec3::Zero();
-    Place place;
+    std::optional<std::vector<WorldAxis>> axes;
+    std::optional<Vec3> direction;
 };
 /// A grid of copies of a body.
 struct RepeatEntry {
@@ -85,7 +119,8 @@ struct BodyEntry {
     std::optional<MeshEntry> mesh;
     std::optional<BodyShapeEntry> shape;
     std::string material;
-    ByNumber<std::string> materials;
+    Named<std::string> materials;  // by label or by name of a set of tetrahedra
+    Named<SetEntry> sets;
     Vec3 position = Vec3::Zero();
     Rotation rotation;
     std::vector<Vec3> positions;
@@ -139,6 +174,14 @@ struct JointEntry {
     bool bodies_touch = JointSettings{}.bodies_touch;
     Place place;
 };
+/// A load or a force field. `kind` determines which of the members are used.
+struct LoadEntry : PartEntry {
+    LoadKind kind = LoadKind::force;
+    std::optional<std::string> body;
+    std::optional<Vec3> force, traction, acceleration, wind;  // [N, Pa, m/s^2, m/s]
+    std::optional<Real> rate;                                 // [1/s]
+    std::optional<TimeTable> scale;
+};
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
 enum class ProbeQuantity { contacts, motion, force, reaction, joint, energy, stress, volume };
@@ -158,7 +201,7 @@ struct EnumNames<ProbeQuantity> {
 struct ProbeEntry {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::contacts;
-    std::optional<std::string> body, collider, by, joint;
+    std::optional<std::string> body, collider, by, joint, set;
     std::optional<RestBox> box;
     std::optional<Vec3> point;  // position in the mesh's own frame [m]
     std::optional<int> pin;
@@ -177,6 +220,7 @@ struct SceneFile {
     std::vector<BodyEntry> bodies;
     std::vector<ColliderEntry> colliders;
     std::vector<JointEntry> joints;
+    std::vector<LoadEntry> loads;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;
 };

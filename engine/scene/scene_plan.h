@@ -1,15 +1,20 @@
 // A scene in which meshes are read, copies placed and names resolved. It is ready to be added to a world.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <map>
+#include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "engine/output/series/follow_point.h"
 #include "engine/scene/place.h"
 #include "engine/scene/scene_file.h"
 #include "engine/world/tuning.h"
+#include "skerry/load.h"
 #include "skerry/scene.h"
 
 namespace skerry {
@@ -17,7 +22,8 @@ namespace skerry {
 struct PinPlan {
     std::vector<Index> nodes;  // local numbers
     Motion motion;
-    Vec3 pivot = Vec3::Zero();  // position of the pivot in world coordinates [m]
+    Vec3 pivot = Vec3::Zero();       // position of the pivot in world coordinates [m]
+    std::vector<Vec3> directions{};  // directions along which the nodes are held; empty: all
     Place place;
 };
 struct BodyPlan {
@@ -27,6 +33,8 @@ struct BodyPlan {
     BodyShapeEntry shape{};
     std::size_t material = 0;                            // index in ScenePlan::materials
     std::vector<std::pair<int, std::size_t>> materials;  // pairs (label of tetrahedra, index in ScenePlan::materials)
+    std::vector<std::pair<std::string, std::size_t>> set_materials;  // pairs (set, index in ScenePlan::materials)
+    std::map<std::string, MeshSet> sets;                             // sets of the scene, in addition to Mesh::sets
     std::vector<PinPlan> pins;
     Place place;
 };
@@ -40,6 +48,12 @@ struct JointPlan {
     std::size_t first = 0;                // index in ScenePlan::bodies
     std::optional<std::size_t> second{};  // index in ScenePlan::bodies
     JointSettings settings;               // settings without body handles, because handles exist only in a built world
+    Place place;
+};
+struct LoadPlan {
+    std::optional<std::size_t> body{};  // index in ScenePlan::bodies
+    // load without its body handle, because handles exist only in a built world
+    std::variant<ForceLoad, TractionLoad, AccelerationField, GravityScale, DragField> load{};
     Place place;
 };
 struct ProbePlan {
@@ -74,6 +88,7 @@ struct ScenePlan {
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
     std::vector<JointPlan> joints;
+    std::vector<LoadPlan> loads;
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;
     Real probe_step = 0;  // [s]
@@ -85,9 +100,26 @@ ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& ov
 /// Plans a scene that was read with the assignments of `overrides`. Messages name `file`.
 ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, const SceneOverrides& overrides);
 
-/// Returns the nodes of a mesh inside a box, which is given in the mesh's own frame. Throws SceneError if the box
-/// contains no node.
-std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Place& place);
+/// Resolves a part of a body to node numbers, in ascending order unless the scene lists them, or to faces in the
+/// orientation of the surface. The faces are those of mesh::faces_of. Throws SceneError if the entry names no part, an
+/// unknown set, or a part without nodes or faces. Such errors list the sets that exist.
+std::vector<Index> nodes_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
+std::vector<std::array<Index, 3>> faces_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
+/// The same for a body that is not complete yet. `sets`: BodyPlan::sets.
+std::vector<Index> nodes_of(const PartEntry& part, const Mesh& mesh, const std::map<std::string, MeshSet>& sets);
+
+/// Returns a set of the mesh or of the scene. Throws SceneError if there is none of this name.
+const MeshSet& find_set(const std::string& name, const Mesh& mesh, const std::map<std::string, MeshSet>& sets,
+                        const Place& place);
+/// Returns the expected value in an error message about a set that does not exist.
+std::string expected_set(const Mesh& mesh, const std::map<std::string, MeshSet>& sets);
+/// Resolves the sets of a body in a scene file.
+std::map<std::string, MeshSet> plan_sets(const Named<SetEntry>& entries, const Mesh& mesh, const Place& place);
+
+/// Plans a load. `plan` already contains all bodies.
+LoadPlan plan_load(const LoadEntry& entry, const ScenePlan& plan);
+/// Adds a planned load to a world with the given bodies, in the order of ScenePlan::bodies.
+LoadHandle add_planned(const LoadPlan& load, std::span<const BodyHandle> bodies, World& world);
 
 /// Adds a probe to a plan that already contains all bodies, colliders and joints.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);

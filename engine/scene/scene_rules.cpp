@@ -22,17 +22,20 @@ template <>
 const Rule<PinEntry>& rule_of<PinEntry>() {
     static const auto rule =
         Rule<PinEntry>("pin", "Nodes of a body that are fixed or follow a motion.")
-            .key("box", &PinEntry::box, {.meaning = "box around the pinned nodes, in the mesh's own frame"})
-            .key("nodes", &PinEntry::nodes,
-                 {.meaning =
-                      "numbers of the pinned nodes. All nodes of a mesh file count, from 0 in the order of the file, "
-                      "whatever numbers the file gives them",
-                  .limits = at_least(0)})
+            .key("set", &PinEntry::set, part_set_doc)
+            .key("box", &PinEntry::box, part_box_doc)
+            .key("nodes", &PinEntry::nodes, part_nodes_doc)
             .key("motion", &PinEntry::motion, {.meaning = "motion of the pinned nodes; default: none"})
             .key("pivot", &PinEntry::pivot,
                  {.meaning = "centre of rotation of an angular velocity, in the world; default: the origin",
                   .unit = "m"})
-            .exactly_one({"box", "nodes"});
+            .key("axes", &PinEntry::axes,
+                 {.meaning = "world axes along which the nodes are held, as for a roller support; default: all. The "
+                             "nodes of explicit bodies are free along the other axes"})
+            .key("direction", &PinEntry::direction,
+                 {.meaning = "the only direction in the world along which the nodes are held, of any nonzero length"})
+            .exactly_one({"set", "box", "nodes"})
+            .at_most_one({"axes", "direction"});
     return rule;
 }
 
@@ -74,9 +77,11 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
                  {.meaning = "shape of a rigid body without a mesh; \"dynamics\" may be left out or \"rigid\""})
             .key("material", &BodyEntry::material, {.meaning = "name of one of the materials", .required = true})
             .key("materials", &BodyEntry::materials,
-                 {.meaning = "names of materials by label of the tetrahedra in the mesh file, {LABEL: NAME}. All "
-                             "tetrahedra with other labels have \"material\", which also sets the friction, "
+                 {.meaning = "names of materials by label or by set of tetrahedra, {LABEL or SET: NAME}; sets take "
+                             "precedence. All other tetrahedra have \"material\", which also sets the friction, "
                              "restitution and damping of the whole body"})
+            .key("sets", &BodyEntry::sets,
+                 {.meaning = "named sets of nodes, faces or tetrahedra, in addition to those of the mesh file"})
             .key("position", &BodyEntry::position, {.meaning = "position of the mesh's origin", .unit = "m"})
             .key("rotation", &BodyEntry::rotation, {.meaning = "rotation about the mesh's origin"})
             .key("positions", &BodyEntry::positions,
@@ -283,7 +288,7 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("description", &SceneFile::description, {.meaning = "description of the scene"})
             .key("include", &SceneFile::include,
                  {.meaning =
-                      "scene files to read before this file. Their bodies, colliders, joints and materials are added "
+                      "scene files to read before this file. Their bodies, colliders, joints, loads and materials are added "
                       "to those of this file; where both files set the same single value, this file takes precedence"})
             .key("seconds", &SceneFile::seconds,
                  {.meaning = "simulated time of a run; default: 2", .unit = "s", .limits = above(0)})
@@ -295,6 +300,7 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("colliders", &SceneFile::colliders,
                  {.meaning = "rigid shapes that are fixed or follow a prescribed motion"})
             .key("joints", &SceneFile::joints, {.meaning = "joints of rigid bodies"})
+            .key("loads", &SceneFile::loads, {.meaning = "forces, tractions and force fields"})
             .key("probes", &SceneFile::probes,
                  {.meaning = "recorded quantities: contacts for the report, and time series for --probes"})
             .key("probe_step", &SceneFile::probe_step,

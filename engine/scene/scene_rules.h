@@ -1,4 +1,5 @@
-// Keys of scene files: declarations of the rules that scene_rules.cpp, shape_rules.cpp, joint_rules.cpp and
+// Keys of scene files: declarations of the rules that scene_rules.cpp, shape_rules.cpp, joint_rules.cpp,
+// load_rules.cpp and
 // probe_rules.cpp define.
 #pragma once
 
@@ -22,6 +23,14 @@ template <>
 const Rule<MeshEntry>& rule_of<MeshEntry>();
 template <>
 const Rule<RestBox>& rule_of<RestBox>();
+template <>
+const Rule<PartEntry>& rule_of<PartEntry>();
+template <>
+const Rule<SphereRegion>& rule_of<SphereRegion>();
+template <>
+const Rule<HalfSpaceRegion>& rule_of<HalfSpaceRegion>();
+template <>
+const Rule<SetEntry>& rule_of<SetEntry>();
 template <>
 const Rule<KeyEntry>& rule_of<KeyEntry>();
 template <>
@@ -57,6 +66,8 @@ const Rule<MotorEntry>& rule_of<MotorEntry>();
 template <>
 const Rule<JointEntry>& rule_of<JointEntry>();
 template <>
+const Rule<LoadEntry>& rule_of<LoadEntry>();
+template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();
 template <>
 const Rule<MaterialSettings>& rule_of<MaterialSettings>();
@@ -64,5 +75,8 @@ template <>
 const Rule<Settings>& rule_of<Settings>();
 template <>
 const Rule<SceneFile>& rule_of<SceneFile>();
+
+/// Documentation of the keys "set", "box" and "nodes" of an entry that derives from PartEntry.
+extern const KeyDoc part_set_doc, part_box_doc, part_nodes_doc;
 
 }  // namespace skerry

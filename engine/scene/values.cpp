@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -146,17 +145,6 @@ void read_named(const Json& json, const Place& place, FunctionRef<bool(const std
     }
 }
 
-void read_numbered(const Json& json, const Place& place, FunctionRef<void(int, const Json&, const Place&)> item) {
-    if (!json.is_object()) place.refuse(described(json), "an object {\"NUMBER\": VALUE, ...}");
-    for (const auto& [key, value] : json.items()) {
-        int number = 0;
-        const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), number);
-        if (error != std::errc{} || end != key.data() + key.size() || std::to_string(number) != key)
-            place.key(key).refuse("the key " + in_quotes(key), "a whole number as a key, such as \"1\"");
-        item(number, value, place.key(key));
-    }
-}
-
 Json text_schema() {
     return {{"type", "string"}, {"minLength", 1}};
 }
@@ -179,12 +167,6 @@ Json list_schema(Json items, std::size_t count) {
 
 Json named_schema(Json value) {
     return {{"type", "object"}, {"additionalProperties", std::move(value)}};
-}
-
-Json numbered_schema(Json value) {
-    return {{"type", "object"},
-            {"propertyNames", {{"pattern", "^(0|-?[1-9][0-9]{0,9})$"}}},
-            {"additionalProperties", std::move(value)}};
 }
 
 Json either_schema(Json one, Json other) {
@@ -249,8 +231,7 @@ void Value<TimeTable>::read(const Json& json, const Place& place, const KeyDoc& 
     out.keys.clear();
     for (std::size_t k = 0; k < json.size(); ++k) {
         const Place at = place.item(k);
-        if (!json[k].is_array() || json[k].size() != 2)
-            at.refuse(described(json[k]), "a pair [time, value]");
+        if (!json[k].is_array() || json[k].size() != 2) at.refuse(described(json[k]), "a pair [time, value]");
         const TimeKey key{read_number(json[k][0], at.item(0), {.meaning = {}, .unit = "s"}),
                           read_number(json[k][1], at.item(1), doc)};
         if (!out.keys.empty() && !(key.time > out.keys.back().time))

@@ -28,11 +28,6 @@ template <class T>
 struct Named {
     std::vector<std::pair<std::string, T>> items;
 };
-/// A list of objects with numbers. JSON keys are texts, so a file contains each whole number as text.
-template <class T>
-struct ByNumber {
-    std::vector<std::pair<int, T>> items;
-};
 /// A single object or a list of objects.
 template <class T>
 struct OneOrMore {
@@ -51,7 +46,6 @@ Json enum_schema(const std::vector<std::string>& names);
 Json list_schema(Json items);
 Json list_schema(Json items, std::size_t count);
 Json named_schema(Json value);
-Json numbered_schema(Json value);
 Json either_schema(Json one, Json other);
 /// Returns a schema reference to the definition of a rule. Adds the definition to `book` if `book` lacks it.
 Json rule_schema(SchemaBook& book, const RuleTable& rule);
@@ -99,7 +93,8 @@ struct Value<Rotation> {
     static Json schema(SchemaBook& book, const KeyDoc& doc);
 };
 
-/// A value that changes over time: a number, or a list of pairs [time, value]. The limits of the key apply to each value.
+/// A value that changes over time: a number, or a list of pairs [time, value]. The limits of the key apply to each
+/// value.
 template <>
 struct Value<TimeTable> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, TimeTable& out);
@@ -196,20 +191,6 @@ struct Value<Named<T>> {
             });
     }
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return named_schema(Value<T>::schema(book, doc)); }
-};
-
-/// Calls item(number, value, place) for each key of a JSON object. Each key must be a whole number that fits 32 bits,
-/// written without leading zeros and without a plus sign.
-void read_numbered(const Json& json, const Place& place, FunctionRef<void(int, const Json&, const Place&)> item);
-
-template <class T>
-struct Value<ByNumber<T>> {
-    static void read(const Json& json, const Place& place, const KeyDoc& doc, ByNumber<T>& out) {
-        read_numbered(json, place, [&](int number, const Json& value, const Place& at) {
-            Value<T>::read(value, at, doc, out.items.emplace_back(number, T{}).second);
-        });
-    }
-    static Json schema(SchemaBook& book, const KeyDoc& doc) { return numbered_schema(Value<T>::schema(book, doc)); }
 };
 
 /// Reads values of all other types, which are objects with a rule.

@@ -94,33 +94,6 @@ std::vector<ColliderHandle> World::colliders() const {
     return handles;
 }
 
-std::vector<AttachmentHandle> World::attachments() const {
-    state_->settle();
-    const AttachmentTable& table = state_->model.attachments;
-    std::vector<AttachmentHandle> handles;
-    for (std::size_t a = 0; a < table.slot.size(); ++a)
-        if (state_->model.bodies.kind[static_cast<std::size_t>(table.body[a])] == BodyKind::deformable)
-            handles.push_back(state_->model.attachment_map.handle_of_slot(table.slot[a]));
-    return handles;
-}
-
-BodyHandle World::body(AttachmentHandle attachment) const {
-    state_->settle();
-    const auto row = static_cast<std::size_t>(state_->model.row(attachment, "body"));
-    const auto body = static_cast<std::size_t>(state_->model.attachments.body[row]);
-    return state_->model.body_map.handle_of_slot(state_->model.bodies.slot[body]);
-}
-
-std::vector<Index> World::nodes(AttachmentHandle attachment) const {
-    state_->settle();
-    const AttachmentTable& table = state_->model.attachments;
-    const auto row = static_cast<std::size_t>(state_->model.row(attachment, "nodes"));
-    const Index first = state_->model.bodies.nodes[static_cast<std::size_t>(table.body[row])].begin;
-    std::vector<Index> numbers;
-    for (const Index node : rows_of(table.node, table.nodes[row])) numbers.push_back(node - first);
-    return numbers;
-}
-
 Twist World::velocity(BodyHandle body) const {
     state_->settle();
     const auto row = static_cast<std::size_t>(state_->model.row(body, "velocity"));

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "components/types.h"
 #include "jobs/function_ref.h"
@@ -17,6 +18,12 @@ SceneError error_at(const Complaint& place, const SceneError& inner);
 
 /// Formats a number with `digits` significant digits.
 std::string short_text(Real value, int digits = 3);
+
+/// Returns the name closest to `text`: the one with the fewest changed, missing, added or swapped letters. Empty if
+/// there are no names.
+std::string nearest_name(std::string_view text, std::span<const std::string> names);
+/// Returns a hint that contains the nearest name. Empty if more than a third of the letters differ.
+std::string nearest_hint(std::string_view text, std::span<const std::string> names);
 
 /// Checks that the offsets of a list of rows begin at 0, ascend and do not exceed the number of items. For the first
 /// wrong offset it calls `complain`, which must throw.

@@ -8,6 +8,7 @@
 
 #include "engine/mesh/labels.h"
 #include "engine/mesh/require_positive.h"
+#include "engine/mesh/sets.h"
 #include "engine/world/complaint.h"
 #include "systems/collision/build_surface.h"
 #include "systems/geometry/rotation.h"
@@ -90,6 +91,29 @@ void require_labels(const Mesh& mesh, const std::map<int, MaterialHandle>& mater
     for (const auto& [label, material] : materials)
         if (!labels.contains(label))
             refuse(object, "materials", "label " + std::to_string(label), mesh::expected_label(mesh));
+}
+
+/// Checks the sets of a mesh, and the sets that have a material of their own.
+void require_sets(const Mesh& mesh, const std::map<std::string, MaterialHandle>& materials, const std::string& object) {
+    for (const auto& [name, set] : mesh.sets) mesh::require_set(object, name, set, mesh.nodes.size(), mesh.tetrahedra);
+    std::vector<const std::string*> set_of(materials.empty() ? 0 : mesh.tetrahedra.size());
+    for (const auto& [name, material] : materials) {
+        const auto found = mesh.sets.find(name);
+        if (found == mesh.sets.end())
+            refuse(object, "materials_of_sets", '"' + name + '"', mesh::expected_set(mesh::names_of(mesh.sets)));
+        const std::vector<Index> tetrahedra = mesh::tetrahedra_of(found->second, mesh.tetrahedra);
+        if (tetrahedra.empty())
+            refuse(object, "materials_of_sets", "the set \"" + name + "\", which contains no tetrahedron",
+                   "a set with at least one tetrahedron");
+        for (const Index t : tetrahedra) {
+            const std::string*& other = set_of[static_cast<std::size_t>(t)];
+            if (other != nullptr)
+                refuse(object, "materials_of_sets",
+                       "tetrahedron " + std::to_string(t) + " in both \"" + *other + "\" and \"" + name + '"',
+                       "sets without common tetrahedra");
+            other = &name;
+        }
+    }
 }
 
 /// Checks the values of friction and restitution of a body or collider.
@@ -259,6 +283,7 @@ void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known) {
         refuse(object, "self_contact", "true for a body with the dynamics " + std::string(name_of(body.dynamics)),
                "false");
     require_labels(mesh, body.materials, object);
+    require_sets(mesh, body.materials_of_sets, object);
     require_start(body, object);
 }
 
@@ -270,8 +295,8 @@ void require_round(const std::string& shape, const BodySettings& body, const std
         refuse(object, "dynamics", std::string(name_of(body.dynamics)),
                "rigid, because a " + shape + " does not deform");
     if (body.self_contact) refuse(object, "self_contact", "true for a " + shape, "false");
-    if (!body.materials.empty())
-        refuse(object, "materials", "materials by label", "none, because a " + shape + " has one material");
+    if (!body.materials.empty() || !body.materials_of_sets.empty())
+        refuse(object, "materials", "materials by label or set", "none, because a " + shape + " has one material");
     require_start(body, object);
 }
 

@@ -26,14 +26,17 @@ namespace skerry {
 
 namespace {
 
-/// Material of each tetrahedron, as row of MaterialTable. Empty if no label has a material of its own.
+/// Material of each tetrahedron, as row of MaterialTable. Empty if no label or set has a material of its own.
 std::vector<Index> materials_of_tetrahedra(const Model& model, const Mesh& mesh, const BodySettings& body) {
-    if (body.materials.empty()) return {};
+    if (body.materials.empty() && body.materials_of_sets.empty()) return {};
     std::map<int, Index> row_of;
     for (const auto& [label, material] : body.materials) row_of[label] = model.row(material, "add_body");
     std::vector<Index> rows(mesh.tetrahedra.size(), model.row(body.material, "add_body"));
-    for (std::size_t t = 0; t < rows.size(); ++t)
+    for (std::size_t t = 0; t < rows.size() && !row_of.empty(); ++t)
         if (const auto named = row_of.find(mesh.label[t]); named != row_of.end()) rows[t] = named->second;
+    for (const auto& [name, material] : body.materials_of_sets)
+        for (const Index t : mesh::tetrahedra_of(mesh.sets.at(name), mesh.tetrahedra))
+            rows[static_cast<std::size_t>(t)] = model.row(material, "add_body");
     return rows;
 }
 
@@ -243,6 +246,8 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
     append_body(model, state.scratch.stiffness_sum, fresh, trial ? &*trial : nullptr);
     if (trial) remember_elements(model, static_cast<Index>(model.body_records.size() - 1), std::move(*trial));
     model.body_records.back().choice = choice;
+    model.body_records.back().label = mesh.label;
+    model.body_records.back().sets = mesh.sets;
     const std::string name = body.name.empty() ? "body " + std::to_string(handle.slot) : body.name;
     model.body_records.back().name = name;
     try {
@@ -313,58 +318,6 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
     return handle;
 }
 
-AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion, const Vec3& pivot) {
-    state_->require_between_steps("attach");
-    Model& model = state_->model;
-    const Index row = model.row(body, "attach");
-    const auto b = static_cast<std::size_t>(row);
-    validate(motion, pivot);
-    const Index count = model.bodies.nodes[b].size();
-    if (nodes.empty()) refuse("attach", "nodes", "no nodes", "at least one node of the body");
-    require_nodes("attach", nodes, count);
-    if (model.bodies.core_nodes[b] > 0)
-        Complaint{.file = {},
-                  .object = "attach",
-                  .field = "body",
-                  .found = std::string("the ") + model.round_name(b) + " '" + model.body_records[b].name + "'",
-                  .expected = "a body with a mesh",
-                  .hint = std::string("to prescribe its motion, replace the ") + model.round_name(b) + " by a collider"}
-            .raise();
-    const bool rigid = model.is_rigid(b), implicit = model.has_frame(b) && !rigid;
-    if (implicit && model.body_records[b].choice.reason != DynamicsReason::given) {
-        set_dynamics(body, BodyDynamics::explicit_elastic);
-        return attach(body, nodes, motion, pivot);
-    }
-    if (model.has_frame(b) && !hold_whole(model, b, nodes))
-        Complaint{.file = {},
-                  .object = "attach",
-                  .field = "nodes",
-                  .found = std::to_string(nodes.size()) + " nodes of the " + (rigid ? "rigid" : "implicit") +
-                           " body '" + model.body_records[b].name + "'",
-                  .expected = std::string("three or more nodes that are not on one line, to hold ") +
-                              (rigid ? "the whole body" : "the body's rotating frame"),
-                  .hint = {}}
-            .raise();
-    state_->require_between_steps("attach");
-    std::vector<Index> held(nodes.begin(), nodes.end());
-    if (rigid) {
-        held.resize(static_cast<std::size_t>(count));
-        std::iota(held.begin(), held.end(), 0);
-        stop_rigid_body(model, b);
-    }
-    const AttachmentHandle handle = model.attachment_map.insert(static_cast<Index>(model.attachments.slot.size()));
-    append_attachment(model, handle.slot, row, held, {pivot, Mat3::Identity()}, motion, state_->clock.time);
-    if (implicit) {
-        find_holders(model);
-        follow_attachments(model, b);
-    }
-    model.wake(b);
-    // The last contact search assumed the old speeds, but attaching has stopped the held nodes.
-    state_->cache.forget_body(model, b);
-    state_->edits.rows = state_->edits.elements = true;
-    return handle;
-}
-
 namespace {
 
 /// If one of the two objects with the deepest overlap of held surfaces is removed, deletes the reference to this pair.
@@ -413,22 +366,6 @@ void World::remove(ColliderHandle collider) {
         mark(body, edits.bodies_gone);
     state_->model.collider_map.forget(collider);
     edits.rows = true;
-}
-
-void World::remove(AttachmentHandle attachment) {
-    state_->require_between_steps("remove");
-    const Index row = state_->model.row(attachment, "remove");
-    state_->record.forces.forget_attachment(attachment.slot);
-    Model& model = state_->model;
-    const auto body = static_cast<std::size_t>(model.attachments.body[static_cast<std::size_t>(row)]);
-    model.wake(body);
-    model.attachment_map.forget(attachment);
-    erase_attachment(model, row);
-    if (model.dynamics_of(body) == BodyDynamics::implicit_elastic) {
-        find_holders(model);
-        follow_attachments(model, body);
-    }
-    state_->edits.rows = state_->edits.elements = true;
 }
 
 bool World::alive(BodyHandle body) const {

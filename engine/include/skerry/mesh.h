@@ -13,6 +13,17 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
+/// A named part of a mesh. A set can list nodes, faces, tetrahedra, or several of them. The functions nodes_of,
+/// faces_of and tetrahedra_of of the namespace mesh find the kinds that are not listed.
+struct MeshSet {
+    std::vector<Index> nodes{};                 // indices of nodes, ascending
+    std::vector<std::array<Index, 3>> faces{};  // nodes of faces of tetrahedra
+    std::vector<Index> tetrahedra{};            // indices of tetrahedra, ascending
+
+    bool empty() const { return nodes.empty() && faces.empty() && tetrahedra.empty(); }
+    bool operator==(const MeshSet&) const = default;
+};
+
 /// A tetrahedral mesh in its own coordinate frame. The rows of `tetrahedra` are indices into `nodes`. A tetrahedron
 /// with the nodes n0 to n3 is positive if det(n1 - n0, n2 - n0, n3 - n0) > 0.
 struct Mesh {
@@ -24,6 +35,7 @@ struct Mesh {
     // Number of each node in the file from which the mesh was read, in ascending order: the nodes of the file are
     // counted from 0 in their order. An empty list means that the numbers equal the indices in `nodes`.
     std::vector<Index> file_number{};
+    std::map<std::string, MeshSet> sets{};  // sets by name
 };
 
 /// A triangle surface, either closed or with a boundary. Triangles are counter-clockwise as seen from outside.
@@ -101,6 +113,14 @@ Mesh table(const TableShape& shape);
 ///   whole number per cell.
 /// - TetGen: the last attribute in the .ele file, if it is a whole number for all tetrahedra.
 ///
+/// Sources of the sets:
+/// - Gmsh: each physical group of points, curves, surfaces or volumes, by its name. A group without a name is called
+///   point_N, curve_N or surface_N after its number N; a volume without a name has a label only.
+/// - VTK: arrays of bits or whole numbers with one number per point or cell. An array NAME of zeros and ones gives the
+///   set NAME, any other array a set NAME_N for each number N but 0. An array in which all numbers differ gives none.
+/// - TetGen: node_marker_N and face_marker_N for each marker N but 0 of the files .node and .face.
+/// Triangles that are not faces of a tetrahedron are dropped from sets, and `notes` gets their number.
+///
 /// Throws SceneError that names the file, the place in the file, and the found and the expected text.
 Mesh read(const std::string& path, std::vector<std::string>* notes = nullptr);
 
@@ -122,6 +142,15 @@ void write(const std::string& path, const Mesh& mesh);
 /// that does not exist, or if a position is not finite. `inspect` throws the same errors.
 SurfaceMesh boundary(const Mesh& mesh);
 
+/// Nodes of a set: the listed nodes, and all nodes of the listed faces and tetrahedra.
+std::vector<Index> nodes_of(const MeshSet& set, std::span<const std::array<Index, 4>> tetrahedra);
+/// Faces of a set: the listed faces. If none are listed: the triangles of `surface`, the boundary of the tetrahedra,
+/// that belong to listed tetrahedra, or all nodes of which are in the set.
+std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, std::span<const std::array<Index, 4>> tetrahedra,
+                                           std::span<const std::array<Index, 3>> surface);
+/// Tetrahedra of a set: the listed tetrahedra. If none are listed: those all nodes of which are in the set.
+std::vector<Index> tetrahedra_of(const MeshSet& set, std::span<const std::array<Index, 4>> tetrahedra);
+
 }  // namespace mesh
 
 /// Statistics of a mesh, as printed by `skerry inspect`.
@@ -140,6 +169,8 @@ struct MeshReport {
     bool closed_manifold = false;
     std::string boundary_fault;         // first fault of the boundary, and number of faults; empty if there are none
     std::map<int, std::size_t> labels;  // number of tetrahedra with each label; empty if the mesh has no labels
+    // numbers of nodes, faces and tetrahedra of each set
+    std::map<std::string, std::array<std::size_t, 3>> sets;
 };
 MeshReport inspect(const Mesh& mesh);
 

@@ -76,6 +76,9 @@ struct BodySettings {
     // Materials of tetrahedra by label (Mesh::label). These materials determine elasticity, density and losses of the
     // tetrahedra. Each label must occur in the mesh.
     std::map<int, MaterialHandle> materials{};
+    // Materials of the tetrahedra of named sets (Mesh::sets). They take precedence over `materials`. A tetrahedron must
+    // not be in two of these sets.
+    std::map<std::string, MaterialHandle> materials_of_sets{};
     Vec3 position = Vec3::Zero();          // [m]
     Vec3 rotation = Vec3::Zero();          // rotation axis times angle [rad]
     Vec3 velocity = Vec3::Zero();          // [m/s]

@@ -82,8 +82,16 @@ public:
     /// absolute times; the nodes are attached to the pose that the keys have now. For a rigid or implicit body at least
     /// three nodes that are not on one line are required. They hold the whole rigid body, or the frame of the implicit
     /// body. A body that `automatic` made implicit first becomes explicit, as by set_dynamics().
+    ///
+    /// `directions`: the nodes are held along these directions only, and are free normal to them (a roller support).
+    /// Directions are fixed in the world, of any nonzero length, and perpendicular to each other. Empty: the nodes are
+    /// held completely. Only for explicit bodies, and for velocities or keys without rotation. Several attachments can
+    /// hold a node along directions that are perpendicular or equal; of equal ones the last attachment moves the node.
+    /// The contact solver treats these nodes as free. The part of a contact impulse along a held direction then acts on
+    /// the attachment instead of stopping the other object, so hold nodes completely where objects press on them along
+    /// a held direction (docs/methods/sets_and_rollers.md).
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
-                            const Vec3& pivot = Vec3::Zero());
+                            const Vec3& pivot = Vec3::Zero(), const std::vector<Vec3>& directions = {});
     void remove(BodyHandle body);
     void remove(ColliderHandle collider);
     void remove(AttachmentHandle attachment);
@@ -171,6 +179,8 @@ public:
     std::vector<AttachmentHandle> attachments() const;            // in the order added
     BodyHandle body(AttachmentHandle attachment) const;           // body of the attached nodes
     std::vector<Index> nodes(AttachmentHandle attachment) const;  // numbers of the attached nodes within the body
+    // unit vectors along which the nodes are held; empty if they are held completely
+    std::vector<Vec3> directions(AttachmentHandle attachment) const;
     /// Velocities of a rigid motion: for a body the motion with its momentum and angular momentum, for a collider or an
     /// attachment the motion in the last step.
     Twist velocity(BodyHandle body) const;

@@ -21,6 +21,7 @@ struct RawMesh {
     std::vector<int> label;  // label of each tetrahedron; empty: no labels
     std::vector<std::array<Index, 3>> triangles;
     std::size_t curved_triangles = 0;  // number of triangles of second or higher order
+    std::map<std::string, MeshSet> sets;
     // number of ignored elements of each kind, for example "hexahedra"
     std::map<std::string, std::size_t> others;
 };

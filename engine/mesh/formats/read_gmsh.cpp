@@ -34,6 +34,13 @@ std::string kind_of(std::int64_t type) {
     return "elements of type " + std::to_string(type);
 }
 
+std::int64_t dimension_of(std::int64_t type) {
+    const std::string kind = kind_of(type);
+    if (kind == "points") return 0;
+    if (kind == "lines") return 1;
+    return type == triangle_type || is_curved_triangle(type) || kind == "quadrilaterals" ? 2 : 3;
+}
+
 }  // namespace
 
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader) {
@@ -50,11 +57,21 @@ std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader) {
 }
 
 void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const GmshTags& tags,
-                       const NodeNumbers& numbers, const FileReader& reader, GmshMesh& mesh) {
+                       std::span<const std::int64_t> groups, const NodeNumbers& numbers, const FileReader& reader,
+                       GmshMesh& mesh) {
     std::array<Index, 4> rows{};
     for (std::size_t a = 0; a < node_numbers.size(); ++a) {
         const Index row = numbers.row(node_numbers[a], reader);
         if (a < 4) rows[a] = row;
+    }
+    for (const std::int64_t group : groups) {
+        MeshSet& set = mesh.groups[{dimension_of(type), group}];
+        if (type == tetrahedron_type)
+            set.tetrahedra.push_back(static_cast<Index>(mesh.tetrahedra.size()));
+        else if (type == triangle_type)
+            set.faces.push_back({rows[0], rows[1], rows[2]});
+        else
+            for (const std::int64_t number : node_numbers) set.nodes.push_back(numbers.row(number, reader));
     }
     if (type == tetrahedron_type) {
         require_different(rows, reader);
@@ -139,11 +156,83 @@ void label(GmshMesh& mesh) {
     mesh.label = std::move(labels);
 }
 
+/// Names the physical groups. A group without a name is called after its dimension and number. A volume without a name
+/// gives no set, because its number is a label.
+void name_groups(GmshMesh& mesh) {
+    constexpr std::array<const char*, 3> kinds{"point_", "curve_", "surface_"};
+    for (auto& [group, set] : mesh.groups) {
+        const auto [dimension, number] = group;
+        const auto named = mesh.group_names.find(group);
+        if (named == mesh.group_names.end() && dimension == 3) continue;
+        const std::string name = named != mesh.group_names.end()
+                                     ? named->second
+                                     : kinds[static_cast<std::size_t>(dimension)] + std::to_string(number);
+        MeshSet& all = mesh.sets[name];
+        all.nodes.insert(all.nodes.end(), set.nodes.begin(), set.nodes.end());
+        all.faces.insert(all.faces.end(), set.faces.begin(), set.faces.end());
+        all.tetrahedra.insert(all.tetrahedra.end(), set.tetrahedra.begin(), set.tetrahedra.end());
+    }
+    if (mesh.flagged.empty()) return;
+    std::unordered_map<std::int64_t, Index> row;
+    for (std::size_t t = 0; t < mesh.tags.size(); ++t) row[mesh.tags[t].number] = static_cast<Index>(t);
+    for (const auto& [name, members] : mesh.flagged)
+        for (const std::int64_t number : members)
+            if (const auto found = row.find(number); found != row.end())
+                mesh.sets[name].tetrahedra.push_back(found->second);
+}
+
 }  // namespace
+
+void read_gmsh_names(FileReader& reader, GmshMesh& mesh) {
+    const std::size_t count =
+        reader.checked_count(integer_line(reader, 1, "count", "the number of names")[0], 6, "count");
+    for (std::size_t i = 0; i < count; ++i) {
+        reader.set_row("name", i + 1, count);
+        constexpr const char* expected = "dimension, number and \"name\" of a physical group";
+        const std::string_view text = reader.filled_line(expected);
+        const std::size_t begin = text.find('"'), end = text.rfind('"');
+        if (begin == std::string_view::npos || end == begin) reader.complain({}, in_quotes(text), expected);
+        const std::string name(text.substr(begin + 1, end - begin - 1));
+        const std::vector<std::string_view>& words = reader.words_of(text.substr(0, begin));
+        if (words.size() != 2) reader.complain({}, in_quotes(text), expected);
+        const GmshEntity group{reader.parse_integer(words[0], "dimension"), reader.parse_integer(words[1], "number")};
+        if (!name.empty()) mesh.group_names[group] = name;
+    }
+    reader.set_section("$PhysicalNames");
+}
+
+void read_gmsh_element_data(FileReader& reader, GmshMesh& mesh) {
+    const auto count = [&](const char* meaning) { return integer_line(reader, 1, "count", meaning)[0]; };
+    std::string name;
+    for (std::int64_t i = count("the number of texts"); i > 0; --i) {
+        const std::string_view text = reader.filled_line("a text");
+        if (name.empty() && text.size() > 2) name = text.substr(1, text.size() - 2);
+    }
+    for (std::int64_t i = count("the number of real numbers"); i > 0; --i) reader.filled_line("a real number");
+    std::vector<std::int64_t> whole;  // time step, number of components, number of rows
+    for (std::int64_t i = count("the number of whole numbers"); i > 0; --i) whole.push_back(count("a whole number"));
+    if (whole.size() < 3)
+        reader.complain("count", std::to_string(whole.size()) + " whole numbers", "at least 3 whole numbers");
+    const std::size_t rows = reader.checked_count(whole[2], 4, "rows");
+    std::vector<std::int64_t> members;
+    bool is_set = whole[1] == 1 && !name.empty();
+    for (std::size_t i = 0; i < rows; ++i) {
+        reader.set_row("row", i + 1, rows);
+        const std::vector<std::string_view>& words = reader.words_of(reader.filled_line("a number and values"));
+        is_set = is_set && words.size() == 2;
+        if (!is_set) continue;
+        const std::int64_t number = reader.parse_integer(words[0], "number");
+        const Real value = reader.parse_real(words[1], "value");
+        if (value == 1) members.push_back(number);
+        is_set = value == 0 || value == 1;
+    }
+    if (is_set) mesh.flagged[name] = std::move(members);
+    reader.set_section("$ElementData");
+}
 
 RawMesh read_gmsh(FileReader& reader) {
     GmshMesh mesh;
-    GmshVolumes volumes;
+    GmshEntities entities;
     NodeNumbers numbers;
     Header header;
     bool has_nodes = false, has_elements = false;
@@ -178,14 +267,20 @@ RawMesh read_gmsh(FileReader& reader) {
             if (std::exchange(has_elements, true))
                 reader.complain({}, "a second section of elements", "only one section of elements");
             if (header.version == 4)
-                read_gmsh4_elements(reader, header.binary, numbers, volumes, mesh);
+                read_gmsh4_elements(reader, header.binary, numbers, entities, mesh);
             else if (header.version == 2)
                 read_gmsh2_elements(reader, header.binary, numbers, mesh);
             else
                 read_gmsh1_elements(reader, numbers, mesh);
             require_end(reader, version_1 ? "$ENDELM" : "$EndElements");
+        } else if (!version_1 && section == "$PhysicalNames") {
+            read_gmsh_names(reader, mesh);
+            require_end(reader, "$EndPhysicalNames");
+        } else if (!version_1 && !header.binary && section == "$ElementData") {
+            read_gmsh_element_data(reader, mesh);
+            require_end(reader, "$EndElementData");
         } else if (header.version == 4 && section == "$Entities") {
-            volumes = read_gmsh4_entities(reader, header.binary);
+            entities = read_gmsh4_entities(reader, header.binary);
             require_end(reader, "$EndEntities");
         } else {
             const std::string end = (version_1 ? "$END" : "$End") + section.substr(1);
@@ -200,6 +295,7 @@ RawMesh read_gmsh(FileReader& reader) {
     if (!has_elements)
         reader.complain({}, "no section of elements", header.version == 1 ? "a section $ELM" : "a section $Elements");
     label(mesh);
+    name_groups(mesh);
     return mesh;
 }
 

@@ -1,22 +1,38 @@
 // Parts of the reader of Gmsh files. Format: gmsh.info, "MSH file format" and "Legacy formats" of the manual.
 #pragma once
 
+#include <span>
+#include <utility>
+
 #include "engine/mesh/formats/raw_mesh.h"
 
 namespace skerry::mesh {
 
-/// Group numbers of an element: its physical group (0: none) and its elementary (geometric) entity.
+/// Group numbers of an element: its physical group (0: none) and its elementary (geometric) entity. `number`: number of
+/// the element in the file.
 struct GmshTags {
-    std::int64_t physical = 0, elementary = 0;
+    std::int64_t physical = 0, elementary = 0, number = 0;
 };
 
-/// Map from the tag of a geometric volume to the number of its physical group.
-using GmshVolumes = std::unordered_map<std::int64_t, std::int64_t>;
+/// A geometric entity or a physical group: its dimension, from 0 to 3, and its number.
+using GmshEntity = std::pair<std::int64_t, std::int64_t>;
+
+/// Map from geometric entities to the numbers of their physical groups.
+using GmshEntities = std::map<GmshEntity, std::vector<std::int64_t>>;
 
 /// A mesh with the group numbers of its tetrahedra.
 struct GmshMesh : RawMesh {
     std::vector<GmshTags> tags;
+    std::map<GmshEntity, MeshSet> groups;           // elements of each physical group
+    std::map<GmshEntity, std::string> group_names;  // names of physical groups that have one
+    // numbers of elements by the name of a view of element data in which they have the value 1 and all others 0
+    std::map<std::string, std::vector<std::int64_t>> flagged;
 };
+
+/// Reads the section $PhysicalNames, which is text in every file.
+void read_gmsh_names(FileReader& reader, GmshMesh& mesh);
+/// Reads the section $ElementData of a text file. Views with other values than 0 and 1 are ignored.
+void read_gmsh_element_data(FileReader& reader, GmshMesh& mesh);
 
 /// These functions read the sections $Nodes ($NOD in version 1) and $Elements ($ELM in version 1) of versions 1 and 2.
 /// They start after the line with the section's name.
@@ -25,19 +41,20 @@ void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, GmshMes
 void read_gmsh2_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, GmshMesh& mesh);
 
 /// These functions read the sections of version 4.1. read_gmsh4_entities reads $Entities and returns the physical
-/// groups of the volumes.
-GmshVolumes read_gmsh4_entities(FileReader& reader, bool binary);
+/// groups of all entities that are in groups.
+GmshEntities read_gmsh4_entities(FileReader& reader, bool binary);
 void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, GmshMesh& mesh);
-void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, const GmshVolumes& volumes,
+void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, const GmshEntities& entities,
                          GmshMesh& mesh);
 
 /// Returns the number of nodes of an element type. Throws SceneError for unknown types and for curved tetrahedra.
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader);
 
 /// Adds a tetrahedron or triangle to the mesh. Elements of other types are only counted. The nodes of the element must
-/// exist in either case.
+/// exist in either case. Adds the element to its physical groups, the numbers of which are `groups`.
 void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const GmshTags& tags,
-                       const NodeNumbers& numbers, const FileReader& reader, GmshMesh& mesh);
+                       std::span<const std::int64_t> groups, const NodeNumbers& numbers, const FileReader& reader,
+                       GmshMesh& mesh);
 
 /// Reads the next line, which must contain exactly `count` integers. `meaning` describes the expected integers in error
 /// messages.

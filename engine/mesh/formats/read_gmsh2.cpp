@@ -55,6 +55,17 @@ void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Gms
     reader.set_section("$Nodes");
 }
 
+namespace {
+
+/// Number of the physical group of an element; empty if it is in no group. A negative number in the file only means
+/// that the orientation is reversed.
+std::vector<std::int64_t> group_of(const GmshTags& tags) {
+    if (tags.physical == 0) return {};
+    return {tags.physical < 0 ? -tags.physical : tags.physical};
+}
+
+}  // namespace
+
 void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, GmshMesh& mesh) {
     constexpr const char* element_row = "number, type, physical group, elementary entity, node count and nodes";
     const std::size_t count = reader.checked_count(integer_line(reader, 1, "count", "the number of elements")[0],
@@ -72,9 +83,9 @@ void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, GmshMes
             reader.complain("node count", std::to_string(given),
                             std::to_string(nodes) + ", the node count of elements of type " + std::to_string(type));
         require_words(reader, words.size(), 5 + nodes, element_row);
-        const GmshTags tags{reader.parse_integer(words[2], "physical group"),
-                            reader.parse_integer(words[3], "elementary entity")};
-        take_gmsh_element(type, parse_nodes(reader, words, 5), tags, numbers, reader, mesh);
+        const GmshTags tags{.physical = reader.parse_integer(words[2], "physical group"),
+                            .elementary = reader.parse_integer(words[3], "elementary entity")};
+        take_gmsh_element(type, parse_nodes(reader, words, 5), tags, group_of(tags), numbers, reader, mesh);
     }
     reader.set_section("$ELM");
 }
@@ -94,10 +105,11 @@ void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, GmshMesh
         reader.complain("tag count", std::to_string(tags), "a tag count >= 0 that fits the numbers in this line");
     require_words(reader, words.size(), 3 + static_cast<std::size_t>(tags) + nodes,
                   "number, type, tag count, tags and nodes of an element");
-    GmshTags own;
+    GmshTags own{.number = reader.parse_integer(words[0], "number")};
     if (tags > 0) own.physical = reader.parse_integer(words[3], "physical group");
     if (tags > 1) own.elementary = reader.parse_integer(words[4], "elementary entity");
-    take_gmsh_element(type, parse_nodes(reader, words, 3 + static_cast<std::size_t>(tags)), own, numbers, reader, mesh);
+    take_gmsh_element(type, parse_nodes(reader, words, 3 + static_cast<std::size_t>(tags)), own, group_of(own), numbers,
+                      reader, mesh);
 }
 
 /// Reads a block: one header, followed by elements of one type with equally many tags each. Returns the number of
@@ -117,15 +129,14 @@ std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t 
     std::vector<std::int64_t> node_numbers(nodes);
     for (std::size_t i = 0; i < rows; ++i) {
         reader.set_row("element", done + i + 1, count);
-        reader.skip_bytes(4, "number");
-        GmshTags own;
+        GmshTags own{.number = reader.binary<std::int32_t>("number")};
         for (std::size_t i_tag = 0; i_tag < tag_count; ++i_tag) {
             const auto tag = reader.binary<std::int32_t>("tag");
             if (i_tag == 0) own.physical = tag;
             if (i_tag == 1) own.elementary = tag;
         }
         for (std::int64_t& number : node_numbers) number = reader.binary<std::int32_t>("node");
-        take_gmsh_element(type, node_numbers, own, numbers, reader, mesh);
+        take_gmsh_element(type, node_numbers, own, group_of(own), numbers, reader, mesh);
     }
     return rows;
 }

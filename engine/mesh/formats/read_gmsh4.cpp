@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "engine/mesh/formats/read_gmsh.h"
 
@@ -121,11 +123,11 @@ void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Gms
                         "the blocks of this section contain numbers in that range; the header must agree");
 }
 
-GmshVolumes read_gmsh4_entities(FileReader& reader, bool binary) {
+GmshEntities read_gmsh4_entities(FileReader& reader, bool binary) {
     const Numbers4 count =
         read_four(reader, binary, {8, 8, 8, 8}, "header", "4 integers: counts of points, curves, surfaces and volumes");
     constexpr std::array<const char*, 4> kind{"point", "curve", "surface", "volume"};
-    GmshVolumes volumes;
+    GmshEntities entities;
     for (std::size_t dimension = 0; dimension < 4; ++dimension) {
         const std::size_t rows = reader.checked_count(count[dimension], binary ? 36 : 8, "count of entities");
         for (std::size_t i = 0; i < rows; ++i) {
@@ -134,16 +136,18 @@ GmshVolumes read_gmsh4_entities(FileReader& reader, bool binary) {
             // skips the position of a point, or the bounding box of any other entity
             for (int a = 0; a < (dimension == 0 ? 3 : 6); ++a)
                 binary ? void(reader.binary<double>("position")) : void(row_word(reader, "a coordinate"));
-            const std::vector<std::int64_t> groups = read_tags(reader, binary);
+            std::vector<std::int64_t> groups = read_tags(reader, binary);
             if (dimension > 0) read_tags(reader, binary);  // skips the tags of the entity's boundary
-            if (dimension == 3 && !groups.empty()) volumes[tag] = groups.front();
+            // a negative group number only means that the orientation is reversed
+            for (std::int64_t& group : groups) group = group < 0 ? -group : group;
+            if (!groups.empty()) entities[{static_cast<std::int64_t>(dimension), tag}] = std::move(groups);
         }
     }
     reader.set_section("$Entities");
-    return volumes;
+    return entities;
 }
 
-void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, const GmshVolumes& volumes,
+void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, const GmshEntities& entities,
                          GmshMesh& mesh) {
     const Numbers4 header = read_section_header(reader, binary, binary ? 16 : 4);
     std::size_t total = 0;
@@ -154,13 +158,15 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
         const std::size_t nodes = gmsh_node_count(block[2], reader);
         const std::size_t rows =
             reader.checked_count(block[3], (nodes + 1) * (binary ? 8 : 2), "elements of the block");
-        const auto volume = block[0] == 3 ? volumes.find(block[1]) : volumes.end();
-        const GmshTags tags{volume == volumes.end() ? 0 : volume->second, block[1]};
+        const auto entity = entities.find({block[0], block[1]});
+        const std::span<const std::int64_t> groups =
+            entity == entities.end() ? std::span<const std::int64_t>() : entity->second;
+        GmshTags tags{.physical = groups.empty() ? 0 : groups.front(), .elementary = block[1]};
         std::vector<std::int64_t> node_numbers(nodes);
         for (std::size_t i = 0; i < rows; ++i) {
             reader.set_row("element", ++total, static_cast<std::size_t>(header[1]));
             if (binary) {
-                reader.skip_bytes(8, "number");
+                tags.number = static_cast<std::int64_t>(reader.binary<std::uint64_t>("number"));
                 for (std::int64_t& number : node_numbers)
                     number = static_cast<std::int64_t>(reader.binary<std::uint64_t>("node"));
             } else {
@@ -172,9 +178,10 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
                 if (words.size() != nodes + 1)
                     reader.complain({}, in_quotes(text),
                                     std::to_string(nodes + 1) + " integers: the number and the nodes of an element");
+                tags.number = reader.parse_integer(words[0], "number");
                 for (std::size_t a = 0; a < nodes; ++a) node_numbers[a] = reader.parse_integer(words[a + 1], "node");
             }
-            take_gmsh_element(block[2], node_numbers, tags, numbers, reader, mesh);
+            take_gmsh_element(block[2], node_numbers, tags, groups, numbers, reader, mesh);
         }
     }
     reader.set_section("$Elements");

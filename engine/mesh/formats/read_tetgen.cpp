@@ -2,7 +2,7 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
-// Reads TetGen's .node and .ele files. Format: TetGen manual, section 5.2.
+// Reads TetGen's .node, .ele and .face files. Format: TetGen manual, section 5.2.
 namespace skerry::mesh {
 namespace {
 
@@ -46,6 +46,15 @@ void require_words(const FileReader& reader, std::size_t found, std::size_t leas
                 " numbers: " + meaning);
 }
 
+/// Name of the set of all rows with the marker 0, which is deleted after reading.
+constexpr const char* no_marker = "";
+
+/// Returns the set of the nodes or faces with a marker.
+MeshSet& add_marked(const FileReader& reader, std::string_view word, const char* kind, RawMesh& mesh) {
+    const std::int64_t marker = reader.parse_integer(word, "marker");
+    return mesh.sets[marker == 0 ? no_marker : kind + std::to_string(marker)];
+}
+
 void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
     const auto [announced, dimension, attributes, markers] = read_header(
         reader, 4, "a header of up to four numbers: count of nodes, dimension, count of attributes, count of markers");
@@ -68,8 +77,12 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
         Vec3 x;
         for (std::size_t a = 0; a < 3; ++a)
             x[static_cast<Eigen::Index>(a)] = reader.finite(reader.parse_real(words[a + 1], "position"), "position");
+        if (markers == 1 && words.size() == most)
+            add_marked(reader, words.back(), "node_marker_", mesh)
+                .nodes.push_back(static_cast<Index>(mesh.nodes.size()));
         mesh.nodes.push_back(x);
     }
+    mesh.sets.erase(no_marker);
     require_end(reader, "nodes");
 }
 
@@ -106,6 +119,27 @@ void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& me
     require_end(reader, "tetrahedra");
 }
 
+/// Reads the markers of the file .face.
+void read_faces(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
+    const auto [announced, markers, none, unused] =
+        read_header(reader, 2, "a header of up to two numbers: count of faces, count of markers");
+    (void)none, (void)unused;
+    const std::size_t count = reader.checked_count(announced, 8, "faces");
+    if (markers != 0 && markers != 1) reader.complain("markers", std::to_string(markers), "0 or 1");
+    reader.set_section("faces");
+    for (std::size_t i = 0; i < count && markers == 1; ++i) {
+        reader.set_row("face", i + 1, count);
+        const std::vector<std::string_view>& words = node_row_words(reader, "number, three nodes and marker of a face");
+        // further numbers of a row are the neighbouring tetrahedra, which TetGen writes with its option -nn
+        require_words(reader, words.size(), 5, 7, "number, three nodes, marker and neighbours of a face");
+        std::array<Index, 3> nodes;
+        for (std::size_t a = 0; a < 3; ++a) nodes[a] = numbers.row(reader.parse_integer(words[a + 1], "node"), reader);
+        require_different(nodes, reader);
+        add_marked(reader, words[4], "face_marker_", mesh).faces.push_back(nodes);
+    }
+    mesh.sets.erase(no_marker);
+}
+
 }  // namespace
 
 RawMesh read_tetgen(const std::string& path) {
@@ -116,6 +150,10 @@ RawMesh read_tetgen(const std::string& path) {
     read_nodes(nodes, numbers, mesh);
     FileReader elements(base.replace_extension(".ele").string());
     read_tetrahedra(elements, numbers, mesh);
+    if (base.replace_extension(".face"); std::filesystem::exists(base)) {
+        FileReader faces(base.string());
+        read_faces(faces, numbers, mesh);
+    }
     return mesh;
 }
 

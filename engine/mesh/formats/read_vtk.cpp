@@ -12,7 +12,7 @@
 namespace skerry::mesh {
 namespace {
 
-enum class Kind { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+enum class Kind { bit, int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
 struct NumberType {
     Kind kind;
@@ -34,6 +34,7 @@ public:
             if (!has_types_) reader_.complain({}, "no section of cell types", "a section CELL_TYPES");
             reader_.set_section("CELLS");
             take_vtk_cells(cells_, reader_, mesh_);
+            take_vtk_sets(cells_, mesh_);
         }
         return std::move(mesh_);
     }
@@ -106,7 +107,8 @@ private:
             const char* name;
             NumberType type;
         };
-        static constexpr std::array<Name, 13> names{{{"float", {Kind::float32, 4}},
+        static constexpr std::array<Name, 14> names{{{"float", {Kind::float32, 4}},
+                                                     {"bit", {Kind::bit, 1}},
                                                      {"double", {Kind::float64, 8}},
                                                      {"int", {Kind::int32, 4}},
                                                      {"unsigned_int", {Kind::uint32, 4}},
@@ -285,8 +287,8 @@ private:
         cells_.offset.assign(1, 0);
     }
 
-    /// Reads the data arrays of points or cells, and stores only labels. Returns false at the end of the file and at
-    /// unknown content; the rest of the file is not needed for a mesh.
+    /// Reads the data arrays of points or cells, and stores labels and whole numbers. Returns false at the end of the
+    /// file and at unknown content; the rest of the file is not needed for a mesh.
     bool read_data(bool of_cells) {
         if (dataset_ == "POLYDATA") return false;
         const std::size_t rows = of_cells ? cells_.type.size() : mesh_.nodes.size();
@@ -359,25 +361,40 @@ private:
             const std::optional<NumberType> type = type_of(std::string(reader_.word("type")));
             if (!type) return false;
             begin_rows();
-            read_array(name, rows, components, of_cells && rows == data_rows, *type);
+            if (rows == data_rows)
+                read_array(name, rows, components, of_cells, *type);
+            else
+                skip_rows(rows, components, *type);
         }
         return true;
     }
 
-    /// Stores the array if it is the first array with labels; otherwise skips it.
+    /// Stores the array if it is the first array with labels, or if it has one whole number per row; otherwise skips
+    /// it.
     bool read_array(const std::string& name, std::size_t rows, std::size_t components, bool of_cells,
                     const NumberType& type) {
-        const bool wanted = of_cells && components == 1 && cells_.label.empty() && is_vtk_label(name);
-        if (!wanted) return skip_rows(rows, components, type);
-        std::vector<int> labels;
+        const bool labels = of_cells && cells_.label.empty() && is_vtk_label(name);
+        const bool real = type.kind == Kind::float32 || type.kind == Kind::float64;
+        if (components != 1 || (real && !labels)) return skip_rows(rows, components, type);
+        std::vector<int> numbers;
         bool whole = true;
+        unsigned bits = 0;  // a binary file packs eight bits into a byte, the first bit of an array being the highest
         for (std::size_t i = 0; i < rows; ++i) {
-            reader_.set_row("cell", i + 1, rows);
-            const std::optional<int> label = as_label(read_real(type, "label"));
-            whole = whole && label;
-            labels.push_back(label.value_or(0));
+            reader_.set_row(of_cells ? "cell" : "point", i + 1, rows);
+            std::optional<int> number;
+            if (binary_ && type.kind == Kind::bit) {
+                if (i % 8 == 0) bits = reader_.binary<std::uint8_t>("bits");
+                number = static_cast<int>(bits >> (7 - i % 8) & 1u);
+            } else {
+                number = as_label(read_real(type, labels ? "label" : "number"));
+            }
+            whole = whole && number;
+            numbers.push_back(number.value_or(0));
         }
-        if (whole) cells_.label = std::move(labels);
+        if (whole && labels)
+            cells_.label = std::move(numbers);
+        else if (whole && !is_vtk_label(name))
+            (of_cells ? cells_.cell_data : cells_.point_data).push_back({name, std::move(numbers)});
         return true;
     }
 
@@ -387,8 +404,10 @@ private:
     }
 
     bool skip_rows(std::size_t rows, std::size_t components, const NumberType& type) {
+        const bool bits = binary_ && type.kind == Kind::bit;
+        const std::size_t count = bits ? (components * rows + 7) / 8 : components * rows;
         const std::size_t numbers =
-            reader_.checked_count(static_cast<std::int64_t>(components * rows), binary_ ? type.size : 2, "numbers");
+            reader_.checked_count(static_cast<std::int64_t>(count), binary_ ? type.size : 2, "numbers");
         if (binary_)
             reader_.skip_bytes(numbers * type.size, "numbers");
         else

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <map>
@@ -16,7 +17,7 @@ struct Piece {
     XmlTag tag;
     std::optional<VtkXmlArray> points{};
     std::map<std::string, VtkXmlArray, std::less<>> cells{};
-    std::vector<VtkXmlArray> cell_data{};
+    std::vector<VtkXmlArray> cell_data{}, point_data{};
 };
 
 class VtuReader {
@@ -30,6 +31,7 @@ public:
         reader_.go_to(0);
         reader_.set_section("<Cells>");
         take_vtk_cells(cells_, reader_, mesh_);
+        take_vtk_sets(cells_, mesh_);
         return std::move(mesh_);
     }
 
@@ -94,6 +96,8 @@ private:
             piece.cells.insert_or_assign(name, array);
         else if (section == "CellData")
             piece.cell_data.push_back(array);
+        else if (section == "PointData")
+            piece.point_data.push_back(array);
     }
 
     void read_appended(const XmlTag& tag) {
@@ -140,6 +144,8 @@ private:
             integers_of(array_of(piece, name, "types"), form_, cells, "type", reader_);
         cells_.type.insert(cells_.type.end(), types.begin(), types.end());
         if (cells_.label.size() == first_cell) take_labels(piece, cells);
+        take_data(piece.point_data, points, first_node, cells_.point_data);
+        take_data(piece.cell_data, cells, first_cell, cells_.cell_data);
     }
 
     void take_points(const Piece& piece, const std::string& name, std::size_t count) {
@@ -196,6 +202,24 @@ private:
             if (labels.size() != count) continue;
             cells_.label.insert(cells_.label.end(), labels.begin(), labels.end());
             return;
+        }
+    }
+
+    /// Appends the arrays of whole numbers of a piece to `all`. `before`: number of points or cells of earlier pieces.
+    /// An array that an earlier piece lacks is ignored.
+    void take_data(const std::vector<VtkXmlArray>& arrays, std::size_t count, std::size_t before,
+                   std::vector<VtkArray>& all) {
+        for (const VtkXmlArray& array : arrays) {
+            const std::string name(array.tag.value_of("Name"));
+            const std::string_view type = array.tag.value_of("type"),
+                                   components = array.tag.value_of("NumberOfComponents", "1");
+            const bool whole = type.starts_with("Int") || type.starts_with("UInt");
+            if (!whole || (components != "1" && !components.empty()) || is_vtk_label(name)) continue;
+            auto known = std::ranges::find(all, name, &VtkArray::name);
+            if (known == all.end() && before == 0) known = all.insert(all.end(), {name, {}});
+            if (known == all.end() || known->value.size() != before) continue;
+            for (const Real number : reals_of(array, form_, count, "number", reader_))
+                if (const std::optional<int> value = as_label(number)) known->value.push_back(*value);
         }
     }
 

@@ -1,6 +1,8 @@
 #include "engine/mesh/formats/vtk_cells.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 namespace skerry::mesh {
 
@@ -60,6 +62,44 @@ void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
             mesh.curved_triangles += known && kind->name == curved_triangle;
         }
     }
+}
+
+namespace {
+
+/// Calls add(set, row) for every row of an array that belongs to a set.
+void for_each_member(const VtkArray& array, RawMesh& mesh, auto&& add) {
+    const std::set<int> values(array.value.begin(), array.value.end());
+    const bool is_flag = std::ranges::all_of(values, [](int value) { return value == 0 || value == 1; });
+    if (!is_flag && values.size() == array.value.size()) return;
+    std::map<int, MeshSet*> set_of;
+    for (const int value : values)
+        if (value != 0) set_of[value] = &mesh.sets[is_flag ? array.name : array.name + "_" + std::to_string(value)];
+    for (std::size_t row = 0; row < array.value.size(); ++row)
+        if (array.value[row] != 0) add(*set_of[array.value[row]], row);
+}
+
+}  // namespace
+
+void take_vtk_sets(const VtkCells& cells, RawMesh& mesh) {
+    for (const VtkArray& array : cells.point_data)
+        if (array.value.size() == mesh.nodes.size())
+            for_each_member(array, mesh,
+                            [](MeshSet& set, std::size_t row) { set.nodes.push_back(static_cast<Index>(row)); });
+    std::vector<Index> number;  // by cell: number of the tetrahedron
+    Index tetrahedra = 0;
+    for (const std::int64_t type : cells.type) number.push_back(type == 10 ? tetrahedra++ : no_index);
+    for (const VtkArray& array : cells.cell_data)
+        if (array.value.size() == cells.type.size())
+            for_each_member(array, mesh, [&](MeshSet& set, std::size_t cell) {
+                const std::span<const Index> nodes =
+                    std::span(cells.node).subspan(cells.offset[cell], cells.offset[cell + 1] - cells.offset[cell]);
+                if (number[cell] != no_index)
+                    set.tetrahedra.push_back(number[cell]);
+                else if (cells.type[cell] == 5)
+                    set.faces.push_back({nodes[0], nodes[1], nodes[2]});
+                else
+                    set.nodes.insert(set.nodes.end(), nodes.begin(), nodes.end());
+            });
 }
 
 }  // namespace skerry::mesh

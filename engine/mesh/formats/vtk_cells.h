@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -9,12 +10,19 @@
 
 namespace skerry::mesh {
 
+/// A data array of points or cells with one whole number each.
+struct VtkArray {
+    std::string name;
+    std::vector<int> value;
+};
+
 /// Cells of an unstructured grid as in a file. Cell c has the nodes node[offset[c]] to node[offset[c + 1] - 1].
 struct VtkCells {
     std::vector<std::size_t> offset{0};
     std::vector<Index> node;  // indices into RawMesh::nodes
     std::vector<std::int64_t> type;
     std::vector<int> label;  // label of each cell; empty: no labels
+    std::vector<VtkArray> point_data, cell_data;
 };
 
 /// True if cell data of this name are labels.
@@ -22,6 +30,9 @@ bool is_vtk_label(std::string_view name);
 
 /// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
 void take_vtk_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
+
+/// Adds the sets that the data arrays describe to a mesh that already has its tetrahedra. See mesh::read for the rules.
+void take_vtk_sets(const VtkCells& cells, RawMesh& mesh);
 
 /// Adds the tetrahedra and triangles to the mesh, and counts the cells of other kinds.
 void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh);

@@ -18,6 +18,7 @@ from ._results import (
 )
 from ._rollout import RolloutResult, rollout
 from ._scene import ContactProbe, Scene, load_scene, scene_schema
+from ._sets import MeshSet
 from ._settings import (
     Backend,
     Box,
@@ -127,6 +128,7 @@ __all__ = [
     "MaterialModel",
     "Mesh",
     "MeshReport",
+    "MeshSet",
     "Motion",
     "MotionKey",
     "Motor",

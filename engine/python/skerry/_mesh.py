@@ -6,7 +6,8 @@ import os
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, TypeAlias
+from types import MappingProxyType
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +25,7 @@ from ._arrays import (
     require_attributes,
 )
 from ._errors import Doubt, import_package, scene_error
+from ._sets import MeshSet, Parts, SetsLike, set_of, sets_arrays, sets_of_numbers
 from ._settings import SurfaceMesh
 
 Path: TypeAlias = str | os.PathLike[str]
@@ -31,7 +33,9 @@ Path: TypeAlias = str | os.PathLike[str]
 _LABEL_NAMES = ("region", "gmsh:physical", "medit:ref", "CellEntityIds")
 """Names of cell data that hold labels, as in files."""
 _LINEAR_TETRAHEDRON, _CURVED_TETRAHEDRA = 4, (11, 29, 30, 31)  # element types of Gmsh
-_VTK_TETRAHEDRON, _VTK_CURVED = 10, (24, 71)
+_LINEAR_TRIANGLE = 2
+_VTK_TRIANGLE, _VTK_TETRAHEDRON, _VTK_CURVED = 5, 10, (24, 71)
+_KINDS: Mapping[str, Literal["face", "tetrahedron"]] = {"triangle": "face", "tetra": "tetrahedron"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,6 +61,7 @@ class MeshReport:
     closed_manifold: True if every boundary edge has two triangles, and the triangles at every node form one ring.
     boundary_fault: first fault of the boundary, and number of faults; empty if there are none.
     labels: number of tetrahedra with each label; empty if the mesh has no labels.
+    sets: numbers of listed nodes, faces and tetrahedra of each set.
     """
 
     nodes: int
@@ -78,6 +83,7 @@ class MeshReport:
     closed_manifold: bool
     boundary_fault: str
     labels: Mapping[int, int]
+    sets: Mapping[str, tuple[int, int, int]]
 
     def __repr__(self) -> str:
         lines = [f"{field.name}: {_value_text(getattr(self, field.name))}" for field in fields(self)]
@@ -90,7 +96,7 @@ def _value_text(value: Any) -> str:
     if isinstance(value, tuple):
         return "(" + ", ".join(map(_value_text, value)) + ")"
     if isinstance(value, Mapping):
-        return ", ".join(f"{label}: {count:,}" for label, count in value.items()) or "none"
+        return ", ".join(f"{key}: {_value_text(count)}" for key, count in value.items()) or "none"
     return f"{value:,}" if isinstance(value, int) and not isinstance(value, bool) else str(value) or "none"
 
 
@@ -100,17 +106,25 @@ class Mesh:
     nodes: positions of the nodes, shape (n, 3) [m].
     tetrahedra: numbers of the nodes of each tetrahedron, shape (m, 4).
     labels: label of each tetrahedron, shape (m,), such as the number of its material; None: no labels.
+    sets: named parts, each a MeshSet or an array of node numbers.
 
     TypeError: an array has the wrong shape or type. SceneError: a tetrahedron names a node that does not exist, or the
     same node twice. Inverted tetrahedra are turned as by read(), with a warning Doubt."""
 
     __slots__ = ("_arrays", "_core")
 
-    def __init__(self, nodes: ArrayLike, tetrahedra: ArrayLike, *, labels: ArrayLike | None = None) -> None:
+    def __init__(
+        self,
+        nodes: ArrayLike,
+        tetrahedra: ArrayLike,
+        *,
+        labels: ArrayLike | None = None,
+        sets: SetsLike | None = None,
+    ) -> None:
         points = real_array(nodes, "nodes", ("n", 3))
         rows = index_array(tetrahedra, "tetrahedra", ("m", 4))
         given = None if labels is None else index_array(labels, "labels", (len(rows),))
-        core, notes = _core.new_mesh(points, rows, given)
+        core, notes = _core.new_mesh(points, rows, given, sets_arrays(sets))
         self._hold(core)
         _warn(notes)
 
@@ -131,8 +145,10 @@ class Mesh:
         """Reads a mesh from Gmsh .msh (1, 2.2, 4.1), VTK .vtk or .vtu, or TetGen .node and .ele.
 
         Only linear tetrahedra are used, and unused nodes are dropped. Labels are physical groups (Gmsh), the cell data
-        region, gmsh:physical, medit:ref or CellEntityIds (VTK), or the last attribute (TetGen). Inverted tetrahedra are
-        turned, with a warning Doubt. SceneError: the file cannot be read, or has no tetrahedra."""
+        region, gmsh:physical, medit:ref or CellEntityIds (VTK), or the last attribute (TetGen). Sets are physical
+        groups by name, or surface_N and the like without one (Gmsh); arrays NAME of zeros and ones, and NAME_N for each
+        number N of other arrays of whole numbers (VTK); node_marker_N and face_marker_N (TetGen). Inverted tetrahedra
+        are turned, with a warning Doubt. SceneError: the file cannot be read, or has no tetrahedra."""
         core, notes = _core.read_mesh(path_text(path, "path"))
         _warn(notes)
         return Mesh._of(core)
@@ -196,7 +212,8 @@ class Mesh:
     @staticmethod
     def from_meshio(mesh: Any) -> Mesh:
         """Mesh of a meshio.Mesh. Labels are the first cell data named region, gmsh:physical, medit:ref or
-        CellEntityIds that hold whole numbers. Cells that are not tetrahedra and unused nodes are dropped."""
+        CellEntityIds that hold whole numbers. Sets are point sets, cell sets, physical groups with a name, and data of
+        whole numbers by the rules of read(). Cells that are not tetrahedra and unused nodes are dropped."""
         require_attributes(mesh, "mesh", "a meshio.Mesh", "cells", "cell_data", "points")
         blocks = [number for number, block in enumerate(mesh.cells) if block.type == "tetra"]
         curved = sum(len(block.data) for block in mesh.cells if block.type in ("tetra10", "tetra20", "tetra35"))
@@ -204,7 +221,31 @@ class Mesh:
         rows = [np.asarray(mesh.cells[number].data) for number in blocks]
         data = {name: [np.asarray(mesh.cell_data[name][number]) for number in blocks] for name in mesh.cell_data}
         labels = _first_labels({name: np.concatenate(values) for name, values in data.items() if values})
-        return _mesh_of_used_nodes("meshio mesh", mesh.points, rows, labels)
+        parts = Parts()
+        for name, nodes in getattr(mesh, "point_sets", {}).items():
+            parts.add_nodes(name, nodes)
+        for name, values in getattr(mesh, "point_data", {}).items():
+            for of_set, members in sets_of_numbers(name, np.asarray(values)).items():
+                parts.add_nodes(of_set, np.flatnonzero(members))
+        numbers = {
+            name: sets_of_numbers(name, np.concatenate([np.ravel(block) for block in values]))
+            for name, values in mesh.cell_data.items()
+            if name not in _LABEL_NAMES and all(np.ndim(block) == 1 for block in values) and len(values)
+        }
+        first = first_cell = 0
+        for number, block in enumerate(mesh.cells):
+            of_block: dict[str, NDArray[np.bool_]] = {}
+            cells = np.asarray(block.data)
+            for sets in numbers.values():
+                of_block |= {name: members[first_cell : first_cell + len(cells)] for name, members in sets.items()}
+            for name, blocks in getattr(mesh, "cell_sets", {}).items():
+                if blocks[number] is not None:
+                    of_block[name] = np.isin(np.arange(len(cells)), blocks[number])
+            of_block |= _named_groups(mesh, number, block.dim if hasattr(block, "dim") else None)
+            parts.add_block(_KINDS.get(block.type, "node"), cells, first, of_block)
+            first += len(cells) if block.type == "tetra" else 0
+            first_cell += len(cells)
+        return _mesh_of_used_nodes("meshio mesh", mesh.points, rows, labels, parts.arrays())
 
     def to_meshio(self) -> Any:
         """The mesh as a meshio.Mesh. Labels become the cell data gmsh:physical. Needs the package meshio."""
@@ -214,15 +255,26 @@ class Mesh:
 
     @staticmethod
     def from_pyvista(grid: Any) -> Mesh:
-        """Mesh of a pyvista.UnstructuredGrid. Labels are found as by from_meshio(). Cells that are not tetrahedra and
-        unused nodes are dropped."""
+        """Mesh of a pyvista.UnstructuredGrid. Labels and sets are found as by from_meshio(). Cells that are not
+        tetrahedra and unused nodes are dropped."""
         require_attributes(grid, "grid", "a pyvista.UnstructuredGrid", "celltypes", "cells_dict", "cell_data", "points")
         kinds = np.asarray(grid.celltypes)
         _require_linear("PyVista grid", int(np.isin(kinds, _VTK_CURVED).sum()))
         chosen = kinds == _VTK_TETRAHEDRON
         rows = [np.asarray(grid.cells_dict[_VTK_TETRAHEDRON])] if chosen.any() else []
         labels = _first_labels({name: np.asarray(grid.cell_data[name])[chosen] for name in grid.cell_data})
-        return _mesh_of_used_nodes("PyVista grid", grid.points, rows, labels)
+        parts, cells_of = Parts(), dict(grid.cells_dict)
+        for name in getattr(grid, "point_data", {}):
+            for of_set, members in sets_of_numbers(name, np.asarray(grid.point_data[name])).items():
+                parts.add_nodes(of_set, np.flatnonzero(members))
+        for name in grid.cell_data:
+            if name in _LABEL_NAMES:
+                continue
+            for of_set, members in sets_of_numbers(name, np.asarray(grid.cell_data[name])).items():
+                for kind, cells in cells_of.items():
+                    of_kind = {_VTK_TETRAHEDRON: "tetrahedron", _VTK_TRIANGLE: "face"}.get(int(kind), "node")
+                    parts.add_block(of_kind, np.asarray(cells), 0, {of_set: members[kinds == kind]})  # type: ignore[arg-type]
+        return _mesh_of_used_nodes("PyVista grid", grid.points, rows, labels, parts.arrays())
 
     def to_pyvista(self) -> Any:
         """The mesh as a pyvista.UnstructuredGrid. Labels become the cell data region. Needs the package pyvista."""
@@ -236,7 +288,7 @@ class Mesh:
     def from_gmsh(model: Any) -> Mesh:
         """Mesh of the current model of Gmsh: Mesh.from_gmsh(gmsh.model). The label of a tetrahedron is the number of
         its physical group (the first, if its volume is in several), and 0 outside of all groups; if no tetrahedron is
-        in a group, it is the number of its volume."""
+        in a group, it is the number of its volume. Sets are the physical groups, as by read()."""
         require_attributes(model, "model", "gmsh.model", "mesh", "getEntities", "getPhysicalGroupsForEntity")
         tags, positions, _ = model.mesh.getNodes()
         place = np.zeros(int(max(tags, default=0)) + 1, dtype=np.int64)
@@ -257,7 +309,11 @@ class Mesh:
         _require_linear("Gmsh model", curved)
         labels = groups if any(np.any(group) for group in groups) else volumes
         return _mesh_of_used_nodes(
-            "Gmsh model", np.reshape(positions, (-1, 3)), rows, np.concatenate(labels) if labels else None
+            "Gmsh model",
+            np.reshape(positions, (-1, 3)),
+            rows,
+            np.concatenate(labels) if labels else None,
+            _gmsh_groups(model, place, np.concatenate(volumes) if volumes else np.empty(0)),
         )
 
     # Contents.
@@ -288,6 +344,13 @@ class Mesh:
         return array
 
     @property
+    def sets(self) -> Mapping[str, MeshSet]:
+        """Named parts of the mesh."""
+        if "sets" not in self._arrays:
+            self._arrays["sets"] = {name: set_of(arrays) for name, arrays in self._core.sets().items()}
+        return MappingProxyType(self._arrays["sets"])
+
+    @property
     def volume(self) -> float:
         """Volume [m^3]."""
         corners = self.nodes[self.tetrahedra]
@@ -311,7 +374,8 @@ class Mesh:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Mesh):
             return NotImplemented
-        return all(np.array_equal(a, b) for a, b in zip(self._contents(), other._contents(), strict=True))
+        arrays = zip(self._contents(), other._contents(), strict=True)
+        return all(np.array_equal(a, b) for a, b in arrays) and dict(self.sets) == dict(other.sets)
 
     def __hash__(self) -> int:
         return hash((self.nodes.tobytes(), self.tetrahedra.tobytes()))
@@ -320,7 +384,7 @@ class Mesh:
         return (self.nodes, self.tetrahedra, self.labels, self.file_number)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (_same_mesh, self._contents())
+        return (_same_mesh, (*self._contents(), dict(self.sets)))
 
     def __repr__(self) -> str:
         labels = "" if self.labels is None else f", {len(np.unique(self.labels)):,} labels"
@@ -335,8 +399,8 @@ def read_surface(path: Path) -> SurfaceMesh:
     return SurfaceMesh(nodes=nodes, triangles=triangles)
 
 
-def _same_mesh(nodes: Any, tetrahedra: Any, labels: Any, file_number: Any) -> Mesh:
-    return Mesh._of(_core.same_mesh(nodes, tetrahedra, labels, file_number))
+def _same_mesh(nodes: Any, tetrahedra: Any, labels: Any, file_number: Any, sets: SetsLike) -> Mesh:
+    return Mesh._of(_core.same_mesh(nodes, tetrahedra, labels, file_number, sets_arrays(sets)))
 
 
 def _warn(notes: list[str]) -> None:
@@ -360,8 +424,15 @@ def _first_labels(data: Mapping[str, NDArray[Any]]) -> NDArray[np.int32] | None:
     return None
 
 
-def _mesh_of_used_nodes(object: str, points: ArrayLike, rows: list[NDArray[Any]], labels: ArrayLike | None) -> Mesh:
-    """Mesh without the nodes that no tetrahedron uses."""
+def _mesh_of_used_nodes(
+    object: str,
+    points: ArrayLike,
+    rows: list[NDArray[Any]],
+    labels: ArrayLike | None,
+    sets: Mapping[str, Sequence[NDArray[Any]]],
+) -> Mesh:
+    """Mesh without the nodes that no tetrahedron uses. `sets`: nodes, faces and tetrahedra of each set. Triangles that
+    are not faces of a tetrahedron are dropped from the sets."""
     if not any(len(block) for block in rows):
         raise scene_error(object, "cells", "no tetrahedra", "at least one tetrahedron")
     nodes = real_array(points, f"{object}: points", ("n", 3))
@@ -369,4 +440,56 @@ def _mesh_of_used_nodes(object: str, points: ArrayLike, rows: list[NDArray[Any]]
     if tetrahedra.min() < 0 or tetrahedra.max() >= len(nodes):
         raise scene_error(object, "cells", f"node {tetrahedra.max()}", f"nodes from 0 to {len(nodes) - 1}")
     used, place = np.unique(tetrahedra, return_inverse=True)
-    return Mesh(nodes[used], place.reshape(-1, 4).astype(np.int32), labels=labels)
+    tetrahedra = place.reshape(-1, 4).astype(np.int32)
+    number = np.full(len(nodes), -1, dtype=np.int32)
+    number[used] = np.arange(len(used))
+    corners = np.sort(tetrahedra, axis=1).astype(np.int64)
+    known = np.unique(np.concatenate([_face_keys(np.delete(corners, k, axis=1), len(used)) for k in range(4)]))
+    kept = {}
+    for name, (of_nodes, faces, of_tetrahedra) in sets.items():
+        numbered = number[np.asarray(of_nodes, dtype=np.int64)]
+        triangles = number[np.asarray(faces, dtype=np.int64).reshape(-1, 3)]
+        triangles = triangles[np.all(triangles >= 0, axis=1)]
+        triangles = triangles[np.isin(_face_keys(np.sort(triangles, axis=1).astype(np.int64), len(used)), known)]
+        part = MeshSet(nodes=numbered[numbered >= 0], faces=triangles, tetrahedra=of_tetrahedra)
+        if len(numbered[numbered >= 0]) + len(triangles) + len(of_tetrahedra):
+            kept[name] = part
+    return Mesh(nodes[used], tetrahedra, labels=labels, sets=kept)
+
+
+def _named_groups(mesh: Any, number: int, dimension: int | None) -> dict[str, NDArray[np.bool_]]:
+    """Members of the named physical groups of Gmsh in a block of cells of a meshio.Mesh."""
+    groups = mesh.cell_data.get("gmsh:physical")
+    if groups is None:
+        return {}
+    return {
+        name: np.asarray(groups[number]) == group[0]
+        for name, group in getattr(mesh, "field_data", {}).items()
+        if len(group) == 2 and group[1] == dimension
+    }
+
+
+def _gmsh_groups(model: Any, place: NDArray[np.int64], volumes: NDArray[Any]) -> dict[str, list[NDArray[Any]]]:
+    """Physical groups of a Gmsh model. `place`: number of each node by tag. `volumes`: volume of each tetrahedron."""
+    parts = Parts()
+    for dimension, tag in model.getPhysicalGroups():
+        name = model.getPhysicalName(dimension, tag)
+        if not name and dimension == 3:
+            continue
+        name = name or f"{('point', 'curve', 'surface')[dimension]}_{tag}"
+        entities = model.getEntitiesForPhysicalGroup(dimension, tag)
+        if dimension == 3:
+            parts.add_cells(name, "tetrahedron", np.flatnonzero(np.isin(volumes, entities)), 0)
+            continue
+        for entity in entities:
+            kinds, _, nodes = model.mesh.getElements(dimension, entity)
+            for kind, of_kind in zip(kinds, nodes, strict=True):
+                cells = place[np.asarray(of_kind, dtype=np.int64)]
+                parts.add_cells(name, "face" if kind == _LINEAR_TRIANGLE else "node", cells, 0)
+    return parts.arrays()
+
+
+def _face_keys(nodes: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """One number for each face. `nodes`: ascending node numbers of the faces, shape (k, 3)."""
+    keys: NDArray[np.int64] = (nodes[:, 0] * count + nodes[:, 1]) * count + nodes[:, 2]
+    return keys

@@ -95,6 +95,7 @@ nb::dict relax_world(WorldObject& object, Real tolerance, int max_steps) {
 
 void bind_advance(WorldClass& type) {
     type.def("advance", &advance, nb::arg("dt"), nb::arg("check").none(), nb::arg("watch").none())
+        .def("relax", &relax_world)
         // World::watch_steps refuses calls of callbacks. It has no other effect, because StepWatchScope has removed its
         // function.
         .def("require_between_steps", guarded([](World& world) { world.watch_steps({}); }))

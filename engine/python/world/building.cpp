@@ -22,11 +22,13 @@ BodySettings body_settings(const MaterialHandle& material, nb::handle given) {
 }
 
 BodyHandle add_body(WorldObject& object, const Mesh& mesh, const MaterialHandle& material,
-                    const std::map<int, MaterialHandle>& materials, nb::handle given) {
+                    const std::map<int, MaterialHandle>& materials,
+                    const std::map<std::string, MaterialHandle>& materials_of_sets, nb::handle given) {
     Use use(object);
     require_no_views(object, "add_body");
     BodySettings settings = body_settings(material, given);
     settings.materials = materials;
+    settings.materials_of_sets = materials_of_sets;
     return without_gil([&] { return object.world.add_body(mesh, settings); });
 }
 
@@ -55,12 +57,12 @@ ColliderHandle add_collider(WorldObject& object, nb::handle shape, nb::handle gi
 }
 
 AttachmentHandle attach(WorldObject& object, const BodyHandle& body, const Indices& nodes, nb::handle motion,
-                        const Vec3& pivot) {
+                        const Vec3& pivot, const std::vector<Vec3>& directions) {
     Use use(object);
     require_no_views(object, "attach");
     Motion given;
     read(motion, given);
-    return object.world.attach(body, span_of(nodes), given, pivot);
+    return object.world.attach(body, span_of(nodes), given, pivot, directions);
 }
 
 template <class HandleType>

@@ -16,6 +16,7 @@ void bind_state(WorldClass& type);
 void bind_control(WorldClass& type);
 void bind_joints(WorldClass& type);
 void bind_loads(WorldClass& type);
+void bind_sets(WorldClass& type);
 void bind_views(WorldClass& type);
 void bind_results(WorldClass& type);
 void bind_problem_watch(WorldClass& type);

@@ -140,6 +140,9 @@ void bind_links(WorldClass& type) {
                  const std::vector<Index> nodes = world.nodes(attachment);
                  return python::array_of<Index>(std::span<const Index>(nodes));
              }))
+        .def("directions", guarded([](World& world, const AttachmentHandle& attachment) {
+                 return python::array_of(world.directions(attachment));
+             }))
         .def("materials", guarded([](World& world) { return world.materials(); }))
         .def("material_of", guarded([](World& world, const BodyHandle& body) { return world.material(body); }))
         .def("loads",

@@ -91,6 +91,7 @@ void bind_world(nb::module_& module) {
     bind_control(type);
     bind_joints(type);
     bind_loads(type);
+    bind_sets(type);
     bind_views(type);
     bind_results(type);
     bind_problem_watch(type);

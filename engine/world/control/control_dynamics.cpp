@@ -166,6 +166,8 @@ std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     const auto after = static_cast<std::size_t>(row);
     model.body_records[after].name = record.name;
     model.body_records[after].start = record.start;
+    model.body_records[after].label = record.label;
+    model.body_records[after].sets = record.sets;
     try {
         validate_step(model, row, record.name);
     } catch (const SceneError&) {

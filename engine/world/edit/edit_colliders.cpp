@@ -82,12 +82,13 @@ SurfaceProperties surface_properties(const SurfaceSettings& settings) {
 }
 
 Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<const Index> nodes,
-                        const RigidPose& pose, const Motion& motion, Real now) {
+                        const RigidPose& pose, const Motion& motion, Real now, const Mat3& held) {
     AttachmentTable& table = model.attachments;
     const std::size_t row = table.slot.size();
     AnyTable(table).resize(row + 1);
     table.slot[row] = slot;
     table.body[row] = body;
+    table.held[row] = held;
     table.initial[row] = initial_of(pose, motion, now);
     table.script[row] = append_script(motion, table.keyframe);
     const RigidPose present = pose_at(table.script[row], table.keyframe, table.initial[row], now);
@@ -98,6 +99,8 @@ Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<
         const auto n = static_cast<std::size_t>(model.bodies.nodes[b].begin + local);
         table.node.push_back(static_cast<Index>(n));
         table.anchor.push_back(present.rotation.transpose() * (model.nodes.position[n] - present.position));
+        model.nodes.velocity[n] -= held * (held.transpose() * model.nodes.velocity[n]);
+        if (!holds_completely(held)) continue;
         if (model.nodes.inverse_mass[n] > 0) ++model.bodies.pinned_count[b];
         model.nodes.inverse_mass[n] = 0;
         model.nodes.velocity[n] = Vec3::Zero();
@@ -110,11 +113,12 @@ void erase_attachment(Model& model, Index row) {
     AttachmentTable& table = model.attachments;
     const auto r = static_cast<std::size_t>(row);
     const auto body = static_cast<std::size_t>(table.body[r]);
-    for (Index i = table.nodes[r].begin; i < table.nodes[r].end; ++i) {
+    const bool complete = holds_completely(table.held[r]);
+    for (Index i = table.nodes[r].begin; i < table.nodes[r].end && complete; ++i) {
         const Index node = table.node[static_cast<std::size_t>(i)];
         bool held_elsewhere = false;
         for (std::size_t other = 0; other < table.slot.size() && !held_elsewhere; ++other) {
-            if (other == r || table.body[other] != table.body[r]) continue;
+            if (other == r || table.body[other] != table.body[r] || !holds_completely(table.held[other])) continue;
             for (Index j = table.nodes[other].begin; j < table.nodes[other].end; ++j)
                 held_elsewhere |= table.node[static_cast<std::size_t>(j)] == node;
         }

@@ -129,8 +129,9 @@ void remember_elements(Model& model, Index row, KnownElements trial);
 
 /// Returns surface properties, in which -1 marks a value that the settings leave out.
 SurfaceProperties surface_properties(const SurfaceSettings& settings);
+/// `held`: directions along which the nodes are held, as in AttachmentTable.
 Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<const Index> nodes,
-                        const RigidPose& pose, const Motion& motion, Real now);
+                        const RigidPose& pose, const Motion& motion, Real now, const Mat3& held = Mat3::Identity());
 /// Removes the row of an attachment whose handle was already removed. The attached nodes become free unless another
 /// attachment holds them.
 void erase_attachment(Model& model, Index row);

@@ -125,6 +125,10 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
         const Index body = model.attachments.body[a];
         if (model.attachments.slot[a] == no_slot || !rests(model, body)) continue;
         std::vector<std::size_t> held;
+        if (!holds_completely(model.attachments.held[a])) {
+            take_over_axes(model, a, contact_force);
+            continue;
+        }
         for (const Index n : rows_of(model.attachments.node, model.attachments.nodes[a])) {
             const auto row = static_cast<std::size_t>(n);
             if (!taken[row]) held.push_back(row);
@@ -151,6 +155,30 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
             row.still.moment[axis] += power([&](const Vec3& x) { return Vec3(unit.cross(x - moment_point_)); });
         }
         for (const std::size_t n : held) motion[n].setZero();
+    }
+}
+
+/// Does the same for an attachment that holds its nodes along single directions.
+void ForceLedger::take_over_axes(const Model& model, std::size_t attachment, std::span<const Vec3> contact_force) {
+    const NodeTable& nodes = model.nodes;
+    const Mat3& held = model.attachments.held[attachment];
+    const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
+    Column<Vec3> motion;
+    motion.assign(nodes.position.size(), Vec3::Zero());
+    AttachmentRow& row = attachments_[model.attachments.slot[attachment]];
+    row.still_seconds = 1;
+    for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[attachment])) {
+        const auto n = static_cast<std::size_t>(node);
+        if (!(nodes.inverse_mass[n] > 0)) continue;
+        Vec3 force = -(nodes.mass[n] * model.settings.gravity + nodes.applied_before[n] + contact_force[n]);
+        for (int axis = 0; axis < 3; ++axis) {
+            motion[n] = Vec3::Unit(axis);
+            force[axis] +=
+                kernels().elastic_power(model.all_elements(), model.bodies.blocks[body], nodes.position, motion);
+        }
+        motion[n].setZero();
+        force = held * (held.transpose() * force);
+        row.still += {force, (nodes.position[n] - moment_point_).cross(force)};
     }
 }
 
@@ -330,6 +358,8 @@ void ForceLedger::add_drift(const Model& model, Real seconds, StepScratch& scrat
         const Range nodes = model.attachments.nodes[a];
         // the momentum of a rigid body cannot be computed from node velocities
         if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a]))) continue;
+        // nodes that are held along single directions keep their velocities in a drift
+        if (!holds_completely(model.attachments.held[a])) continue;
         for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
             const auto n = static_cast<std::size_t>(model.attachments.node[i]);
             const Vec3 impulse = model.nodes.mass[n] * (model.nodes.velocity[n] - scratch.forces.held_velocity[n]);

@@ -222,7 +222,14 @@ void check_moved(const SavedFile& file, const Model& model) {
     check_scripts(file, "attachments", attachments);
     expect_rows_of(file, "attachments/body", attachments.body, model.bodies.slot.size());
     expect_partition(file, "attachments/nodes", attachments.nodes, attachments.node.size());
-    for (std::size_t a = 0; a < attachments.slot.size(); ++a)
+    for (std::size_t a = 0; a < attachments.slot.size(); ++a) {
+        const Mat3& held = attachments.held[a];
+        const Mat3 products = held.transpose() * held;  // of orthonormal or zero columns
+        const Vec3 lengths = products.diagonal();
+        const bool unit = ((lengths.array() - 1).abs() < 1e-9 || lengths.array() == 0).all() && lengths.maxCoeff() > 0;
+        if (!unit || !(products - Mat3(lengths.asDiagonal())).isZero(1e-9))
+            file.complain("attachments/held", "a wrong matrix for attachment " + std::to_string(a),
+                          "columns that are zero or perpendicular unit vectors, at least one of them not zero");
         for (const Index n : part(attachments.node, attachments.nodes[a])) {
             const Range nodes = model.bodies.nodes[attachments.body[a]];
             if (n < nodes.begin || n >= nodes.end)
@@ -230,6 +237,7 @@ void check_moved(const SavedFile& file, const Model& model) {
                               "a node of the attached body, " + std::to_string(nodes.begin) + " to " +
                                   std::to_string(nodes.end - 1));
         }
+    }
 }
 
 void check_disabled_pairs(const SavedFile& file, const Model& model) {
@@ -331,7 +339,8 @@ void check_keys(const SavedFile& file, const std::string& table, const std::stri
     for (std::size_t row = 0; row < range.size(); ++row) {
         const Range keys = range[row];
         if (!(keys.begin >= 0 && keys.begin <= keys.end && keys.end <= static_cast<Index>(key.size())))
-            file.complain(place, at_row("a range that does not exist", row), "a range of the rows of " + table + "/key");
+            file.complain(place, at_row("a range that does not exist", row),
+                          "a range of the rows of " + table + "/key");
         const std::span<const TimeKey> list = rows_of(key, keys);
         if (std::ranges::adjacent_find(list, std::greater_equal<>(), &TimeKey::time) != list.end())
             file.complain(table + "/key", at_row("keys whose times do not ascend", row), "ascending times");

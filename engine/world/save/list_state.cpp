@@ -50,6 +50,12 @@ void list_records(SavedRows& saved, Archive& archive) {
     archive.column("records/body_built", saved.body_built);
     list_ragged("records/mesh_shape", saved.mesh_shape, archive);
     list_ragged("records/tetrahedron_material", saved.tetrahedron_material, archive);
+    list_ragged("records/label", saved.sets.label, archive);
+    archive.column("sets/body", saved.sets.body);
+    list_ragged("sets/name", saved.sets.name, archive);
+    list_ragged("sets/nodes", saved.sets.nodes, archive);
+    list_ragged("sets/tetrahedra", saved.sets.tetrahedra, archive);
+    list_ragged("sets/faces", saved.sets.faces, archive);
     list_ragged("records/body_name", saved.body_name, archive);
     list_ragged("records/collider_name", saved.collider_name, archive);
     archive.column("records/shape_kind", saved.shape_kind);

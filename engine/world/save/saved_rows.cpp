@@ -269,6 +269,7 @@ SavedRows rows_to_save(const WorldState& world) {
         append(std::span<const Index>(record.tetrahedron_material), saved.tetrahedron_material);
         append_text(record.name, saved.body_name);
     }
+    saved.sets = sets_to_save(model);
     for (const ColliderRecord& record : model.collider_records) {
         saved.shape_kind.push_back(static_cast<ColliderShape>(record.shape.index()));
         saved.shape_size.push_back(std::visit(SizeOf{}, record.shape));
@@ -368,6 +369,7 @@ void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
         for (const Index at : parts.covered_offset) record.element_tetrahedra.offset.push_back(at);
         for (const Index t : parts.covered_item) record.element_tetrahedra.item.push_back(t);
     }
+    put_sets(saved.sets, file, model);
 
     expect_rows(file, "records/shape_kind", saved.shape_kind.size(), colliders, "colliders");
     expect_rows(file, "records/shape_size", saved.shape_size.size(), colliders, "colliders");

@@ -5,6 +5,7 @@
 
 #include "components/ragged.h"
 #include "engine/world/save/saved_file.h"
+#include "engine/world/save/saved_sets.h"
 #include "engine/world/world_state.h"
 
 namespace skerry {
@@ -49,10 +50,11 @@ struct SavedRows {
     Column<DynamicsReason> choice_reason;  // reason of BodyRecord::choice
     // all members of BodyRecord::choice except the reason, in the order of their declaration
     Column<std::array<Real, 7>> choice_estimate;
-    Column<std::array<Real, 12>> body_start;        // BodyRecord::start: position [m], and columns of the rotation
-    Column<std::array<Real, 9>> body_built;         // BodyRecord::built: columns of the rotation
-    Ragged<Vec3> mesh_shape;                        // BodyRecord::mesh_shape [m]
-    Ragged<Index> tetrahedron_material;             // BodyRecord::tetrahedron_material
+    Column<std::array<Real, 12>> body_start;  // BodyRecord::start: position [m], and columns of the rotation
+    Column<std::array<Real, 9>> body_built;   // BodyRecord::built: columns of the rotation
+    Ragged<Vec3> mesh_shape;                  // BodyRecord::mesh_shape [m]
+    Ragged<Index> tetrahedron_material;       // BodyRecord::tetrahedron_material
+    SavedSets sets;
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
     Column<ColliderShape> shape_kind;               // alternative of Shape
     // members of the shape in the order of their declaration, filled up with zeros

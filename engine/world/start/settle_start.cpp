@@ -78,8 +78,8 @@ private:
     /// a step, and mesh colliders.
     Real mobility(Index body) const {
         const auto b = static_cast<std::size_t>(body);
-        const bool stays = model_.bodies.kind[b] != BodyKind::deformable || model_.bodies.pinned_count[b] > 0 ||
-                           model_.body_records[b].settled;
+        const bool stays = model_.bodies.kind[b] != BodyKind::deformable || model_.body_records[b].settled ||
+                           std::ranges::find(model_.attachments.body, body) != model_.attachments.body.end();
         return stays ? 0 : 1 / model_.body_mass[b];
     }
     Real mobility_of_second(const StartPair& pair) const { return pair.is_analytic ? 0 : mobility(pair.second); }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -55,6 +56,8 @@ struct BodyRecord {
     // Material of each tetrahedron, as row of MaterialTable. If the column is empty, all tetrahedra have the material
     // of the body.
     std::vector<Index> tetrahedron_material;
+    std::vector<int> label{};               // Mesh::label
+    std::map<std::string, MeshSet> sets{};  // sets by name, in local numbers
     // Tetrahedra covered by each element, in the order of the lanes in the element blocks of the body. An unused lane
     // has no tetrahedra.
     Ragged<Index> element_tetrahedra;

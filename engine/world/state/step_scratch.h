@@ -20,6 +20,7 @@
 #include "systems/dynamics/checks/measure_work.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
 #include "systems/dynamics/joints/measure_joints.h"
+#include "systems/dynamics/motion/hold_axes.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "systems/forces/add_loads.h"
@@ -127,6 +128,7 @@ struct StepScratch {
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;
     ForceScratch forces;
+    AxisHolds axis_holds;
     Column<Real> stiffness_sum;        // one entry per node; working memory of stable_step
     Column<std::uint8_t> beside_fast;  // one entry per node; working memory of check_state
     Column<Vec3> cluster_kick;         // used by kick_clusters

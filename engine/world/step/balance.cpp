@@ -91,8 +91,9 @@ void add_step(const StepScratch& step, Balance& balance) {
     if (!balance.open) return;
     const ContactMeasures& contacts = step.findings.measures;
     const ExternalWork& external = step.findings.external;
-    const std::array<Vec3, 6> impulses{step.parameters.kick * step.awake_mass * step.parameters.gravity,
+    const std::array<Vec3, 7> impulses{step.parameters.kick * step.awake_mass * step.parameters.gravity,
                                        external.impulse,
+                                       step.axis_holds.sum.impulse,
                                        step.findings.strained.impulse,
                                        contacts.outer_impulse,
                                        step.findings.joints.impulse,
@@ -100,8 +101,8 @@ void add_step(const StepScratch& step, Balance& balance) {
     Real push_work = 0;
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;
-    const Real work = push_work + external.work + step.findings.joints.work + contacts.outer_work -
-                      contacts.dissipated - step.findings.damped - step.findings.strained.damped -
+    const Real work = push_work + external.work + step.axis_holds.sum.work + step.findings.joints.work +
+                      contacts.outer_work - contacts.dissipated - step.findings.damped - step.findings.strained.damped -
                       step.findings.relaxed - step.findings.viscous - step.findings.rest.energy;
     ++balance.steps;
     // Impulses that cancel each other also count as exchanged momentum, for example those of weight and support.

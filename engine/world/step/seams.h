@@ -54,16 +54,16 @@ struct ConstraintLaw {
 };
 
 extern const ForceElement nodal_loads, loads_and_fields;
-extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies;
+extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies, held_axes;
 extern const ConstraintLaw contact_law, joint_law;
 
 /// All force elements. Nodal loads come first: their stage sets the total force on each node, to which the other force
 /// elements add.
 inline constexpr std::array<const ForceElement*, 2> force_elements{&nodal_loads, &loads_and_fields};
 /// All motion models. The order matters where two models write the same columns. Rigid bodies come first, because the
-/// frames of implicit bodies move like rigid bodies.
-inline constexpr std::array<const MotionModel*, 4> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,
-                                                                 &implicit_bodies};
+/// frames of implicit bodies move like rigid bodies. Held axes come last, because they correct velocities.
+inline constexpr std::array<const MotionModel*, 5> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,
+                                                                 &implicit_bodies, &held_axes};
 /// All constraint laws.
 inline constexpr std::array<const ConstraintLaw*, 2> constraint_laws{&contact_law, &joint_law};
 

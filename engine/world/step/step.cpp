@@ -154,7 +154,7 @@ void measure_forces(WorldState& w, TaskGraph& g) {
             make(f.pairs), make(f.held_impulse), if_wanted);
     g.stage("dynamics/measure_reactions", measure_reactions,
             inputs<ReactionInputs>(m.attachments, m.nodes, m.bodies, m.materials, m.elements, m.element_nodes,
-                                   m.rigid_bodies, f.held_impulse, f.held_velocity),
+                                   m.rigid_bodies, w.scratch.axis_holds.impulse, f.held_impulse, f.held_velocity),
             value(p.kick), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
 }
 

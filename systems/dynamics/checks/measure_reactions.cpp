@@ -21,6 +21,22 @@ bool counts(const ReactionInputs& inputs, Index body) {
     return is_awake(inputs, body) && (inputs.body_rigid[b].size() == 0 || inputs.body_implicit[b].size() > 0);
 }
 
+/// True for an attachment whose nodes are held one by one and completely.
+bool counts(const ReactionInputs& inputs, std::size_t attachment) {
+    return holds_completely(inputs.directions[attachment]) && counts(inputs, inputs.attached_body[attachment]);
+}
+
+/// Adds the reaction on nodes that are held along single directions.
+void add_axes(const ReactionInputs& inputs, const Vec3& moment_point, std::size_t a, ImpulseAndMoment& reaction) {
+    if (holds_completely(inputs.directions[a])) return;
+    for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
+         i < static_cast<std::size_t>(inputs.attached[a].end); ++i) {
+        const Vec3& impulse = inputs.axis_impulse[i];
+        reaction +=
+            {impulse, (inputs.position[static_cast<std::size_t>(inputs.held[i])] - moment_point).cross(impulse)};
+    }
+}
+
 /// Adds the reaction on a held rigid body: the change of momentum of the body minus the impulses of weight, loads and
 /// contacts. For an implicit body, adds only the moment that holds the frame of the body.
 void add_rigid_body(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, std::size_t a,
@@ -88,7 +104,7 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     node_impulse.resize(inputs.position.size());
     // Computes the impulse on each held node. If several attachments hold a node, each of them finds this impulse.
     for (std::size_t a = 0; a < count; ++a) {
-        if (!counts(inputs, inputs.attached_body[a])) continue;
+        if (!counts(inputs, a)) continue;
         for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
              i < static_cast<std::size_t>(inputs.attached[a].end); ++i) {
             const auto n = static_cast<std::size_t>(inputs.held[i]);
@@ -105,12 +121,15 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
         if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), kick, node_impulse);
         last = body;
     }
-    for (std::size_t a = 0; a < count; ++a)
-        if (is_awake(inputs, inputs.attached_body[a])) add_rigid_body(inputs, kick, moment_point, a, reactions[a]);
+    for (std::size_t a = 0; a < count; ++a) {
+        if (!is_awake(inputs, inputs.attached_body[a])) continue;
+        add_rigid_body(inputs, kick, moment_point, a, reactions[a]);
+        add_axes(inputs, moment_point, a, reactions[a]);
+    }
     // Attachments are visited in reverse order, so that the impulse of a node goes to the last attachment that holds
     // it.
     for (std::size_t a = count; a-- > 0;) {
-        if (!counts(inputs, inputs.attached_body[a])) continue;
+        if (!counts(inputs, a)) continue;
         for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
              i < static_cast<std::size_t>(inputs.attached[a].end); ++i) {
             const auto n = static_cast<std::size_t>(inputs.held[i]);

@@ -30,6 +30,8 @@ struct ReactionInputs {
     std::span<const Range> attached;       // by attachment: range of entries in `held`
     std::span<const Index> attached_body;  // by attachment: row of BodyTable of the attached body
     std::span<const Index> held;           // held nodes of all attachments: rows of NodeTable
+    std::span<const Mat3> directions;      // AttachmentTable::held
+    std::span<const Vec3> axis_impulse;    // AxisHolds::impulse [N s]
     std::span<const Vec3> held_impulse;    // impulse of contacts on held nodes, by node [N s]
     // velocity of held nodes before the step, by node [m/s]
     std::span<const Vec3> velocity_before;
@@ -57,10 +59,13 @@ struct ReactionInputs {
     static ReactionInputs bind(const Binder& binder, const AttachmentTable& attachment, const NodeTable& node,
                                const BodyTable& body, const MaterialTable& material, const ElementBlockTable& element,
                                const ElementNodeTable& nodes, const RigidBodyTable& rigid,
-                               const Column<Vec3>& held_impulse, const Column<Vec3>& velocity_before) {
+                               const Column<Vec3>& axis_impulse, const Column<Vec3>& held_impulse,
+                               const Column<Vec3>& velocity_before) {
         return {.attached = binder.read(attachment.nodes),
                 .attached_body = binder.read(attachment.body),
                 .held = binder.read(attachment.node),
+                .directions = binder.read(attachment.held),
+                .axis_impulse = binder.read(axis_impulse),
                 .held_impulse = binder.read(held_impulse),
                 .velocity_before = binder.read(velocity_before),
                 .position = binder.read(node.position),

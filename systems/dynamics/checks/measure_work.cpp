@@ -25,7 +25,8 @@ ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, R
         },
         join);
     for (const Index n : nodes.held) {
-        if (nodes.resting.contain(static_cast<std::size_t>(n))) continue;
+        // nodes with a mass are held along single directions only, see hold_axes
+        if (nodes.inverse_mass[n] > 0 || nodes.resting.contain(static_cast<std::size_t>(n))) continue;
         const Vec3 &force = nodes.force[n], &velocity = nodes.velocity_next[n];
         ExternalWork hold{-kick * force, -kick * force.dot(velocity)};
         if (nodes.body_implicit[static_cast<std::size_t>(nodes.node_body[n])].size() == 0) {

@@ -71,6 +71,7 @@ void move_colliders(const ColliderMotionInputs& colliders, Real t, Real h, std::
 
 void drive_nodes(const NodeMotionInputs& followers, Real h, std::span<const Vec3> position, std::span<Vec3> velocity) {
     for (std::size_t f = 0; f < followers.nodes.size(); ++f) {
+        if (!holds_completely(followers.held[f])) continue;
         const RigidMotion& motion = followers.motion[f];
         const Vec3 end = motion.position + h * motion.velocity;
         const Mat3 rotation = rotation_matrix(h * motion.angular_velocity) * motion.rotation;

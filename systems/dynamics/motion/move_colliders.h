@@ -50,17 +50,19 @@ struct NodeMotionInputs {
     std::span<const Range> nodes;         // by attachment: range of its entries in `node` and `anchor`
     std::span<const Index> node;          // rows of NodeTable
     std::span<const Vec3> anchor;         // position in the frame of the attachment [m]
+    std::span<const Mat3> held;           // by attachment
 
     static NodeMotionInputs bind(const Binder& binder, const AttachmentTable& attachment) {
         return {.motion = binder.read(attachment.motion),
                 .nodes = binder.read(attachment.nodes),
                 .node = binder.read(attachment.node),
-                .anchor = binder.read(attachment.anchor)};
+                .anchor = binder.read(attachment.anchor),
+                .held = binder.read(attachment.held)};
     }
 };
 
-/// Sets the velocity of every attached node so that the node moves in a straight line to its position at the end of the
-/// step: velocity = (end pose applied to anchor - position) / h.
+/// Sets the velocity of every node that is held completely, so that the node moves in a straight line to its position
+/// at the end of the step: velocity = (end pose applied to anchor - position) / h.
 void drive_nodes(const NodeMotionInputs& followers, Real h, std::span<const Vec3> position, std::span<Vec3> velocity);
 
 }  // namespace skerry

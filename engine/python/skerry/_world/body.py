@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arrays import VectorLike, checked, flag, index_array, real, real_array, real_rows, require_shape
+from .._arrays import (
+    VectorLike,
+    checked,
+    flag,
+    index_array,
+    name_text,
+    real,
+    real_array,
+    real_rows,
+    require_shape,
+    whole,
+)
+from .._errors import scene_error
+from .._sets import MeshSet, set_arrays, set_of
 from .._settings import Dynamics, ElementKind, Motion, Pose
 from .material import MaterialHandle
 from .objects import MovedObject, TouchingObject
@@ -156,9 +170,44 @@ class Body(TouchingObject):
         """True if the body is asleep (Settings.sleep)."""
         return bool(self._core.asleep(self._handle))
 
+    @property
+    def sets(self) -> Mapping[str, MeshSet]:
+        """Named parts of the body: the sets of its mesh, and those of add_set()."""
+        names: list[str] = self._core.set_names(self._handle)
+        return MappingProxyType({name: set_of(self._core.get_set(self._handle, name)) for name in names})
+
+    def add_set(self, name: str, part: MeshSet | ArrayLike) -> None:
+        """Names a part of the body: a MeshSet, or numbers of nodes (j,). Steps do not depend on sets, which are saved
+        and copied with the world. SceneError: the name is used, the part is empty, or a number is out of range."""
+        self._core.add_set(self._handle, name_text(name, "name"), *set_arrays(part, "part"))
+
+    def remove_set(self, name: str) -> None:
+        """Removes a set. SceneError: the body has no such set; the message lists the sets that it has."""
+        self._core.remove_set(self._handle, name_text(name, "name"))
+
+    def faces(self, name: str) -> Indices:
+        """Node numbers of the faces of a set, shape (k, 3): the listed faces, or those of the surface that belong to
+        listed tetrahedra, or all nodes of which are in the set. SceneError: there are none, or no such set."""
+        faces: Indices = self._core.set_faces(self._handle, name_text(name, "name"))
+        return faces
+
+    def tetrahedra_of(self, name: str) -> Indices:
+        """Numbers of the tetrahedra of a set, shape (m,): the listed ones, or those all nodes of which are in the set.
+        SceneError: there are none, or no such set."""
+        tetrahedra: Indices = self._core.set_tetrahedra(self._handle, name_text(name, "name"))
+        return tetrahedra
+
+    @property
+    def labels(self) -> Indices | None:
+        """Label of each tetrahedron, shape (m,); None if the mesh has no labels."""
+        labels: Indices = self._core.labels(self._handle)
+        return labels if len(labels) else None
+
     def select(
         self,
         *,
+        set: str | None = None,
+        label: int | None = None,
         box: tuple[VectorLike, VectorLike] | None = None,
         sphere: tuple[VectorLike, float] | None = None,
         below: float | None = None,
@@ -168,11 +217,15 @@ class Body(TouchingObject):
     ) -> Indices:
         """Numbers of the nodes that meet all given conditions at their present positions, shape (j,).
 
-        box: lower and upper corner [m]. sphere: centre and radius [m]. below, above: height z, inclusive [m]. surface:
-        only nodes of the surface. where: a condition for each node, shape (n,), or a function of the positions (n, 3)
-        that returns it."""
+        set: name of a set. label: nodes of the tetrahedra with a label. box: lower and upper corner [m]. sphere: centre
+        and radius [m]. below, above: height z, inclusive [m]. surface: only nodes of the surface. where: a condition
+        for each node, shape (n,), or a function of the positions (n, 3) that returns it."""
         x = self.positions
         chosen = np.ones(len(x), dtype=np.bool_)
+        if set is not None:
+            chosen &= np.isin(np.arange(len(x)), self._core.set_nodes(self._handle, name_text(set, "set")))
+        if label is not None:
+            chosen &= np.isin(np.arange(len(x)), self.tetrahedra[self._with_label(whole(label, "label"))])
         if box is not None:
             lower, upper = real_array(box, "box", (2, 3))  # type: ignore[arg-type]
             chosen &= np.all((x >= lower) & (x <= upper), axis=1)
@@ -197,6 +250,14 @@ class Body(TouchingObject):
             chosen &= condition
         return np.flatnonzero(chosen).astype(np.int32)
 
+    def _with_label(self, label: int) -> NDArray[np.bool_]:
+        labels = self.labels
+        known = [] if labels is None else np.unique(labels).tolist()
+        if label not in known:
+            expected = f"one of the labels {known}" if known else "no label, because the mesh has no labels"
+            raise scene_error(self._label, "label", str(label), expected)
+        return np.asarray(labels == label)
+
     def probe(self, point: VectorLike) -> PointProbe:
         """Probe for a recorder: the material point that is now at `point` (3,) [m]. SceneError: the point is outside of
         the body, farther from its nearest node than the mean edge."""
@@ -204,18 +265,30 @@ class Body(TouchingObject):
 
     # Control.
 
-    def attach(self, nodes: ArrayLike, *, motion: Motion | None = None, pivot: VectorLike | None = None) -> Attachment:
+    def attach(
+        self,
+        nodes: ArrayLike,
+        *,
+        motion: Motion | None = None,
+        pivot: VectorLike | None = None,
+        axes: str | None = None,
+        directions: ArrayLike | None = None,
+    ) -> Attachment:
         """Prescribes the motion of some nodes. From now on they stay in place or follow `motion`.
 
         nodes: numbers within the body (j,), or a truth value for each node (n,). motion: velocities, or keys at
         absolute times; the nodes are attached to the pose that the keys have now. pivot: point about which constant
-        angular velocities rotate the nodes, default: the origin (3,) [m].
+        angular velocities rotate the nodes, default: the origin (3,) [m]. axes: world axes along which the nodes are
+        held, such as "z" or "xy"; they are free along the others, as on rollers. directions: the same by perpendicular
+        vectors, shape (d, 3). Default: all directions. Contacts treat nodes on rollers as free, so hold nodes
+        completely where objects press on them along a held direction.
 
-        SceneError: there is no such node, or fewer than three nodes that are not on one line for a rigid or implicit
-        body. BufferError: arrays of views() are in use."""
+        SceneError: there is no such node; the body is not explicit and only some directions are held; or fewer than
+        three nodes that are not on one line for a rigid or implicit body. BufferError: arrays of views() are in use."""
         chosen = self._node_numbers(nodes)
         point = real_array((0.0, 0.0, 0.0) if pivot is None else pivot, "pivot", (3,))
-        handle = self._core.attach(self._handle, chosen, checked(motion or Motion(), "motion", Motion), point)
+        moved = checked(motion or Motion(), "motion", Motion)
+        handle = self._core.attach(self._handle, chosen, moved, point, _directions(axes, directions))
         return Attachment(self._world, handle, self, len(chosen))
 
     def set_loads(self, loads: ArrayLike) -> None:
@@ -300,6 +373,12 @@ class Attachment(MovedObject):
         return Body(self._world, self._body_handle, self._body_name)
 
     @property
+    def directions(self) -> Reals:
+        """Unit vectors along which the nodes are held, shape (d, 3); empty if they are held completely."""
+        directions: Reals = self._core.directions(self._handle)
+        return directions
+
+    @property
     def nodes(self) -> Indices:
         """Numbers of the attached nodes within the body, shape (j,)."""
         nodes: Indices = self._core.nodes_of(self._handle)
@@ -310,6 +389,16 @@ class Attachment(MovedObject):
 
     def _description(self) -> str:
         return f" of body '{self._body_name}', {self._node_count:,} nodes"
+
+
+def _directions(axes: str | None, directions: ArrayLike | None) -> list[Any]:
+    if axes is None:
+        return [] if directions is None else list(real_array(directions, "directions", ("d", 3)))
+    if directions is not None:
+        raise TypeError("axes, directions: found both, expected at most one of them")
+    if not isinstance(axes, str) or not axes or len({*axes}) < len(axes) or not {*axes} <= {*"xyz"}:
+        raise ValueError(f"axes: found {axes!r}, expected different letters of 'xyz'")
+    return [np.eye(3)["xyz".index(axis)] for axis in axes]
 
 
 def _nodes(at: str) -> bool:

@@ -109,7 +109,7 @@ class Building:
         mesh: Mesh | Sphere | Capsule | Cylinder,
         material: Material | MaterialHandle,
         *,
-        materials: Mapping[int, Material | MaterialHandle] | None = None,
+        materials: Mapping[int | str, Material | MaterialHandle] | None = None,
         position: VectorLike = (0.0, 0.0, 0.0),
         rotation: RotationLike = (0.0, 0.0, 0.0),
         velocity: VectorLike = (0.0, 0.0, 0.0),
@@ -126,11 +126,12 @@ class Building:
 
         mesh: a Mesh; or a Sphere, a Capsule or a Cylinder, which are rigid and touch others with their exact shape.
         material: a handle, or a record; equal records become one material. materials: materials of the tetrahedra with
-        a label. position, rotation: pose of the mesh (3,) [m, rad]. velocity, angular_velocity: of the body about its
-        centre of mass (3,) [m/s, rad/s]. dynamics: "explicit", "implicit", "rigid" or "automatic", which chooses
-        explicit or implicit by their costs. element: kind of the elements. self_contact: True: the body can touch
-        itself. contact_distance: default 2 % of the mean edge length of the surface [m]. collision_group,
-        collision_mask: see Body.set_collision_groups(). name: unique in the world, default "body N".
+        a label, or of a set by its name; sets take precedence. position, rotation: pose of the mesh (3,) [m, rad].
+        velocity, angular_velocity: of the body about its centre of mass (3,) [m/s, rad/s]. dynamics: "explicit",
+        "implicit", "rigid" or "automatic", which chooses explicit or implicit by their costs. element: kind of the
+        elements. self_contact: True: the body can touch itself. contact_distance: default 2 % of the mean edge length
+        of the surface [m]. collision_group, collision_mask: see Body.set_collision_groups(). name: unique in the world,
+        default "body N".
 
         SceneError: a value is out of range, or a body has this name. BufferError: arrays of views() are in use. Ctrl-C
         raises KeyboardInterrupt at the end of the call, when the body is already added."""
@@ -153,10 +154,13 @@ class Building:
             handle = self._core.add_round_body(mesh, self._material(material), given)
         elif isinstance(mesh, Mesh):
             given_materials = checked(materials or {}, "materials", Mapping)
-            by_label = {
-                index_array(label, "label", ()).item(): self._material(item) for label, item in given_materials.items()
-            }
-            handle = self._core.add_body(mesh._core, self._material(material), by_label, given)
+            by_label, by_set = {}, {}
+            for key, item in given_materials.items():
+                if isinstance(key, str):
+                    by_set[key] = self._material(item)
+                else:
+                    by_label[index_array(key, "label", ()).item()] = self._material(item)
+            handle = self._core.add_body(mesh._core, self._material(material), by_label, by_set, given)
         else:
             raise TypeError(f"mesh: found {mesh!r}, expected a Mesh, a Sphere, a Capsule or a Cylinder")
         return Body(self._self, handle, given.name)

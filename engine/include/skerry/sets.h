@@ -1,0 +1,47 @@
+// Named sets of nodes, faces and tetrahedra of bodies.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "components/handle.h"
+#include "components/types.h"
+#include "skerry/mesh.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+class World;
+
+/// A view of the named sets of the bodies of a world. It is valid until the world is moved or destroyed. A new body has
+/// the sets of its mesh (Mesh::sets). Sets are saved and cloned, and steps do not depend on them. All numbers are local
+/// to the body. Functions throw SceneError if a handle is stale or a body has no set of the given name; the message
+/// lists the sets that the body has.
+class Sets {
+public:
+    explicit Sets(World& world) : world_(&world) {}
+
+    std::vector<std::string> names(BodyHandle body) const;  // in alphabetical order
+    const MeshSet& get(BodyHandle body, const std::string& name) const;
+    /// Adds a set. Sorts the numbers and drops repeated ones. Throws SceneError if the body already has a set of this
+    /// name, if the set or its name is empty, or if a number is out of range.
+    void add(BodyHandle body, const std::string& name, MeshSet set);
+    void remove(BodyHandle body, const std::string& name);
+
+    /// Numbers of the nodes, faces and tetrahedra of a set, as mesh::nodes_of, faces_of and tetrahedra_of find them.
+    /// Throws SceneError if there are none.
+    std::vector<Index> nodes(BodyHandle body, const std::string& name) const;
+    std::vector<std::array<Index, 3>> faces(BodyHandle body, const std::string& name) const;
+    std::vector<Index> tetrahedra(BodyHandle body, const std::string& name) const;
+
+    /// Labels of the tetrahedra of a body (Mesh::label); empty if its mesh has none.
+    std::span<const int> labels(BodyHandle body) const;
+
+private:
+    World* world_;
+};
+
+}  // namespace skerry
+#pragma GCC visibility pop

@@ -1,0 +1,30 @@
+// Named sets of nodes, faces and tetrahedra: checks, and texts of error messages.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "skerry/mesh.h"
+
+namespace skerry::mesh {
+
+/// Sorts the nodes and tetrahedra of a set and drops repeated numbers. Also drops faces that have the nodes of an
+/// earlier face.
+void tidy(MeshSet& set);
+
+/// Throws SceneError that names `object` and the set if a number is out of range, or if a listed face is not a face of
+/// the tetrahedra.
+void require_set(const std::string& object, const std::string& name, const MeshSet& set, std::size_t node_count,
+                 std::span<const std::array<Index, 4>> tetrahedra);
+
+/// Reverses listed faces that are boundary triangles with the opposite orientation, and drops triangles that are not
+/// faces of the tetrahedra. Returns the number of dropped triangles.
+std::size_t match_faces(std::span<const std::array<Index, 4>> tetrahedra, std::map<std::string, MeshSet>& sets);
+
+/// Returns the expected value in an error message: one of the sets "a", "b", or that there are no sets.
+std::string expected_set(const std::vector<std::string>& names);
+std::vector<std::string> names_of(const std::map<std::string, MeshSet>& sets);
+
+}  // namespace skerry::mesh

@@ -1,0 +1,82 @@
+#include "engine/world/save/saved_sets.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "engine/mesh/sets.h"
+#include "engine/world/save/checks.h"
+
+namespace skerry {
+
+namespace {
+
+template <class T>
+void append_row(std::span<const T> row, Ragged<T>& rows) {
+    for (const T& item : row) rows.item.push_back(item);
+    rows.offset.push_back(static_cast<Index>(rows.item.size()));
+}
+
+void expect_set_rows(const SavedFile& file, const std::string& path, const auto& rows, std::size_t expected) {
+    expect_size(file, path + "/offset", rows.offset.size(), expected + 1);
+    expect_all_offsets(file, path + "/offset", rows.offset, rows.item.size());
+}
+
+}  // namespace
+
+SavedSets sets_to_save(const Model& model) {
+    SavedSets saved;
+    for (Column<Index>* offset :
+         {&saved.label.offset, &saved.name.offset, &saved.nodes.offset, &saved.tetrahedra.offset, &saved.faces.offset})
+        offset->push_back(0);
+    for (std::size_t b = 0; b < model.body_records.size(); ++b) {
+        const BodyRecord& record = model.body_records[b];
+        const std::vector<Index> label(record.label.begin(), record.label.end());
+        append_row(std::span(label), saved.label);
+        for (const auto& [name, set] : record.sets) {
+            saved.body.push_back(static_cast<Index>(b));
+            append_row(std::span(reinterpret_cast<const std::uint8_t*>(name.data()), name.size()), saved.name);
+            append_row(std::span(set.nodes), saved.nodes);
+            append_row(std::span(set.tetrahedra), saved.tetrahedra);
+            append_row(std::span(set.faces), saved.faces);
+        }
+    }
+    return saved;
+}
+
+void put_sets(const SavedSets& saved, const SavedFile& file, Model& model) {
+    const std::size_t bodies = model.body_records.size(), sets = saved.body.size();
+    expect_set_rows(file, "records/label", saved.label, bodies);
+    expect_rows_of(file, "sets/body", saved.body, bodies);
+    expect_set_rows(file, "sets/name", saved.name, sets);
+    expect_set_rows(file, "sets/nodes", saved.nodes, sets);
+    expect_set_rows(file, "sets/tetrahedra", saved.tetrahedra, sets);
+    expect_set_rows(file, "sets/faces", saved.faces, sets);
+    for (std::size_t b = 0; b < bodies; ++b) {
+        BodyRecord& record = model.body_records[b];
+        const std::span<const Index> label = saved.label[b];
+        if (!label.empty() && label.size() != record.tetrahedra.size())
+            file.complain("records/label", std::to_string(label.size()) + " labels for body " + std::to_string(b),
+                          "none, or one for each of " + std::to_string(record.tetrahedra.size()) + " tetrahedra");
+        record.label.assign(label.begin(), label.end());
+    }
+    for (std::size_t s = 0; s < sets; ++s) {
+        const Index body = saved.body[s];
+        BodyRecord& record = model.body_records[static_cast<std::size_t>(body)];
+        const std::string name(saved.name[s].begin(), saved.name[s].end());
+        MeshSet set{.nodes = {saved.nodes[s].begin(), saved.nodes[s].end()},
+                    .faces = {saved.faces[s].begin(), saved.faces[s].end()},
+                    .tetrahedra = {saved.tetrahedra[s].begin(), saved.tetrahedra[s].end()}};
+        const Index nodes = model.bodies.nodes[static_cast<std::size_t>(body)].size();
+        try {
+            mesh::require_set("body " + std::to_string(body), name, set, static_cast<std::size_t>(nodes),
+                              record.tetrahedra);
+        } catch (const SceneError& error) {
+            file.complain("sets", std::string("an invalid set (") + error.what() + ")", "numbers of the body");
+        }
+        mesh::tidy(set);
+        record.sets.insert_or_assign(name, std::move(set));
+    }
+}
+
+}  // namespace skerry

@@ -1,0 +1,26 @@
+// Labels and named sets of bodies, in the form in which files contain them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "components/ragged.h"
+#include "engine/world/save/saved_file.h"
+#include "engine/world/state/model.h"
+
+namespace skerry {
+
+struct SavedSets {
+    Ragged<Index> label;        // BodyRecord::label
+    Column<Index> body;         // by set: row of BodyTable, ascending
+    Ragged<std::uint8_t> name;  // UTF-8
+    Ragged<Index> nodes, tetrahedra;
+    Ragged<std::array<Index, 3>> faces;
+};
+
+SavedSets sets_to_save(const Model& model);
+/// Restores the labels and sets of all bodies. Throws SceneError that names the file if they are inconsistent with the
+/// bodies. Must be called after the tetrahedra of the bodies were restored.
+void put_sets(const SavedSets& saved, const SavedFile& file, Model& model);
+
+}  // namespace skerry

@@ -1,0 +1,63 @@
+// Holds nodes along single directions, as roller supports do.
+#pragma once
+
+#include <span>
+
+#include "components/attachment_table.h"
+#include "components/column.h"
+#include "components/node_table.h"
+#include "components/resting_nodes.h"
+#include "jobs/access.h"
+#include "systems/dynamics/checks/measure_work.h"
+
+namespace skerry {
+
+struct AxisHoldInputs {
+    // by row of AttachmentTable
+    std::span<const Mat3> held;
+    std::span<const RigidMotion> motion;
+    std::span<const Range> nodes;  // range of entries in `node` and `anchor`
+    std::span<const Index> node;   // rows of NodeTable
+    std::span<const Vec3> anchor;  // position in the frame of the attachment [m]
+    // by node
+    std::span<const Vec3> position, velocity;  // at the start of the step
+    std::span<const Vec3> load;                // applied force; empty if there are none [N]
+    std::span<const Real> mass, inverse_mass;
+    RestingNodes resting;
+    Vec3 gravity = Vec3::Zero();  // m/s^2
+
+    static AxisHoldInputs bind(const Binder& binder, const AttachmentTable& attachment, const NodeTable& node,
+                               const BodyTable& body, const bool& forced, const bool& any_asleep, const Vec3& gravity) {
+        return {.held = binder.read(attachment.held),
+                .motion = binder.read(attachment.motion),
+                .nodes = binder.read(attachment.nodes),
+                .node = binder.read(attachment.node),
+                .anchor = binder.read(attachment.anchor),
+                .position = binder.read(node.position),
+                .velocity = binder.read(node.velocity),
+                .load = binder.read_if(binder.value(forced), node.applied_force),
+                .mass = binder.read(node.mass),
+                .inverse_mass = binder.read(node.inverse_mass),
+                .resting = {.node_body = binder.read_if(binder.value(any_asleep), node.body),
+                            .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)},
+                .gravity = binder.value(gravity)};
+    }
+};
+
+/// Impulses of a step that hold nodes along single directions.
+struct AxisHolds {
+    Column<Vec3> impulse;  // by entry of AttachmentTable::node; zero for nodes that are held completely [N s]
+    ExternalWork sum;
+};
+
+/// Gives nodes that are held along single directions the prescribed velocities along these directions. The prescribed
+/// velocity leads to the position of the attachment at the end of the step, as in drive_nodes. Writes the impulses and
+/// their work, which is measured as in measure_work. Nodes of sleeping bodies are left out. Sequential.
+void hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, std::span<Vec3> velocity_next, AxisHolds& holds);
+
+/// Restores the prescribed velocities after contact impulses, and adds the impulses that this takes to `holds`. Also
+/// removes the parts along these directions from `push_out`.
+void hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec3> velocity_next, std::span<Vec3> push_out,
+                     AxisHolds& holds);
+
+}  // namespace skerry
