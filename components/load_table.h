@@ -16,9 +16,9 @@ namespace skerry {
 struct LoadTable {
     Column<std::uint32_t> slot;
     Column<LoadKind> kind;
-    Column<Index> body;   // row of BodyTable; no_index for a field that acts on all bodies
-    Column<Vec3> vector;  // force [N], traction [Pa], acceleration [m/s^2] or velocity of the wind [m/s]
-    Column<Real> rate;    // rate of a drag [1/s]
+    Column<Index> body;        // row of BodyTable; no_index for a field that acts on all bodies
+    Column<Vec3> vector;       // force [N], traction [Pa], acceleration [m/s^2] or velocity of the wind [m/s]
+    Column<Real> rate;         // rate of a drag [1/s]
     Column<Range> nodes;       // range of rows in the columns `node` and `weight`; empty for fields
     Column<Range> scale_keys;  // range of rows in the column `key`; never empty
     // Nodes of all forces and tractions, as numbers in the meshes of their bodies, and their weights: fractions of a

@@ -79,7 +79,8 @@ const Rule<LoadEntry>& rule_of<LoadEntry>() {
             .key("acceleration", &Entry::acceleration,
                  {.meaning = "for an acceleration: value, in world axes", .unit = "m/s^2"})
             .key("rate", &Entry::rate,
-                 {.meaning = "for a drag: rate of the approach to the velocity of the wind", .unit = "1/s",
+                 {.meaning = "for a drag: rate of the approach to the velocity of the wind",
+                  .unit = "1/s",
                   .limits = above(0)})
             .key("wind", &Entry::wind, {.meaning = "for a drag: velocity of the wind; default: 0", .unit = "m/s"})
             .key("scale", &Entry::scale,

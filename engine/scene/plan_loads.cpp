@@ -37,8 +37,7 @@ LoadPlan plan_load(const LoadEntry& entry, const ScenePlan& plan) {
             load.load = GravityScale{.scale = scale};
             break;
         case LoadKind::drag:
-            load.load =
-                DragField{.rate = *entry.rate, .wind = entry.wind.value_or(Vec3(Vec3::Zero())), .scale = scale};
+            load.load = DragField{.rate = *entry.rate, .wind = entry.wind.value_or(Vec3(Vec3::Zero())), .scale = scale};
             break;
     }
     return load;

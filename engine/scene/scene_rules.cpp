@@ -288,7 +288,8 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("description", &SceneFile::description, {.meaning = "description of the scene"})
             .key("include", &SceneFile::include,
                  {.meaning =
-                      "scene files to read before this file. Their bodies, colliders, joints, loads and materials are added "
+                      "scene files to read before this file. Their bodies, colliders, joints, loads and materials are "
+                      "added "
                       "to those of this file; where both files set the same single value, this file takes precedence"})
             .key("seconds", &SceneFile::seconds,
                  {.meaning = "simulated time of a run; default: 2", .unit = "s", .limits = above(0)})

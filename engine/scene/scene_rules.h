@@ -1,6 +1,4 @@
-// Keys of scene files: declarations of the rules that scene_rules.cpp, shape_rules.cpp, joint_rules.cpp,
-// load_rules.cpp and
-// probe_rules.cpp define.
+// Keys of scene files: declarations of the rules that the files *_rules.cpp define.
 #pragma once
 
 #include "engine/scene/scene_file.h"

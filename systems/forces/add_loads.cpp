@@ -10,38 +10,49 @@ namespace {
 
 constexpr std::size_t loaded_nodes_per_block = 4096;
 
-/// Calls visit(n) for each row of a range of NodeTable. Parallel over nodes.
-void for_nodes(Executor& executor, Range nodes, auto&& visit) {
-    const auto first = static_cast<std::size_t>(nodes.begin);
-    parallel_for(executor, static_cast<std::size_t>(nodes.size()), loaded_nodes_per_block,
-                 [&](std::size_t begin, std::size_t end) {
-                     for (std::size_t n = first + begin; n < first + end; ++n) visit(n);
-                 });
-}
+/// Mean scales of a load in this step.
+struct MeanScales {
+    Real usual, implicit;  // for explicit and rigid bodies, and for implicit bodies
 
-/// Calls visit(body) for each body that a field acts on.
-void for_bodies_of_field(const LoadInputs& loads, std::size_t load, auto&& visit) {
-    for (std::size_t body = 0; body < loads.body_kind.size(); ++body)
-        if (loads.acts_on(load, body)) visit(body);
-}
+    MeanScales(const LoadInputs& loads, std::size_t load) {
+        const std::span<const TimeKey> keys = rows_of(loads.key, loads.scale_keys[load]);
+        const ForceIntervals& during = loads.intervals;
+        usual = mean_value(keys, during.begin, during.length);
+        implicit = mean_value(keys, during.begin_implicit, during.length_implicit);
+    }
+    Real of(const LoadInputs& loads, std::size_t body) const {
+        return loads.body_implicit[body].size() > 0 ? implicit : usual;
+    }
+};
 
-/// Adds the same acceleration [m/s^2] to all nodes of a body.
-void accelerate(Executor& executor, const LoadInputs& loads, std::size_t body, const Vec3& acceleration,
-                std::span<Vec3> force) {
-    if (acceleration == Vec3::Zero()) return;
-    for_nodes(executor, loads.body_nodes[body], [&](std::size_t n) { force[n] += loads.mass[n] * acceleration; });
-}
-
-void add_to_nodes(Executor& executor, const LoadInputs& loads, std::size_t load, std::span<Vec3> force) {
-    const auto body = static_cast<std::size_t>(loads.load_body[load]);
+void add_to_nodes(Executor& executor, const LoadInputs& loads, std::size_t load, Real scale, std::span<Vec3> force) {
     const std::span<const Index> nodes = rows_of(loads.share_node, loads.load_nodes[load]);
     const std::span<const Real> weight = rows_of(loads.weight, loads.load_nodes[load]);
-    const Vec3 whole = loads.scale(load, body) * loads.vector[load];
-    if (whole == Vec3::Zero()) return;
-    const auto first = static_cast<std::size_t>(loads.body_nodes[body].begin);
+    const Vec3 whole = scale * loads.vector[load];
+    const Index first = loads.body_nodes[static_cast<std::size_t>(loads.load_body[load])].begin;
     parallel_for(executor, nodes.size(), loaded_nodes_per_block, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) force[first + static_cast<std::size_t>(nodes[i])] += weight[i] * whole;
+        for (std::size_t i = begin; i < end; ++i) force[static_cast<std::size_t>(first + nodes[i])] += weight[i] * whole;
     });
+}
+
+/// Adds a field to the sum of the fields on one body.
+void add_field(const LoadInputs& loads, std::size_t load, Real scale, BodyField& sum) {
+    switch (loads.kind[load]) {
+        case LoadKind::acceleration:
+            sum.acceleration += scale * loads.vector[load];
+            break;
+        case LoadKind::gravity:
+            // The forces of the step contain the weight itself, so only the difference is added.
+            sum.acceleration += (scale - 1) * loads.gravity;
+            break;
+        case LoadKind::drag:
+            sum.acceleration += loads.rate[load] * scale * loads.vector[load];
+            sum.drag += loads.rate[load];
+            break;
+        case LoadKind::force:
+        case LoadKind::traction:
+            break;
+    }
 }
 
 }  // namespace
@@ -55,42 +66,28 @@ bool LoadInputs::acts_on(std::size_t load, std::size_t body) const {
     return true;
 }
 
-bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyDrag>& drag, std::span<Vec3> applied_force) {
+bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& fields, std::span<Vec3> applied_force) {
     if (loads.kind.empty()) return false;
-    const auto scaled = [&](std::size_t load, std::size_t body) -> Vec3 {
-        return loads.scale(load, body) * loads.vector[load];
-    };
-    drag.assign(loads.body_kind.size(), {});
-    for (std::size_t load = 0; load < loads.kind.size(); ++load) switch (loads.kind[load]) {
-            case LoadKind::force:
-            case LoadKind::traction:
-                add_to_nodes(executor, loads, load, applied_force);
-                break;
-            case LoadKind::acceleration:
-                for_bodies_of_field(loads, load, [&](std::size_t body) {
-                    accelerate(executor, loads, body, scaled(load, body), applied_force);
-                });
-                break;
-            case LoadKind::gravity:
-                // The forces of the step contain the weight itself, so only the difference is added.
-                for_bodies_of_field(loads, load, [&](std::size_t body) {
-                    accelerate(executor, loads, body, (loads.scale(load, body) - 1) * loads.gravity, applied_force);
-                });
-                break;
-            case LoadKind::drag:
-                for_bodies_of_field(loads, load, [&](std::size_t body) {
-                    drag[body].rate += loads.rate[load];
-                    drag[body].pull += loads.rate[load] * scaled(load, body);
-                });
-                break;
+    fields.assign(loads.body_kind.size(), {});
+    bool any_field = false;
+    for (std::size_t load = 0; load < loads.kind.size(); ++load) {
+        const MeanScales scales(loads, load);
+        if (loads.load_nodes[load].size() > 0) {
+            const Real scale = scales.of(loads, static_cast<std::size_t>(loads.load_body[load]));
+            add_to_nodes(executor, loads, load, scale, applied_force);
+            continue;
         }
-    for (std::size_t body = 0; body < drag.size(); ++body) {
-        const BodyDrag& of = drag[body];
-        if (!(of.rate > 0)) continue;
-        for_nodes(executor, loads.body_nodes[body], [&](std::size_t n) {
-            applied_force[n] += loads.mass[n] * (of.pull - of.rate * loads.velocity[n]);
-        });
+        any_field = true;
+        for (std::size_t body = 0; body < fields.size(); ++body)
+            if (loads.acts_on(load, body)) add_field(loads, load, scales.of(loads, body), fields[body]);
     }
+    if (!any_field) return true;
+    parallel_for(executor, applied_force.size(), loaded_nodes_per_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            const BodyField& field = fields[static_cast<std::size_t>(loads.node_body[n])];
+            applied_force[n] += loads.mass[n] * (field.acceleration - field.drag * loads.velocity[n]);
+        }
+    });
     return true;
 }
 

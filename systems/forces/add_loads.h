@@ -20,10 +20,10 @@ struct ForceIntervals {
     Real begin_implicit = 0, length_implicit = 0;  // for implicit bodies [s]
 };
 
-/// Sum of the drags on a body.
-struct BodyDrag {
-    Real rate = 0;             // [1/s]
-    Vec3 pull = Vec3::Zero();  // sum of rate times velocity of the wind [m/s^2]
+/// Sum of the fields on a body: the force on a node of mass m and velocity v is m (acceleration - drag v).
+struct BodyField {
+    Vec3 acceleration = Vec3::Zero();  // [m/s^2]
+    Real drag = 0;                     // [1/s]
 };
 
 /// The columns of LoadTable, and the rows that the loads act on.
@@ -39,6 +39,7 @@ struct LoadInputs {
     // Columns of BodyTable and NodeTable:
     std::span<const BodyKind> body_kind;
     std::span<const Range> body_nodes, body_implicit;
+    std::span<const Index> node_body;
     std::span<const Real> mass;      // [kg]
     std::span<const Vec3> velocity;  // at the start of the step [m/s]
     Vec3 gravity = Vec3::Zero();     // gravity of the settings [m/s^2]
@@ -58,19 +59,13 @@ struct LoadInputs {
                 .body_kind = binder.read(body.kind),
                 .body_nodes = binder.read(body.nodes),
                 .body_implicit = binder.read(body.implicit),
+                .node_body = binder.read(node.body),
                 .mass = binder.read(node.mass),
                 .velocity = binder.read(node.velocity),
                 .gravity = binder.value(gravity),
                 .intervals = binder.value(intervals)};
     }
 
-    /// Mean scale of a load in the interval in which forces act on a body in this step.
-    Real scale(std::size_t load, std::size_t body) const {
-        const std::span<const TimeKey> keys = rows_of(key, scale_keys[load]);
-        return body_implicit[body].size() > 0
-                   ? mean_value(keys, intervals.begin_implicit, intervals.length_implicit)
-                   : mean_value(keys, intervals.begin, intervals.length);
-    }
     /// True if a field acts on a body. A factor of the weight that is given for the body replaces the one for all
     /// bodies.
     bool acts_on(std::size_t load, std::size_t body) const;
@@ -78,9 +73,9 @@ struct LoadInputs {
 
 /// Adds the forces of all loads to `applied_force`, by node [N]. A scale that changes over time acts with its exact
 /// mean in the interval of the step, so the sum of impulses over the steps equals the integral over time. Drag uses the
-/// velocities at the start of the step. Parallel over nodes; the loads on a node are added in the order of LoadTable,
-/// and drag last. Returns false if there is no load.
-bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyDrag>& drag, std::span<Vec3> applied_force);
+/// velocities at the start of the step. Parallel over nodes: loads on nodes are added in the order of LoadTable, and
+/// then the sum of all fields. `fields`: working memory. Returns false if there is no load.
+bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& fields, std::span<Vec3> applied_force);
 
 /// The columns that decide on which bodies a load changes.
 struct LoadedBodies {

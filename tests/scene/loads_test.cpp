@@ -105,8 +105,8 @@ TEST_CASE("a factor of the weight turns gravity on over time", "[scene]") {
 
 TEST_CASE("a field of one body leaves other bodies alone", "[scene]") {
     Flight flight(weightless(), BodyDynamics::rigid);
-    const BodyHandle other =
-        flight.world.add_body(cube, {.material = flight.material, .position = {1, 0, 0}, .dynamics = BodyDynamics::rigid});
+    const BodyHandle other = flight.world.add_body(
+        cube, {.material = flight.material, .position = {1, 0, 0}, .dynamics = BodyDynamics::rigid});
     Loads loads(flight.world);
     loads.add(AccelerationField{flight.body, {0, 0, 2}});
     loads.add(DragField{.body = other, .rate = 1, .wind = {0, 1, 0}});
@@ -164,8 +164,8 @@ TEST_CASE("tractions on both ends of a bar cause a uniform stress", "[scene]") {
         CAPTURE(static_cast<int>(dynamics));
         World world(weightless());
         const auto rubber = world.add_material({.young_modulus = 1e5, .damping = 60});
-        const auto bar = world.add_body(mesh::box({0.3, 0.1, 0.1}, {6, 3, 2}),
-                                        {.material = rubber, .dynamics = dynamics});
+        const auto bar =
+            world.add_body(mesh::box({0.3, 0.1, 0.1}, {6, 3, 2}), {.material = rubber, .dynamics = dynamics});
         Loads loads(world);
         const auto left = faces_where(world, bar, [](const Vec3& x) { return x.x() < -0.1499; });
         const auto right = faces_where(world, bar, [](const Vec3& x) { return x.x() > 0.1499; });
@@ -189,7 +189,8 @@ TEST_CASE("a force on the tip bends a beam as the beam formula says", "[scene]")
     // Timoshenko: F L^3 / (3 E I) + F L / (k G A) with k = 5/6. The clamped end, where Poisson's ratio is 0, has no
     // boundary layer.
     constexpr Real L = 1, side = 0.1, E = 1e7, F = 1;
-    constexpr Real expected = F * L * L * L / (3 * E * side * side * side * side / 12) + F * L / (5.0 / 6 * E / 2 * side * side);
+    constexpr Real expected =
+        F * L * L * L / (3 * E * side * side * side * side / 12) + F * L / (5.0 / 6 * E / 2 * side * side);
     World world(weightless());
     const auto material = world.add_material({.young_modulus = E, .poisson_ratio = 0.0});
     const auto beam = world.add_body(mesh::box({L, side, side}, {40, 4, 4}),
@@ -199,7 +200,8 @@ TEST_CASE("a force on the tip bends a beam as the beam formula says", "[scene]")
     Loads(world).add(ForceLoad{beam, tip, {0, 0, -F}});
     REQUIRE(relax(world, {.tolerance = 1e-5}).converged);
     Real sunk = 0;
-    for (const Index n : tip) sunk -= world.positions(beam)[static_cast<std::size_t>(n)].z() / static_cast<Real>(tip.size());
+    for (const Index n : tip)
+        sunk -= world.positions(beam)[static_cast<std::size_t>(n)].z() / static_cast<Real>(tip.size());
     CHECK(sunk == Approx(expected).epsilon(0.02));
 }
 
@@ -228,9 +230,9 @@ World busy_loads(int threads) {
     world.add_collider(Plane{});
     Loads loads(world);
     for (int k = 0; k < 3; ++k) {
-        const auto body = world.add_body(cube, {.material = rubber,
-                                                .position = {0.15 * k, 0, 0.055},
-                                                .dynamics = all_kinds[static_cast<std::size_t>(k)]});
+        const auto body = world.add_body(
+            cube,
+            {.material = rubber, .position = {0.15 * k, 0, 0.055}, .dynamics = all_kinds[static_cast<std::size_t>(k)]});
         loads.add(ForceLoad{body, {k, 4, 7}, {0.5, 0, 1}, pulse});
         loads.add(GravityScale{body, TimeTable({{0, 1}, {0.3, 0.8 - 0.1 * k}})});
     }
@@ -302,8 +304,8 @@ TEST_CASE("a changing load wakes a sleeping body and keeps it awake, a constant 
 
 TEST_CASE("loads follow a body whose dynamics change, and go with a removed body", "[scene]") {
     Flight flight(weightless(), BodyDynamics::explicit_elastic);
-    const BodyHandle first =
-        flight.world.add_body(cube, {.material = flight.material, .position = {1, 0, 0}, .dynamics = BodyDynamics::rigid});
+    const BodyHandle first = flight.world.add_body(
+        cube, {.material = flight.material, .position = {1, 0, 0}, .dynamics = BodyDynamics::rigid});
     Loads loads(flight.world);
     const LoadHandle of_first = loads.add(ForceLoad{first, all_nodes(), {1, 0, 0}});
     const LoadHandle load = loads.add(ForceLoad{flight.body, all_nodes(), {0, 1, 0}});
@@ -336,17 +338,25 @@ TEST_CASE("loads that cannot be are refused by name, and change nothing", "[scen
         return std::string("no error");
     };
     using Catch::Contains;
-    CHECK_THAT(message([&] { loads.add(ForceLoad{flight.body, {}, {1, 0, 0}}); }),
+    CHECK_THAT(message([&] {
+                   loads.add(ForceLoad{flight.body, {}, {1, 0, 0}});
+               }),
                Contains("nodes") && Contains("an empty list"));
-    CHECK_THAT(message([&] { loads.add(ForceLoad{flight.body, {1, 27}, {1, 0, 0}}); }),
+    CHECK_THAT(message([&] {
+                   loads.add(ForceLoad{flight.body, {1, 27}, {1, 0, 0}});
+               }),
                Contains("cube") && Contains("node 27") && Contains("0 to 26"));
     CHECK_THAT(message([&] { loads.add(ForceLoad{flight.body, {1, 1}, {1, 0, 0}}); }), Contains("node 1 twice"));
     CHECK_THAT(message([&] { loads.add(TractionLoad{round, {{0, 1, 2}}, {1, 0, 0}}); }), Contains("which is a sphere"));
-    CHECK_THAT(message([&] { loads.add(TractionLoad{flight.body, {{0, 1, 26}}, {1, 0, 0}}); }),
+    CHECK_THAT(message([&] {
+                   loads.add(TractionLoad{flight.body, {{0, 1, 26}}, {1, 0, 0}});
+               }),
                Contains("nodes 0, 1 and 26") && Contains("surface of body 'cube'"));
     CHECK_THAT(message([&] { loads.add(DragField{.rate = 0}); }), Contains("rate") && Contains("> 0"));
     CHECK_THAT(message([&] { loads.add(AccelerationField{.acceleration = {NAN, 0, 0}}); }), Contains("acceleration"));
-    CHECK_THAT(message([&] { loads.add(ForceLoad{flight.body, {1}, {1, 0, 0}, TimeTable({{1, 0}, {1, 2}})}); }),
+    CHECK_THAT(message([&] {
+                   loads.add(ForceLoad{flight.body, {1}, {1, 0, 0}, TimeTable({{1, 0}, {1, 2}})});
+               }),
                Contains("scale[1].time"));
     CHECK(loads.all().empty());
     CHECK(flight.world.state_hash() == before);

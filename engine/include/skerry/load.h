@@ -22,8 +22,8 @@ class World;
 /// masses that they have when the load is added.
 struct ForceLoad {
     BodyHandle body{};
-    std::vector<Index> nodes{};   // numbers in the mesh of the body, at least one, each at most once
-    Vec3 force = Vec3::Zero();  // total force on all nodes, in world axes [N]
+    std::vector<Index> nodes{};  // numbers in the mesh of the body, at least one, each at most once
+    Vec3 force = Vec3::Zero();   // total force on all nodes, in world axes [N]
     TimeTable scale = 1;
 };
 
@@ -52,13 +52,13 @@ struct GravityScale {
     TimeTable scale = 1;
 };
 
-/// A drag towards the velocity of a wind: the force on a node of mass m and velocity v is m rate (wind - v). A body that
-/// nothing else moves takes up the velocity of the wind with the time constant 1/rate, whatever its shape. Steps are
-/// not longer than 1/rate.
+/// A drag towards the velocity of a wind: the force on a node of mass m and velocity v is m rate (wind - v). A body
+/// that nothing else moves takes up the velocity of the wind with the time constant 1/rate, whatever its shape. Steps
+/// are not longer than 1/rate.
 struct DragField {
     std::optional<BodyHandle> body{};  // if it is not given, the field acts on all bodies
-    Real rate = 0;                   // > 0 [1/s]
-    Vec3 wind = Vec3::Zero();        // velocity of the wind [m/s]
+    Real rate = 0;                     // > 0 [1/s]
+    Vec3 wind = Vec3::Zero();          // velocity of the wind [m/s]
     TimeTable scale = 1;               // factor of `wind`
 };
 

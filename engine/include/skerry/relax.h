@@ -21,8 +21,8 @@ struct RelaxSettings {
 
 struct RelaxReport {
     bool converged = false;
-    // The largest out-of-balance force of a body in the last step, relative to the sum of the magnitudes of the weights,
-    // loads and contact forces on its nodes.
+    // The largest out-of-balance force of a body in the last step, relative to the sum of the magnitudes of the
+    // weights, loads and contact forces on its nodes.
     Real residual = 0;
     std::optional<BodyHandle> worst{};  // the body with this force; missing if no body can move
     std::string worst_name;

@@ -42,8 +42,8 @@ void bind_loads(WorldClass& type) {
                                         const Vec3& traction, const Pairs& scale) {
                  return Loads(world).add(TractionLoad{body, faces_in(faces), traction, table_of(scale)});
              }))
-        .def("add_acceleration", guarded([](World& world, std::optional<BodyHandle> body, const Vec3& acceleration,
-                                            const Pairs& scale) {
+        .def("add_acceleration",
+             guarded([](World& world, std::optional<BodyHandle> body, const Vec3& acceleration, const Pairs& scale) {
                  return Loads(world).add(AccelerationField{body, acceleration, table_of(scale)});
              }),
              nb::arg("body").none(), nb::arg("acceleration"), nb::arg("scale"))
@@ -51,8 +51,8 @@ void bind_loads(WorldClass& type) {
                  return Loads(world).add(GravityScale{body, table_of(scale)});
              }),
              nb::arg("body").none(), nb::arg("scale"))
-        .def("add_drag", guarded([](World& world, std::optional<BodyHandle> body, Real rate, const Vec3& wind,
-                                    const Pairs& scale) {
+        .def("add_drag",
+             guarded([](World& world, std::optional<BodyHandle> body, Real rate, const Vec3& wind, const Pairs& scale) {
                  return Loads(world).add(DragField{body, rate, wind, table_of(scale)});
              }),
              nb::arg("body").none(), nb::arg("rate"), nb::arg("wind"), nb::arg("scale"))

@@ -43,11 +43,8 @@ void hold_poses(auto& table, Real t) {
     for (std::size_t row = 0; row < table.script.size(); ++row) {
         const RigidPose pose = pose_at(table.script[row], table.keyframe, table.initial[row], t);
         table.initial[row] = {pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()};
-        table.script[row] = {.velocity = Vec3::Zero(),
-                             .angular_velocity = Vec3::Zero(),
-                             .key_begin = 0,
-                             .key_end = 0,
-                             .start = t};
+        table.script[row] = {
+            .velocity = Vec3::Zero(), .angular_velocity = Vec3::Zero(), .key_begin = 0, .key_end = 0, .start = t};
     }
 }
 
@@ -233,7 +230,7 @@ private:
     World& world_;
     WorldState& state_;
     RelaxSettings settings_;
-    UnionFind sets_;  // sets of joined bodies
+    UnionFind sets_;                     // sets of joined bodies
     std::vector<Vec3> before_;           // velocities of all nodes before the step [m/s]
     std::vector<BodyBalance> bodies_;    // by body
     std::vector<Real> kinetic_, sum_{};  // kinetic energies of the sets, by their roots [J]
@@ -242,8 +239,7 @@ private:
 
 }  // namespace
 
-RelaxReport relax(World& world, const RelaxSettings& settings,
-                  const std::function<bool(const RelaxReport&)>& go_on) {
+RelaxReport relax(World& world, const RelaxSettings& settings, const std::function<bool(const RelaxReport&)>& go_on) {
     if (!(settings.tolerance > 0 && settings.tolerance < 1))
         refuse("relax", "tolerance", short_text(settings.tolerance), "a number > 0 and < 1");
     if (settings.max_steps < 1) refuse("relax", "max_steps", std::to_string(settings.max_steps), "a number >= 1");

@@ -142,7 +142,7 @@ struct StepScratch {
     Column<WatchPieces> watch_pieces;  // used by store_shapes
     Column<Real> viscous_parts;        // used by measure_viscosity
     Column<std::uint8_t> driven;       // for each body, nonzero if a load on it changes in this step; empty: none does
-    Column<BodyDrag> drag;             // used by add_loads
+    Column<BodyField> fields;          // used by add_loads
     RestingMemory resting_memory;      // used by keep_resting_contacts
     Column<Index> self_crossing_places;  // used by find_self_crossings
 

@@ -215,9 +215,8 @@ void put_to_rest(WorldState& w, TaskGraph& g) {
     g.stage_with_result("dynamics/rest_bodies", w.scratch.findings.rest, rest_bodies,
                         inputs<TouchInputs>(w.scratch.contacts, m.links),
                         inputs<RestInputs>(m.attachments, m.bodies, m.materials, n, r, w.scratch.driven),
-                        value(p.sleep), value(p.h),
-                        make(w.scratch.sleep_memory), outputs<RestOutputs>(m.bodies, n, r, m.implicit_nodes),
-                        if_taken(w), if_sleepy(w));
+                        value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
+                        outputs<RestOutputs>(m.bodies, n, r, m.implicit_nodes), if_taken(w), if_sleepy(w));
 }
 
 }  // namespace

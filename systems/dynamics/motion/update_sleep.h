@@ -186,8 +186,8 @@ struct SleepMemory {
 
 /// Counts the time for which each body has been still. Puts a body to sleep if it and all bodies that it touches,
 /// directly or through other bodies, have been still long enough. The velocities of these bodies become zero. A body
-/// that touches a moving collider, is held by a moving attachment or has a changing load stays awake. Parallel over bodies; sequential over
-/// contacts once a body has been still long enough.
+/// that touches a moving collider, is held by a moving attachment or has a changing load stays awake. Parallel over
+/// bodies; sequential over contacts once a body has been still long enough.
 TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
                         const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);
 

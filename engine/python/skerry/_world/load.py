@@ -111,9 +111,7 @@ class WorldLoads:
 
     def add_gravity_scale(self, scale: TimeTableLike, *, body: Body | None = None) -> Load:
         """Multiplies the weight of a body, or of all bodies. A factor of one body replaces that of all bodies."""
-        return self._new_load(
-            self._core.add_gravity_scale(self._body_or_all(body), time_table(scale, "scale"))
-        )
+        return self._new_load(self._core.add_gravity_scale(self._body_or_all(body), time_table(scale, "scale")))
 
     def add_drag(
         self,

@@ -16,9 +16,9 @@ void add_load_stages(WorldState& w, TaskGraph& g) {
     const StepParameters& p = s.parameters;
     const auto if_any = only_if([](std::span<const Index> body) { return !body.empty(); }, read(m.loads.body));
     g.stage("forces/add_loads", add_loads, inputs<LoadInputs>(m.loads, m.bodies, m.nodes, p.gravity, p.intervals),
-            make(s.drag), write(m.nodes.applied_force), if_any);
-    g.stage("forces/find_driven", find_driven, inputs<LoadedBodies>(m.loads, m.bodies), value(w.clock.time),
-            value(p.h), make(s.driven));
+            make(s.fields), write(m.nodes.applied_force), if_any);
+    g.stage("forces/find_driven", find_driven, inputs<LoadedBodies>(m.loads, m.bodies), value(w.clock.time), value(p.h),
+            make(s.driven));
 }
 
 void add_drag_rates(const Model& model, std::span<Real> of_body) {
