@@ -102,6 +102,20 @@ TEST_CASE("momentum and energy add up on rollers that move and carry weight", "[
     }
 }
 
+TEST_CASE("momentum adds up and nothing leaves its rollers when a ball strikes them", "[scene]") {
+    RolledBar bar({}, linear());
+    bar.world.add_body(
+        mesh::ball(0.03, 4),
+        {.material = bar.world.add_material(linear()), .position = {0, -0.03, 0.082}, .velocity = {0, 0.3, -1}});
+    REQUIRE(bar.world.advance(0.1).ok());
+    const WorldReport report = bar.world.report();
+    REQUIRE(report.mean_contacts > 0);
+    CHECK(report.momentum_error_share < 1e-13 * std::sqrt(static_cast<Real>(report.steps)));
+    CHECK(report.energy_error_share < 1e-2);
+    for (const Index n : nodes_at(bar.mesh, 1, -0.05))
+        CHECK(std::abs(bar.world.positions(bar.body)[static_cast<std::size_t>(n)].y() + 0.05) < 1e-12);
+}
+
 TEST_CASE("a node on an inclined roller moves along the incline only", "[scene]") {
     World world(weightless());
     const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
@@ -123,6 +137,16 @@ TEST_CASE("a node on an inclined roller moves along the incline only", "[scene]"
     CHECK((world.forces().by(roller).force() - normal.z() * weight * normal).norm() < 1e-9 * weight);
     world.remove(roller);
     CHECK(world.attachments().empty());
+}
+
+TEST_CASE("a roller that jumps moves its nodes along the held direction only", "[scene]") {
+    RolledBar bar(weightless(), linear());
+    bar.world.set_pose(bar.right, {.position = {1e-3, 0.5, 0.5}});
+    const std::vector<Index> moved = bar.world.nodes(bar.right);
+    for (const Index n : moved) {
+        const auto at = static_cast<std::size_t>(n);
+        CHECK((bar.world.positions(bar.body)[at] - bar.mesh.nodes[at] - Vec3(1e-3, 0, 0)).norm() < 1e-15);
+    }
 }
 
 TEST_CASE("rollers survive saving and cloning, and give the same bits on any number of workers", "[scene]") {

@@ -64,15 +64,19 @@ void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_
         const Index row = numbers.row(node_numbers[a], reader);
         if (a < 4) rows[a] = row;
     }
+    // Version 2 writes a tetrahedron in several groups once for each group, one after the other.
+    const bool again = type == tetrahedron_type && !mesh.tetrahedra.empty() && mesh.tetrahedra.back() == rows &&
+                       mesh.tags.back().elementary == tags.elementary && mesh.tags.back().physical != tags.physical;
     for (const std::int64_t group : groups) {
         MeshSet& set = mesh.groups[{dimension_of(type), group}];
         if (type == tetrahedron_type)
-            set.tetrahedra.push_back(static_cast<Index>(mesh.tetrahedra.size()));
+            set.tetrahedra.push_back(static_cast<Index>(mesh.tetrahedra.size() - (again ? 1 : 0)));
         else if (type == triangle_type)
             set.faces.push_back({rows[0], rows[1], rows[2]});
         else
             for (const std::int64_t number : node_numbers) set.nodes.push_back(numbers.row(number, reader));
     }
+    if (again) return;
     if (type == tetrahedron_type) {
         require_different(rows, reader);
         mesh.tetrahedra.push_back(rows);

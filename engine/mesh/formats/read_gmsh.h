@@ -51,7 +51,8 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader);
 
 /// Adds a tetrahedron or triangle to the mesh. Elements of other types are only counted. The nodes of the element must
-/// exist in either case. Adds the element to its physical groups, the numbers of which are `groups`.
+/// exist in either case. Adds the element to its physical groups, the numbers of which are `groups`. A tetrahedron that
+/// repeats the last one for another group is not added again.
 void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const GmshTags& tags,
                        std::span<const std::int64_t> groups, const NodeNumbers& numbers, const FileReader& reader,
                        GmshMesh& mesh);

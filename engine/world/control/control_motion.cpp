@@ -136,7 +136,8 @@ void for_each_script(Model& model, Index collider, auto&& change) {
 }
 
 /// Node positions of a body after one of its attachments was moved from the pose `from` to `pose`. Free nodes move
-/// along if this attachment holds the frame of the body. Nodes held by other attachments do not move.
+/// along if this attachment holds the frame of the body. Nodes that are held along single directions move along these
+/// only. Nodes held by other attachments do not move.
 std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& from,
                                 const RigidPose& pose) {
     const AttachmentTable& table = model.attachments;
@@ -152,8 +153,10 @@ std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, cons
                 position[n] = pose.position + pose.rotation * (from.rotation.transpose() * (now[n] - from.position));
     for (Index i = table.nodes[attachment].begin; i < table.nodes[attachment].end; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        position[static_cast<std::size_t>(table.node[at] - nodes.begin)] =
-            pose.position + pose.rotation * table.anchor[at];
+        Vec3& x = position[static_cast<std::size_t>(table.node[at] - nodes.begin)];
+        const Vec3 there = pose.position + pose.rotation * table.anchor[at];
+        const Mat3& held = table.held[attachment];
+        x = holds_completely(held) ? there : Vec3(x + held * (held.transpose() * (there - x)));
     }
     return position;
 }

@@ -126,7 +126,8 @@ TEST_CASE("physical groups of Gmsh are sets by name, with the numbers of the mes
     CHECK_THAT(notes[1], Contains("the set \"point_8\" contains no node of a tetrahedron and was dropped"));
 
     const Mesh of_4 = mesh::read(folder.write("m4.msh", gmsh4));
-    REQUIRE(of_4.sets.size() == 3);
+    REQUIRE(of_4.sets.size() == 4);
+    CHECK(of_4.sets.at("surface_4").faces == of_4.sets.at("skin").faces);  // a surface in two groups
     CHECK(of_4.sets.at("tip") == MeshSet{.nodes = {4}});
     CHECK(of_4.sets.at("skin").faces == Faces{{0, 2, 1}});
     CHECK(of_4.sets.at("core") == MeshSet{.tetrahedra = {0}});
@@ -140,6 +141,19 @@ TEST_CASE("a volume in two physical groups of Gmsh 4.1 belongs to both sets", "[
     const Mesh mesh = mesh::read(folder.write("m.msh", text));
     CHECK(mesh.sets.at("core").tetrahedra == Numbers{0});
     CHECK(mesh.sets.at("all").tetrahedra == Numbers{0, 1});
+}
+
+TEST_CASE("Gmsh 2.2 repeats a tetrahedron for each of its groups, and it is read once", "[unit]") {
+    const TemporaryFolder folder;
+    std::string text = gmsh2;
+    text.replace(text.find("8\n1 15"), 2, "9\n");
+    text.replace(text.find("7 4 2 4 2"), 9, "9 4 2 3 1 2 3 4 5\n7 4 2 4 2");
+    text.replace(text.find("2 3 \"skin\""), 10, "3 3 \"more\"");
+    const Mesh mesh = mesh::read(folder.write("m.msh", text));
+    CHECK(mesh.tetrahedra.size() == 2);
+    CHECK(mesh.label == std::vector<int>{9, 4});
+    CHECK(mesh.sets.at("core").tetrahedra == Numbers{0});
+    CHECK(mesh.sets.at("more").tetrahedra == Numbers{0});
 }
 
 TEST_CASE("arrays of whole numbers and of bits in VTK files are sets", "[unit]") {
