@@ -13,6 +13,7 @@
 #include "components/element_table.h"
 #include "components/implicit_node_table.h"
 #include "components/joint_table.h"
+#include "components/load_table.h"
 #include "components/material_table.h"
 #include "components/node_block_table.h"
 #include "components/node_table.h"
@@ -85,6 +86,7 @@ template std::span<const ColumnInfo> columns_of<ImplicitNodeTable>();
 template std::span<const ColumnInfo> columns_of<JointBlockTable>();
 template std::span<const ColumnInfo> columns_of<JointTable>();
 template std::span<const ColumnInfo> columns_of<MaterialPairTable>();
+template std::span<const ColumnInfo> columns_of<LoadTable>();
 template std::span<const ColumnInfo> columns_of<MaterialTable>();
 template std::span<const ColumnInfo> columns_of<NodeBlockTable>();
 template std::span<const ColumnInfo> columns_of<NodeTable>();

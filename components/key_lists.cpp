@@ -40,14 +40,6 @@ bool changes(std::span<const TimeKey> keys, Real t, Real h) {
            std::ranges::any_of(keys_inside(keys, t, h), [&](const TimeKey& k) { return k.value != start; });
 }
 
-void erase_keys(Column<Range>& range, Column<TimeKey>& key, std::size_t row) {
-    const Range gone = range[row];
-    key.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
-    range[row] = {};
-    for (Range& other : range)
-        if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
-}
-
 void set_keys(Column<Range>& range, Column<TimeKey>& key, std::size_t row, std::span<const TimeKey> keys) {
     erase_keys(range, key, row);
     if (keys.empty()) return;

@@ -25,8 +25,20 @@ bool changes(std::span<const TimeKey> keys, Real t, Real h);
 // A table with a list of keys in each row has a column with the range of each list, and the column `key` with the keys
 // of all lists.
 
+/// Erases the list of one row from columns that contain the lists of all rows. `range`: range of the list of each row.
+template <class... T>
+void erase_lists(Column<Range>& range, std::size_t row, Column<T>&... lists) {
+    const Range gone = range[row];
+    (lists.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size())), ...);
+    range[row] = {};
+    for (Range& other : range)
+        if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
+}
+
 /// Erases the list of one row.
-void erase_keys(Column<Range>& range, Column<TimeKey>& key, std::size_t row);
+inline void erase_keys(Column<Range>& range, Column<TimeKey>& key, std::size_t row) {
+    erase_lists(range, row, key);
+}
 /// Replaces the list of one row.
 void set_keys(Column<Range>& range, Column<TimeKey>& key, std::size_t row, std::span<const TimeKey> keys);
 

@@ -51,6 +51,7 @@ struct RunOptions {
     bool series_figures = false;       // RunResult::series is computed, for the table of a sweep
     std::filesystem::path checkpoint;  // file for checkpoints; empty: no checkpoints
     std::optional<Real> every;         // simulated time between two checkpoints [s]
+    bool from_rest = false;            // true: the run starts from a static equilibrium
     std::filesystem::path restart;     // checkpoint from which the run resumes; empty: a new run
 };
 int run(const RunOptions& options);

@@ -267,6 +267,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"ties", plan.ties.size()},
                            {"cables", plan.cables.size()},
                            {"cavities", plan.cavities.size()},
+                           {"loads", plan.loads.size()},
                            {"nodes", report.nodes},
                            {"elements", report.elements},
                            {"stable_dt", stable_step},
@@ -297,6 +298,7 @@ int inspect_scene(const InspectOptions& options) {
               << (plan.ties.empty() ? "" : ", " + grouped(plan.ties.size()) + " ties")
               << (plan.cables.empty() ? "" : ", " + grouped(plan.cables.size()) + " cables")
               << (plan.cavities.empty() ? "" : ", " + grouped(plan.cavities.size()) + " cavities") << "\n"
+              << (plan.loads.empty() ? "" : ", " + grouped(plan.loads.size()) + " loads") << "\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
               << (report.stable_step_body.empty() ? "no body limits the step" : "limited by " + report.stable_step_body)

@@ -221,7 +221,7 @@ CLI::Option* add_checkpoints(CLI::App& command, RunOptions& options) {
         "--restart", options.restart,
         "checkpoint from which to continue; the result is bitwise identical to the result of an uninterrupted run");
     for (const char* fixed : {"--set", "--frames-per-second", "--step", "--method", "--friction", "--tolerance",
-                              "--element", "--contact-regions"})
+                              "--element", "--contact-regions", "--from-rest"})
         restart->excludes(command.get_option(fixed));
     return restart;
 }
@@ -240,6 +240,8 @@ void add_run(CLI::App& app, RunOptions& options) {
         ->check(CLI::Range(0, 1024));
     add_outputs(command, options);
     add_overrides(command, options.overrides);
+    command.add_flag("--from-rest", options.from_rest,
+                     "move the bodies to a static equilibrium under the loads at time 0 before the run");
     CLI::Option* restart = add_checkpoints(command, options);
     command.callback([scene, restart] {
         if (scene->count() == 0 && restart->count() == 0) throw CLI::RequiredError("SCENE");

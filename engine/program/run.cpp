@@ -23,6 +23,7 @@
 #include "engine/program/thin_part_text.h"
 #include "engine/scene/scene_plan.h"
 #include "jobs/executor.h"
+#include "skerry/relax.h"
 
 namespace skerry {
 
@@ -170,6 +171,26 @@ private:
     std::uint64_t steps_ = 0;  // number of steps since the run was started or resumed
 };
 
+/// Moves the bodies to a static equilibrium. If there is none, the run ends with this status before its first step.
+void start_from_rest(World& world, RunResult& result) {
+    const SignalGuard guard;
+    const Stopwatch watch;
+    const RelaxSettings settings;
+    const RelaxReport report = relax(world, settings, [](const RelaxReport&) { return caught_signal == 0; });
+    const std::string steps = grouped(static_cast<std::size_t>(report.steps)) + " steps";
+    if (report.converged)
+        result.notes.push_back("the run starts from rest, found in " + steps + " and " +
+                               with_unit(watch.seconds(), "s") + " of wall time");
+    else if (caught_signal != 0)
+        result.status = "stopped by a signal before the start";
+    else if (!report.message.empty())
+        result.status = "--from-rest: found no equilibrium: " + report.message;
+    else
+        result.status = "--from-rest: found no equilibrium: after " + steps + " the out-of-balance force on body '" +
+                        report.worst_name + "' is " + short_number(report.residual, 2) +
+                        " of the forces on it, expected at most " + short_number(settings.tolerance);
+}
+
 void count_bodies(const World& world, RunResult& result) {
     const std::vector<BodyHandle> bodies = world.bodies();
     for (const BodyHandle body : bodies) {
@@ -258,6 +279,7 @@ RunResult simulate(const RunOptions& asked) {
         result.restarted_at = world.time();
         result.seconds_wall = memory.seconds_wall;
     }
+    if (options.from_rest) start_from_rest(world, result);
     memory.scene = std::filesystem::absolute(options.scene);
     memory.assignments = options.overrides.assignments;
     result.bad_boundaries = bad_boundaries(plan, world);
@@ -281,7 +303,7 @@ RunResult simulate(const RunOptions& asked) {
                          .frames = restart ? static_cast<std::size_t>(memory.frame) + 1 : 0,
                          .frame_step = memory.frame_step,
                          .row_step = run_plan.even() ? 0 : run_plan.probe_step};
-    result.notes = plan.notes;
+    result.notes.insert(result.notes.begin(), plan.notes.begin(), plan.notes.end());
     for (std::string& note : separate_parts(plan)) result.notes.push_back(std::move(note));
     if (const std::string note = stiff_note(plan, world, start.step_count, run_plan.longest_call()); !note.empty())
         result.notes.push_back(note);

@@ -160,6 +160,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
             return Cables(world).add(settings);
         }));
     const std::vector<CavityHandle> cavities = add_cavities(plan, bodies, world);
+    for (const LoadPlan& load : plan.loads) called_at(load.place, [&] { return add_planned(load, bodies, world); });
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     for (const SeriesPlan& series : plan.series)

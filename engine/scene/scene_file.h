@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "components/cavity_law.h"
+#include "components/load_kind.h"
 #include "engine/scene/values.h"
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
 #include "skerry/joint.h"
 #include "skerry/settings.h"
 #include "skerry/tie.h"
+#include "skerry/time_table.h"
 
 namespace skerry {
 
@@ -226,6 +228,14 @@ struct PipeEntry {
     std::optional<TimeTable> pressure;
     Place place;
 };
+/// A load or a force field. `kind` determines which of the members are used.
+struct LoadEntry : PartEntry {
+    LoadKind kind = LoadKind::force;
+    std::optional<std::string> body;
+    std::optional<Vec3> force, traction, acceleration, wind;  // [N, Pa, m/s^2, m/s]
+    std::optional<Real> rate;                                 // [1/s]
+    std::optional<TimeTable> scale;
+};
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
 enum class ProbeQuantity { contacts, motion, force, reaction, joint, cable, energy, stress, volume, cavity };
@@ -271,6 +281,7 @@ struct SceneFile {
     std::vector<CableEntry> cables;
     std::vector<CavityEntry> cavities;
     std::vector<PipeEntry> pipes;
+    std::vector<LoadEntry> loads;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;
 };

@@ -4,8 +4,10 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "engine/output/series/follow_point.h"
@@ -13,6 +15,7 @@
 #include "engine/scene/scene_file.h"
 #include "engine/world/tuning.h"
 #include "skerry/anchor.h"
+#include "skerry/load.h"
 #include "skerry/scene.h"
 #include "skerry/surface.h"
 
@@ -89,6 +92,12 @@ struct PipePlan {
     PipeSettings settings;                // settings without handles of cavities
     Place place;
 };
+struct LoadPlan {
+    std::optional<std::size_t> body{};  // index in ScenePlan::bodies
+    // load without its body handle, because handles exist only in a built world
+    std::variant<ForceLoad, TractionLoad, AccelerationField, GravityScale, DragField> load{};
+    Place place;
+};
 struct ProbePlan {
     std::string name;
     std::size_t body = 0;      // index in ScenePlan::bodies
@@ -128,6 +137,7 @@ struct ScenePlan {
     std::vector<CablePlan> cables;
     std::vector<CavityPlan> cavities;
     std::vector<PipePlan> pipes;
+    std::vector<LoadPlan> loads;
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;
     Real probe_step = 0;  // [s]
@@ -185,6 +195,12 @@ void plan_cavities(const SceneFile& scene, ScenePlan& plan);
 std::vector<CavityHandle> add_cavities(const ScenePlan& plan, const std::vector<BodyHandle>& bodies, World& world);
 
 /// Adds a probe to a plan that already contains all bodies, colliders, joints, cables and cavities.
+/// Plans a load. `plan` already contains all bodies.
+LoadPlan plan_load(const LoadEntry& entry, const ScenePlan& plan);
+/// Adds a planned load to a world with the given bodies, in the order of ScenePlan::bodies.
+LoadHandle add_planned(const LoadPlan& load, std::span<const BodyHandle> bodies, World& world);
+
+/// Adds a probe to a plan that already contains all bodies, colliders and joints.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 
 /// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.

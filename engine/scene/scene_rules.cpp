@@ -293,7 +293,8 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("description", &SceneFile::description, {.meaning = "description of the scene"})
             .key("include", &SceneFile::include,
                  {.meaning =
-                      "scene files to read before this file. Their bodies, colliders, joints and materials are added "
+                      "scene files to read before this file. Their bodies, colliders, joints, loads and materials are "
+                      "added "
                       "to those of this file; where both files set the same single value, this file takes precedence"})
             .key("seconds", &SceneFile::seconds,
                  {.meaning = "simulated time of a run; default: 2", .unit = "s", .limits = above(0)})
@@ -310,6 +311,7 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("cables", &SceneFile::cables, {.meaning = "cables that run through points of bodies"})
             .key("cavities", &SceneFile::cavities, {.meaning = "pressure on faces, and gas or liquid in cavities"})
             .key("pipes", &SceneFile::pipes, {.meaning = "pipes between cavities with gas"})
+            .key("loads", &SceneFile::loads, {.meaning = "forces, tractions and force fields"})
             .key("probes", &SceneFile::probes,
                  {.meaning = "recorded quantities: contacts for the report, and time series for --probes"})
             .key("probe_step", &SceneFile::probe_step,

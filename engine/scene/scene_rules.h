@@ -81,6 +81,7 @@ template <>
 const Rule<CavityEntry>& rule_of<CavityEntry>();
 template <>
 const Rule<PipeEntry>& rule_of<PipeEntry>();
+const Rule<LoadEntry>& rule_of<LoadEntry>();
 template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();
 template <>

@@ -211,6 +211,16 @@ void add_faces(Hash& hash, const Table& table) {
     }
 }
 
+/// Hashes the nodes and weights of all loads.
+void add_shares(Hash& hash, const LoadTable& loads) {
+    for (const std::size_t row : in_slot_order(loads.slot)) {
+        if (loads.nodes[row].size() == 0) continue;
+        hash.add(loads.slot[row]);
+        add_rows(hash, loads.nodes_of(row));
+        add_rows(hash, loads.weights_of(row));
+    }
+}
+
 void add_collider(Hash& hash, Model& model, std::size_t c) {
     ColliderTable& table = model.colliders;
     add_row_state(hash, table, c);
@@ -294,6 +304,7 @@ std::uint64_t state_hash(WorldState& world) {
         if constexpr (requires { table.faces_of(0); }) add_faces(hash, table);
     });
     add_tied_nodes(hash, model.ties);
+    add_shares(hash, model.loads);
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
     add_state(hash, model.material_pairs, {0, static_cast<Index>(model.material_pairs.size())});
     const AnyTable warm_start(world.cache.warm_start);

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "engine/python/world/parts.h"
+#include "skerry/relax.h"
 
 namespace skerry::python {
 
@@ -68,10 +69,33 @@ nb::dict advance(WorldObject& object, Real dt, const nb::object& check, const nb
     return values_of(report);
 }
 
+/// Relaxes a world without the GIL.
+nb::dict relax_world(WorldObject& object, Real tolerance, int max_steps) {
+    Use use(object);
+    require_no_views(object, "relax");
+    const RelaxReport report = without_gil([&] {
+        SignalWatch signals;
+        return relax(object.world, {.tolerance = tolerance, .max_steps = max_steps}, [&](const RelaxReport&) {
+            signals.check();
+            return true;
+        });
+    });
+    nb::dict values;
+    values["converged"] = report.converged;
+    values["residual"] = report.residual;
+    values["worst"] = report.worst ? object_of(*report.worst) : nb::none();
+    values["speed"] = report.speed;
+    values["steps"] = report.steps;
+    values["seconds"] = report.seconds;
+    values["message"] = report.message;
+    return values;
+}
+
 }  // namespace
 
 void bind_advance(WorldClass& type) {
     type.def("advance", &advance, nb::arg("dt"), nb::arg("check").none(), nb::arg("watch").none())
+        .def("relax", &relax_world)
         // World::watch_steps refuses calls of callbacks. It has no other effect, because StepWatchScope has removed its
         // function.
         .def("require_between_steps", guarded([](World& world) { world.watch_steps({}); }))

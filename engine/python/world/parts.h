@@ -4,6 +4,7 @@
 #include "engine/python/world_object.h"
 #include "skerry/cable.h"
 #include "skerry/joint.h"
+#include "skerry/load.h"
 #include "skerry/report.h"
 
 namespace skerry::python {
@@ -19,6 +20,7 @@ void bind_cables(WorldClass& type);
 void bind_surface(WorldClass& type);
 void bind_ties(WorldClass& type);
 void bind_cavities(WorldClass& type);
+void bind_loads(WorldClass& type);
 void bind_sets(WorldClass& type);
 void bind_views(WorldClass& type);
 void bind_results(WorldClass& type);

@@ -83,6 +83,7 @@ void bind_world(nb::module_& module) {
     bind_handle<TieHandle>(module, "TieHandle");
     bind_handle<CavityHandle>(module, "CavityHandle");
     bind_handle<PipeHandle>(module, "PipeHandle");
+    bind_handle<LoadHandle>(module, "LoadHandle");
     module.def("end_calls", &CallScope::end_calls);
     module.def("note_fork", [] {
         Use::note_fork();
@@ -99,6 +100,7 @@ void bind_world(nb::module_& module) {
     bind_surface(type);
     bind_ties(type);
     bind_cavities(type);
+    bind_loads(type);
     bind_sets(type);
     bind_views(type);
     bind_results(type);

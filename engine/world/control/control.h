@@ -44,6 +44,12 @@ CableState cable_state(const WorldState& state, CableHandle cable);
 
 CavityState cavity_state(const WorldState& world, CavityHandle cavity);
 
+// control_dynamics.cpp
+
+/// Sets the strains of the springs of an explicit body as if the body had been held in its present shape for a long
+/// time, so that all viscous stress has relaxed.
+void relax_fully(Model& model, std::size_t body);
+
 // control_joints.cpp
 
 /// Returns the present pose and motion of a joint, and its force and moment in the last step.

@@ -183,36 +183,16 @@ void copy_node_rows(Column<Vec3>& column, Range from, Range to) {
     std::ranges::copy(rows_of(column, from), rows_of(column, to).begin());
 }
 
-/// Sets the strains of the springs of a body as if the body had been held in its present shape for a long time, so that
-/// all viscous stress has relaxed.
-void relax_fully(Model& model, std::size_t body) {
-    const Range blocks = model.bodies.blocks[body];
-    const ElementInputs elements = model.all_elements();
-    std::vector<Mat3> strain(static_cast<std::size_t>(blocks.size()) * element_lanes);
-    kernels().element_strains(elements, blocks, model.nodes.position, strain);
-    for (Index b = blocks.begin; b < blocks.end; ++b) {
-        if (!elements.material_of(static_cast<std::size_t>(b)).relaxes()) continue;
-        SpringStrain& taken = model.elements.spring_strain[static_cast<std::size_t>(b)];
-        taken = {};
-        for (std::size_t l = 0; l < element_lanes; ++l) {
-            const Mat3& E = strain[static_cast<std::size_t>(b - blocks.begin) * element_lanes + l];
-            const std::array<Real, 6> entry{E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0)};
-            for (std::size_t i = 0; i < entry.size(); ++i) taken[i][l] = static_cast<float>(2 * entry[i]);
-        }
-        model.elements.spring_strain_next[static_cast<std::size_t>(b)] = taken;
-    }
-}
-
 /// Copies shape, motion and loads of the body `before` to the body `after`, as far as the dynamics of `after` allow.
 void take_state(WorldState& world, std::size_t before, std::size_t after) {
     Model& model = world.model;
     const Range from = model.bodies.nodes[before], to = model.bodies.nodes[after];
     const WholeMotion whole = motion_of(model, before);
     model.bodies.surface[after] = model.bodies.surface[before];
-    std::ranges::replace(model.surface_sets.body, static_cast<Index>(before), static_cast<Index>(after));
     copy_node_rows(model.nodes.load, from, to);
     copy_node_rows(model.nodes.applied_before, from, to);
     model.note_loads(after, false);
+    hand_over_rows(before, after, model);
     note_forces(model);
     model.body_records[after].settled = model.body_records[before].settled;
     if (model.is_rigid(after)) {
@@ -238,6 +218,24 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
 }
 
 }  // namespace
+
+void relax_fully(Model& model, std::size_t body) {
+    const Range blocks = model.bodies.blocks[body];
+    const ElementInputs elements = model.all_elements();
+    std::vector<Mat3> strain(static_cast<std::size_t>(blocks.size()) * element_lanes);
+    kernels().element_strains(elements, blocks, model.nodes.position, strain);
+    for (Index b = blocks.begin; b < blocks.end; ++b) {
+        if (!elements.material_of(static_cast<std::size_t>(b)).relaxes()) continue;
+        SpringStrain& taken = model.elements.spring_strain[static_cast<std::size_t>(b)];
+        taken = {};
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            const Mat3& E = strain[static_cast<std::size_t>(b - blocks.begin) * element_lanes + l];
+            const std::array<Real, 6> entry{E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0)};
+            for (std::size_t i = 0; i < entry.size(); ++i) taken[i][l] = static_cast<float>(2 * entry[i]);
+        }
+        model.elements.spring_strain_next[static_cast<std::size_t>(b)] = taken;
+    }
+}
 
 void World::set_dynamics(BodyHandle body, BodyDynamics dynamics) {
     state_->require_between_steps("set_dynamics");

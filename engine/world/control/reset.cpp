@@ -154,6 +154,7 @@ void World::reset(const World& saved) {
     now.model.cable_map.differ_from(before.model.cable_map);
     now.model.cavity_map.differ_from(before.model.cavity_map);
     now.model.pipe_map.differ_from(before.model.pipe_map);
+    now.model.load_map.differ_from(before.model.load_map);
     std::swap(now.executor, before.executor);
     now.record.tracing = before.record.tracing;
     std::swap(now.record.problem_watch, before.record.problem_watch);

@@ -1,7 +1,6 @@
 #include "engine/world/edit/joining_rows.h"
 
 #include <algorithm>
-#include <type_traits>
 #include <vector>
 
 namespace skerry {
@@ -25,6 +24,14 @@ void for_each_joined(Table& table, ColumnRole role, auto&& visit) {
     }
 }
 
+/// True if a row of a table can name several bodies: in several columns, or in a list.
+bool joins_bodies(AnyTable table) {
+    std::size_t count = 0;
+    for (const ColumnInfo& info : table.columns())
+        if (info.role == ColumnRole::body) count += info.has_row_each ? 1 : 2;
+    return count > 1;
+}
+
 }  // namespace
 
 void erase_rows_joining(ColumnRole role, Index object, Model& model) {
@@ -43,11 +50,20 @@ void erase_rows_joining(ColumnRole role, Index object, Model& model) {
 bool has_rows_joining(std::size_t body, Model& model) {
     bool found = false;
     model.for_each_joining([&](const char*, auto& table, auto&) {
-        if constexpr (!std::is_same_v<std::decay_t<decltype(table)>, SurfaceSetTable>)
-            for_each_joined(table, ColumnRole::body,
-                            [&](std::size_t, Index joined) { found |= joined == static_cast<Index>(body); });
+        if (!joins_bodies(table)) return;
+        for_each_joined(table, ColumnRole::body,
+                        [&](std::size_t, Index joined) { found |= joined == static_cast<Index>(body); });
     });
     return found;
+}
+
+void hand_over_rows(std::size_t before, std::size_t after, Model& model) {
+    model.for_each_joining([&](const char*, auto& table, auto&) {
+        if (joins_bodies(table)) return;
+        for_each_joined(table, ColumnRole::body, [&](std::size_t, Index& body) {
+            if (body == static_cast<Index>(before)) body = static_cast<Index>(after);
+        });
+    });
 }
 
 void renumber_joining_rows(ColumnRole role, std::span<const Index> row_now, Model& model) {

@@ -44,8 +44,13 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
 /// ColliderTable.
 void erase_rows_joining(ColumnRole role, Index object, Model& model);
 
-/// True if a row, such as a joint, joins the body to another body or to the world. Surface sets do not count.
+/// True if a row of a table with several bodies in each row, such as a joint, joins the body to another body or to the
+/// world.
 bool has_rows_joining(std::size_t body, Model& model);
+
+/// Hands rows that act on one body only, such as loads, over from the body `before` to the body `after` with the same
+/// mesh.
+void hand_over_rows(std::size_t before, std::size_t after, Model& model);
 
 /// Renumbers the bodies or colliders in joining rows after other bodies or colliders were removed. `role`: `body` or
 /// `collider`; `row_now`: new row of each object, by its old row in BodyTable or ColliderTable.

@@ -494,6 +494,38 @@ void check_cavities(const SavedFile& file, const Model& model) {
         }
 }
 
+void check_loads(const SavedFile& file, const Model& model) {
+    const LoadTable& table = model.loads;
+    check_keys(file, "loads", "scale_keys", table.scale_keys.span(), table.key.span());
+    if (table.node.size() != table.weight.size())
+        file.complain("loads/weight", std::to_string(table.weight.size()) + " rows",
+                      std::to_string(table.node.size()) + ", as in loads/node");
+    expect_between(file, "loads/rate", table.rate, 0.0, infinity);
+    Index listed = 0;
+    for (std::size_t row = 0; row < table.size(); ++row) {
+        const auto require = [&](bool good, const char* column, const char* found, const char* expected) {
+            if (!good) file.complain(std::string("loads/") + column, at_row(found, row), expected);
+        };
+        require(table.scale_keys[row].size() > 0, "scale_keys", "no keys", "at least one key");
+        const bool on_nodes = table.kind[row] == LoadKind::force || table.kind[row] == LoadKind::traction;
+        const Range nodes = table.nodes[row];
+        require(nodes.begin >= 0 && nodes.begin <= nodes.end && nodes.end <= static_cast<Index>(table.node.size()) &&
+                    (nodes.size() > 0) == on_nodes,
+                "nodes", "a range that does not exist or does not suit the kind of load",
+                "a range of the rows of loads/node for a force or a traction, and an empty range for a field");
+        listed += nodes.size();
+        require(table.body[row] != no_index || !on_nodes, "body", "-1 (all bodies) for a force or a traction",
+                "the index of a body");
+        if (!on_nodes) continue;
+        const Index count = model.bodies.nodes[static_cast<std::size_t>(table.body[row])].size();
+        require(std::ranges::all_of(table.nodes_of(row), [&](Index n) { return n >= 0 && n < count; }), "node",
+                "a node that the body does not have", "numbers of nodes of the body");
+    }
+    if (listed != static_cast<Index>(table.node.size()))
+        file.complain("loads/node", std::to_string(table.node.size()) + " rows",
+                      std::to_string(listed) + ", as many as all ranges together");
+}
+
 void check_implicit_nodes(const SavedFile& file, const ImplicitNodeTable& table) {
     for (std::size_t row = 0; row < table.size(); ++row) {
         const std::string found = "a value that is not finite at row " + std::to_string(row);
@@ -524,6 +556,7 @@ void check_model(const SavedFile& file, Model& model) {
     check_ties(file, model);
     check_cables(file, model);
     check_cavities(file, model);
+    check_loads(file, model);
     check_implicit_nodes(file, model.implicit_nodes);
     check_watch(file, model);
 }

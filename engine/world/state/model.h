@@ -21,6 +21,7 @@
 #include "components/handle.h"
 #include "components/implicit_node_table.h"
 #include "components/joint_table.h"
+#include "components/load_table.h"
 #include "components/material_table.h"
 #include "components/node_block_table.h"
 #include "components/node_clusters.h"
@@ -111,6 +112,7 @@ struct Model {
     CableTable cables;
     CavityTable cavities;
     PipeTable pipes;
+    LoadTable loads;
     DisabledPairTable disabled_pairs;
     MaterialPairTable material_pairs;
     SurfaceSetTable surface_sets;
@@ -125,6 +127,7 @@ struct Model {
     HandleMap<CableHandle> cable_map;
     HandleMap<CavityHandle> cavity_map;
     HandleMap<PipeHandle> pipe_map;
+    HandleMap<LoadHandle> load_map;
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
     std::vector<ColliderRecord> collider_records;  // one record for each row of ColliderTable
@@ -142,6 +145,9 @@ struct Model {
     // True if the bounds depend on positions, so that they must be computed again before each step. Computed by
     // note_forces.
     bool force_rate_moves = false;
+    // For each body: sum of the rates of damping that ForceElement::add_damping adds [1/s]. Empty if all sums are zero.
+    // Computed by note_forces.
+    Column<Real> force_damping;
     BodyLinks links;          // pairs of bodies that are joined, for example by a joint; computed by note_changed_seams
     bool links_open = false;  // true if joints (or other rows that join bodies) have changed since `links` was computed
     // True if a body is asleep. If false, no stage tests for sleeping bodies. Computed by note_rest.
@@ -160,6 +166,7 @@ struct Model {
     Index row(CableHandle cable, const char* call) const;
     Index row(CavityHandle cavity, const char* call) const;
     Index row(PipeHandle pipe, const char* call) const;
+    Index row(LoadHandle load, const char* call) const;
 
     /// All elements, including the elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
@@ -261,6 +268,7 @@ struct Model {
         visit("cables", cables);
         visit("cavities", cavities);
         visit("pipes", pipes);
+        visit("loads", loads);
         visit("disabled_pairs", disabled_pairs);
         visit("material_pairs", material_pairs);
         visit("surface_sets", surface_sets);
@@ -275,6 +283,7 @@ struct Model {
         visit("cables", cables, cable_map);
         visit("cavities", cavities, cavity_map);
         visit("pipes", pipes, pipe_map);
+        visit("loads", loads, load_map);
     }
 };
 

@@ -27,6 +27,7 @@
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "systems/forces/prepare_cables.h"
+#include "systems/forces/add_loads.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {
@@ -39,6 +40,7 @@ struct StepParameters {
     Real lag = 0;      // time by which velocities are older than positions when the kick begins [s]
     // time by which velocities are older than positions between steps: `lag`, or 0 with leapfrog [s]
     Real work_lag = 0;
+    ForceIntervals intervals;     // time intervals in which forces act in this step
     Vec3 gravity = Vec3::Zero();  // m/s^2
     ContactRegions contact_regions = ContactRegions::separate;
     CollisionSettings collision;
@@ -150,6 +152,8 @@ struct StepScratch {
     Column<WatchPart> watch_parts;     // used by watch_stable_steps
     Column<WatchPieces> watch_pieces;  // used by store_shapes
     Column<Real> viscous_parts;        // used by measure_viscosity
+    Column<std::uint8_t> driven;       // for each body, nonzero if a load on it changes in this step; empty: none does
+    Column<BodyField> fields;          // used by add_loads
     RestingMemory resting_memory;      // used by keep_resting_contacts
     Column<Index> self_crossing_places;  // used by find_self_crossings
 

@@ -49,6 +49,12 @@ bool a_cavity_fills(const Model& model, Real time, Real h) {
                        PipeInputs::bind({}, model.pipes), model.cavity_map, time, h, {});
 }
 
+bool a_load_changes(const Model& model, Real time, Real h) {
+    for (std::size_t row = 0; row < model.loads.size(); ++row)
+        if (changes(model.loads.keys_of(row), time, h)) return true;
+    return false;
+}
+
 /// True if a stable step is still to be evaluated for a stored shape. This can be so if a body was moving when its
 /// shape was stored and has fallen asleep since.
 bool looks_are_due(const StepWatch& watch) {
@@ -66,7 +72,9 @@ bool nothing_moves(WorldState& world) {
     if (!model.any_asleep || !model.tuning.contact_budgets || !all_bodies_rest(model.bodies)) return false;
     if (scratch.contacts.size() > 0 || scratch.regions.size() > 0 || scratch.regions.pushed) return false;
     if (!world.cache.crossings.row.empty() || looks_are_due(model.watch)) return false;
-    if (a_motor_moves(model, time, h) || a_cable_is_driven(model, time, h) || a_cavity_fills(model, time, h)) return false;
+    if (a_motor_moves(model, time, h) || a_cable_is_driven(model, time, h) || a_cavity_fills(model, time, h) ||
+        a_load_changes(model, time, h))
+        return false;
     if (!all_stand_still(model.colliders, time, h) || !all_stand_still(model.attachments, time, h)) return false;
     drive_nodes(NodeMotionInputs::bind({}, model.attachments), h, model.nodes.position, model.nodes.velocity);
     return true;

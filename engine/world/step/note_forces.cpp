@@ -54,10 +54,16 @@ void note_forces(Model& model) {
 
 void note_force_rates(Model& model) {
     model.force_rate.clear();
+    model.force_damping.clear();
     for (const ForceElement* element : force_elements) {
-        if (!element->any(model) || !element->add_rate) continue;
-        model.force_rate.resize(model.bodies.slot.size());
-        element->add_rate(model, model.force_rate);
+        if (!element->any(model)) continue;
+        const auto add = [&](auto* add_of, Column<Real>& of_body) {
+            if (!add_of) return;
+            of_body.resize(model.bodies.slot.size());
+            add_of(model, of_body);
+        };
+        add(element->add_rate, model.force_rate);
+        add(element->add_damping, model.force_damping);
     }
 }
 

@@ -26,6 +26,9 @@ struct ForceElement {
     // positions.
     void (*add_rate)(const Model&, std::span<Real> of_body) = nullptr;
     bool rate_moves = false;  // true: the bound depends on positions, and is computed again before each step
+    // For each body, adds the rate c of forces -c m v that oppose the velocities v of its nodes of mass m [1/s]. The
+    // pointer is null if the forces do not depend on velocities.
+    void (*add_damping)(const Model&, std::span<Real> of_body) = nullptr;
 };
 
 /// A motion model: the rule by which the degrees of freedom of some bodies move in a step. Each member is a function
@@ -52,13 +55,14 @@ struct ConstraintLaw {
     ListStages remember = nullptr;  // stores the impulses for the next step, if the step can be committed
 };
 
-extern const ForceElement nodal_loads, cable_forces, cavity_pressures;
+extern const ForceElement nodal_loads, cable_forces, cavity_pressures, loads_and_fields;
 extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies, held_axes;
 extern const ConstraintLaw contact_law, joint_law, tie_law, cable_law;
 
 /// All force elements. Nodal loads come first: their stage sets the total force on each node, to which the other force
 /// elements add.
-inline constexpr std::array<const ForceElement*, 3> force_elements{&nodal_loads, &cable_forces, &cavity_pressures};
+inline constexpr std::array<const ForceElement*, 4> force_elements{&nodal_loads, &loads_and_fields, &cable_forces,
+                                                                   &cavity_pressures};
 /// All motion models. The order matters where two models write the same columns. Rigid bodies come first, because the
 /// frames of implicit bodies move like rigid bodies. Held axes come last, because they correct velocities.
 inline constexpr std::array<const MotionModel*, 5> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,

@@ -16,6 +16,7 @@
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
+#include "systems/forces/add_loads.h"
 #include "systems/forces/add_nodal_loads.h"
 #include "systems/forces/prepare_cables.h"
 #include "systems/forces/cavities.h"
@@ -133,6 +134,8 @@ void separate(WorldState& w, TaskGraph& g) {
     g.stage("forces/mark_filled", mark_filled, inputs<CavityInputs>(m.cavities, m.bodies, m.nodes),
             inputs<PipeInputs>(m.pipes), value(m.cavity_map), value(w.clock.time), value(p.h), write(w.scratch.pressed),
             if_any_asleep);
+    g.stage("forces/mark_loaded", mark_loaded, inputs<LoadedBodies>(m.loads, m.bodies), value(w.clock.time), value(p.h),
+            write(w.scratch.pressed), if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints, w.scratch.cables),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
@@ -228,9 +231,9 @@ void put_to_rest(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/rest_bodies", w.scratch.findings.rest, rest_bodies,
                         inputs<TouchInputs>(w.scratch.contacts, m.links),
-                        inputs<RestInputs>(m.attachments, m.bodies, m.materials, n, r), value(p.sleep), value(p.h),
-                        make(w.scratch.sleep_memory), outputs<RestOutputs>(m.bodies, n, r, m.implicit_nodes),
-                        if_taken(w), if_sleepy(w));
+                        inputs<RestInputs>(m.attachments, m.bodies, m.materials, n, r, w.scratch.driven),
+                        value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
+                        outputs<RestOutputs>(m.bodies, n, r, m.implicit_nodes), if_taken(w), if_sleepy(w));
 }
 
 }  // namespace

@@ -294,6 +294,11 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     scratch.parameters.lag = scratch.parameters.kick - plan.h / 2;
     const bool leapfrog = world.model.settings.integrator == Integrator::leapfrog;
     scratch.parameters.work_lag = leapfrog ? 0 : scratch.parameters.lag;
+    const Real now = world.clock.time;
+    scratch.parameters.intervals = {.begin = now - scratch.parameters.lag,
+                                    .length = scratch.parameters.kick,
+                                    .begin_implicit = leapfrog ? now - plan.h / 2 : now,
+                                    .length_implicit = plan.h};
     scratch.parameters.let_invert =
         attempt.letting_through || !(plan.h > plan.regular / most_shortening_against_inversion);
     scratch.parameters.long_step = times_in_long_step(world.clock.long_step, plan);

@@ -144,6 +144,8 @@ TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const Re
         memory.restless[b] = bodies.kind[b] == BodyKind::deformable && !state.asleep[b] && !is_ready(b);
     for (std::size_t a = 0; a < bodies.attached_body.size(); ++a)
         if (!bodies.attached_motion[a].stands_still()) memory.restless[bodies.attached_body[a]] = 1;
+    for (std::size_t b = 0; b < bodies.driven.size(); ++b)
+        if (bodies.driven[b]) memory.restless[b] = 1;
     join_touching(touches, bodies, memory);
     for (std::size_t b = 0; b < count; ++b)
         if (memory.restless[b]) memory.restless[memory.touching.root(static_cast<Index>(b))] = 1;

@@ -100,9 +100,12 @@ struct RestInputs {
     std::span<const Mat3> rigid_rotation = {};
     std::span<const Index> rigid_holder = {};  // empty if no body is held
     std::span<const Index> body_core_nodes = {};
+    // By body, nonzero if a load on the body changes in this step. Empty if no load changes.
+    std::span<const std::uint8_t> driven = {};
 
     static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,
-                           const MaterialTable& material, const NodeTable& node, const RigidBodyTable& rigid) {
+                           const MaterialTable& material, const NodeTable& node, const RigidBodyTable& rigid,
+                           const Column<std::uint8_t>& driven) {
         return {.attached_body = binder.read(attachment.body),
                 .attached_motion = binder.read(attachment.motion),
                 .kind = binder.read(body.kind),
@@ -123,7 +126,8 @@ struct RestInputs {
                 .rigid_moments = binder.read(rigid.moments),
                 .rigid_rotation = binder.read(rigid.rotation),
                 .rigid_holder = binder.read(rigid.holder),
-                .body_core_nodes = binder.read(body.core_nodes)};
+                .body_core_nodes = binder.read(body.core_nodes),
+                .driven = binder.read(driven)};
     }
 
     /// Nodes that show whether the body moves. Nodes of a round body that are only drawn may be out of date and are
@@ -182,8 +186,8 @@ struct SleepMemory {
 
 /// Counts the time for which each body has been still. Puts a body to sleep if it and all bodies that it touches,
 /// directly or through other bodies, have been still long enough. The velocities of these bodies become zero. A body
-/// that touches a moving collider or is held by a moving attachment stays awake. Parallel over bodies; sequential over
-/// contacts once a body has been still long enough.
+/// that touches a moving collider, is held by a moving attachment or has a changing load stays awake. Parallel over
+/// bodies; sequential over contacts once a body has been still long enough.
 TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
                         const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);
 

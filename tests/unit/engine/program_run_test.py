@@ -32,6 +32,19 @@ class ProgramRunTest(ProgramCase):
         self.assertLess(calm["energy"]["share"], 0.01)
         self.assertEqual(calm["warnings"], [])
 
+    def test_a_run_from_rest_does_not_move(self):
+        stats = self.folder / "rest_stats.json"
+        done = self.skerry("run", self.scene, "--from-rest", "--stats", stats, "--seconds", "0.1")
+        self.assertRegex(done.stderr, r"NOTE: the run starts from rest, found in \d+ steps")
+        self.assertLess(json.loads(stats.read_text())["energy"]["kinetic"], 1e-6)
+
+    def test_a_run_without_equilibrium_ends_before_its_start(self):
+        # the incline is steeper than the friction angle
+        steep = {**SCENE, "settings": {"gravity": [7, 0, -7]}, "materials": {"m": {"mu": 0.1}},
+                 "bodies": [{**SCENE["bodies"][0], "material": "m", "dynamics": "rigid"}]}
+        done = self.skerry("run", self.write("steep.json", steep), "--from-rest", code=1)
+        self.assertRegex(done.stderr, "--from-rest: found no equilibrium: after .* on body 'block' is")
+
     def test_held_nodes_inside_a_collider_are_a_warning_with_their_depth(self):
         led = {"name": "led", "seconds": 0.2, "settings": {"gravity": [0, 0, 0]}, "materials": {"m": {}},
                "bodies": [{"name": "cube", "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [2, 2, 2]}},

@@ -9,6 +9,7 @@
 #include "components/types.h"
 #include "engine/world/save/world_file.h"
 #include "skerry/joint.h"
+#include "skerry/load.h"
 #include "tests/support/lively_scene.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/world_file_damage.h"
@@ -342,6 +343,29 @@ TEST_CASE("a saved world in which two motors share their keys is refused", "[uni
     std::memcpy(bytes.data() + keys->begin + sizeof(Range), bytes.data() + keys->begin, sizeof(Range));
     renew_checksum(bytes);
     CHECK_THAT(saved.refusal(bytes), Contains("joints: motor_keys: found a range of keys that begins at row 0"));
+}
+
+TEST_CASE("a saved world with a load on a node that does not exist, or with wrong ranges, is refused", "[unit]") {
+    World world;
+    const BodyHandle body =
+        world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = world.add_material({})});
+    Loads(world).add(ForceLoad{body, {1, 2}, {1, 0, 0}, TimeTable({{0, 0}, {1, 1}})});
+    const FileOfWorld saved(world);
+    CHECK(saved.refusal(saved.bytes).empty());
+    const std::vector<ValuesInFile> sets = values_in(saved.bytes);
+    const auto refusal = [&](const char* path, std::size_t place, Index value) {
+        const auto set = std::ranges::find(sets, path, &ValuesInFile::path);
+        REQUIRE(set != sets.end());
+        Bytes bytes = saved.bytes;
+        std::memcpy(bytes.data() + set->begin + place * sizeof value, &value, sizeof value);
+        renew_checksum(bytes);
+        return saved.refusal(bytes);
+    };
+    CHECK_THAT(refusal("loads/node", 1, 8), Contains("loads: node: found a node that the body does not have"));
+    CHECK_THAT(refusal("loads/nodes", 1, 3), Contains("loads: nodes: found a range that does not exist"));
+    CHECK_THAT(refusal("loads/nodes", 1, 1), Contains("loads: node: found 2 rows, expected 1"));
+    CHECK_THAT(refusal("loads/scale_keys", 0, 1), Contains("loads: scale_keys"));
+    CHECK_THAT(refusal("loads/body", 0, -1), Contains("loads: body: found -1"));
 }
 
 TEST_CASE("a saved world with a self-contact but without positions of its last search is refused", "[unit]") {

@@ -6,8 +6,10 @@ from .cable import Cable, CableState
 from .cavity import Cavity, CavityState, Pipe, PipeState
 from .collider import Collider
 from .joint import Joint, JointState
+from .load import Load, LoadKind, LoadState
 from .material import MaterialHandle
 from .objects import Objects
+from .relax import RelaxReport
 from .reports import (
     DynamicsChoice,
     DynamicsEstimate,
@@ -38,10 +40,14 @@ __all__ = [
     "Energy",
     "Joint",
     "JointState",
+    "Load",
+    "LoadKind",
+    "LoadState",
     "MaterialHandle",
     "Objects",
     "Pipe",
     "PipeState",
+    "RelaxReport",
     "SelfCrossing",
     "StageReport",
     "StartMove",

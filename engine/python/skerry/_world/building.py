@@ -52,6 +52,7 @@ from .cavity import CavityBuilding
 from .changes import MaterialChanges
 from .collider import Collider
 from .joint import Joint, joint_label
+from .load import Load
 from .material import MaterialHandle
 from .objects import Objects, PosedObject
 from .reports import StepReport
@@ -97,7 +98,7 @@ class Building(CavityBuilding):
             raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'{reason}")
 
     def _hold(self, core: Any) -> None:
-        self._core = core
+        self._core: Any = core
         self._advancing = False
         self._collecting = False  # True within contact_problems()
         self._watch: Callable[[StepReport], object] | None = None
@@ -324,10 +325,10 @@ class Building(CavityBuilding):
         given = anchor.collider if anchor.body is None else anchor.body
         return None if given is None else self._own(given, name, Body, Collider), vector(anchor.point, f"{name}.point")
 
-    def remove(self, removed: PosedObject | Joint | Tie | Cable) -> None:
-        """Removes a body, a collider, an attachment, a joint, a tie or a cable. BufferError: arrays of views() are in
-        use."""
-        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint, Tie, Cable)
+    def remove(self, removed: PosedObject | Joint | Tie | Cable | Load) -> None:
+        """Removes a body, a collider, an attachment, a joint, a tie, a cable or a load. BufferError: arrays of views() are
+        in use."""
+        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint, Tie, Cable, Load)
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)
 

@@ -15,7 +15,7 @@ from html import escape
 from typing import Any, Self, Unpack
 
 from .. import _core
-from .._arrays import VectorLike, checked, flag, is_false, real_array
+from .._arrays import VectorLike, checked, flag, is_false, real, real_array, whole
 from .._arrays import seconds as checked_seconds
 from .._errors import BusyError, Doubt, StepError, scene_error
 from .._recorder import WorldOutput
@@ -25,8 +25,10 @@ from .body import Body
 from .building import Arguments
 from .changes import SettingsChanges
 from .collider import Collider
+from .load import WorldLoads
 from .objects import WorldObject
 from .page import world_table
+from .relax import RelaxReport
 from .reports import Energy, StepReport, WorldReport, step_report, world_report
 from .surface import SurfaceRules
 
@@ -52,6 +54,7 @@ _MOST_CALLS = 2**53
 
 
 class World(SurfaceRules, WorldResults, WorldOutput):
+class World(Building, WorldLoads, WorldResults, WorldOutput):
     """A simulation of deformable and rigid bodies in frictional contact. All units are SI units.
 
     World() has the default settings, World(settings) the given ones; keywords change single settings:
@@ -176,6 +179,18 @@ class World(SurfaceRules, WorldResults, WorldOutput):
             if each is not None and is_false(each(self)):
                 break
         self._warn_of_run()
+
+    def relax(self, *, tolerance: float = 1e-3, max_steps: int = 100_000) -> RelaxReport:
+        """Moves the bodies to a static equilibrium, in which no body has a velocity, by steps with kinetic damping.
+        Time does not advance: loads and motions stay at their present values. If there is no equilibrium, for example
+        because a body slides, the world does not change.
+
+        tolerance: largest out-of-balance force of a body, relative to the sum of the forces that act on it.
+        max_steps: largest number of steps. BufferError: arrays of views() are in use."""
+        values = self._core.relax(real(tolerance, "tolerance"), whole(max_steps, "max_steps"))
+        if values["worst"] is not None:
+            values["worst"] = self._body(values["worst"])
+        return RelaxReport(**values)
 
     def watch_steps(self, look: Callable[[StepReport], object] | None) -> None:
         """From now on calls `look` after every completed step, with the report so far, on the thread that advances.

@@ -1,0 +1,59 @@
+// Loads and force fields: one row per load.
+#pragma once
+
+#include <span>
+
+#include "components/column.h"
+#include "components/column_role.h"
+#include "components/key_lists.h"
+#include "components/load_kind.h"
+#include "components/row_type.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// One row per load. The force of a load is the product of `vector`, a weight and a scale that may change over time.
+struct LoadTable {
+    Column<std::uint32_t> slot;
+    Column<LoadKind> kind;
+    Column<Index> body;        // row of BodyTable; no_index for a field that acts on all bodies
+    Column<Vec3> vector;       // force [N], traction [Pa], acceleration [m/s^2] or velocity of the wind [m/s]
+    Column<Real> rate;         // rate of a drag [1/s]
+    Column<Range> nodes;       // range of rows in the columns `node` and `weight`; empty for fields
+    Column<Range> scale_keys;  // range of rows in the column `key`; never empty
+    // Nodes of all forces and tractions, as numbers in the meshes of their bodies, and their weights: fractions of a
+    // force, or areas of a traction [1 or m^2].
+    Column<Index> node;
+    Column<Real> weight;
+    Column<TimeKey> key;  // scales of all loads over time
+
+    std::size_t size() const { return slot.size(); }
+
+    std::span<const TimeKey> keys_of(std::size_t load) const { return rows_of(key.span(), scale_keys[load]); }
+    std::span<const Index> nodes_of(std::size_t load) const { return rows_of(node.span(), nodes[load]); }
+    std::span<const Real> weights_of(std::size_t load) const { return rows_of(weight.span(), nodes[load]); }
+    /// Erases the lists of one row.
+    void erase_keys_of(std::size_t load) {
+        erase_keys(scale_keys, key, load);
+        erase_lists(nodes, load, node, weight);
+    }
+
+    /// Visits the columns with one row per load. The columns of lists are visited by for_each_column only.
+    void for_each_row_column(auto&& visit) {
+        visit("slot", slot, ColumnRole::state);
+        visit("kind", kind, ColumnRole::state);
+        visit("body", body, ColumnRole::body);
+        visit("vector", vector, ColumnRole::state);
+        visit("rate", rate, ColumnRole::state);
+        visit("nodes", nodes, ColumnRole::link);
+        visit("scale_keys", scale_keys, ColumnRole::link);
+    }
+    void for_each_column(auto&& visit) {
+        for_each_row_column(visit);
+        visit("node", node, ColumnRole::state);
+        visit("weight", weight, ColumnRole::state);
+        visit("key", key, ColumnRole::state);
+    }
+};
+
+}  // namespace skerry

@@ -1,0 +1,106 @@
+// Loads on nodes and faces, and force fields, with values that change over time (docs/methods/loads.md).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "components/handle.h"
+#include "components/load_kind.h"
+#include "components/types.h"
+#include "skerry/time_table.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+class World;
+
+// Every load is multiplied by its `scale`, which may change over time. A step uses the mean of the scale in the time in
+// which forces act, so that the impulses of all steps add up to the integral of the force over time.
+
+/// A force on some nodes of a body, for example on the tip of a beam. The nodes share the force in proportion to the
+/// masses that they have when the load is added.
+struct ForceLoad {
+    BodyHandle body{};
+    std::vector<Index> nodes{};  // numbers in the mesh of the body, at least one, each at most once
+    Vec3 force = Vec3::Zero();   // total force on all nodes, in world axes [N]
+    TimeTable scale = 1;
+};
+
+/// A traction on some surface faces of a body. Its direction is fixed in the world, and it acts on the area of the
+/// faces in the rest shape (dead load). The nodes of a face share its force equally.
+struct TractionLoad {
+    BodyHandle body{};
+    // Faces as World::surface(body) lists them: numbers of nodes in any order; at least one face, each at most once.
+    std::vector<std::array<Index, 3>> faces{};
+    Vec3 traction = Vec3::Zero();  // force per area, in world axes [Pa]
+    TimeTable scale = 1;
+};
+
+/// A uniform acceleration, for example that of a shaken frame of reference. It is added to the gravity of the settings.
+struct AccelerationField {
+    std::optional<BodyHandle> body{};  // if it is not given, the field acts on all bodies
+    Vec3 acceleration = Vec3::Zero();  // [m/s^2]
+    TimeTable scale = 1;
+};
+
+/// Multiplies the weight, which is the gravity of the settings times the mass. A factor of one body replaces that of
+/// all bodies. The potential energy in reports is still that of the whole weight; the difference counts as work of
+/// loads.
+struct GravityScale {
+    std::optional<BodyHandle> body{};  // if it is not given, the factor applies to all bodies
+    TimeTable scale = 1;
+};
+
+/// A drag towards the velocity of a wind: the force on a node of mass m and velocity v is m rate (wind - v). A body
+/// that nothing else moves takes up the velocity of the wind with the time constant 1/rate, whatever its shape. Steps
+/// are not longer than 1/rate.
+struct DragField {
+    std::optional<BodyHandle> body{};  // if it is not given, the field acts on all bodies
+    Real rate = 0;                     // > 0 [1/s]
+    Vec3 wind = Vec3::Zero();          // velocity of the wind [m/s]
+    TimeTable scale = 1;               // factor of `wind`
+};
+
+/// State of a load at the present time.
+struct LoadState {
+    LoadKind kind = LoadKind::force;
+    std::optional<BodyHandle> body{};  // missing if the load acts on all bodies
+    // Value without the scale: force [N], traction [Pa], acceleration [m/s^2] or velocity of the wind [m/s]. Zero for a
+    // factor of the weight.
+    Vec3 vector = Vec3::Zero();
+    Real rate = 0;   // rate of a drag [1/s]
+    Real scale = 1;  // present scale
+    // Sum of the present forces on all nodes [N]. For a factor of the weight, the difference to the whole weight.
+    Vec3 force = Vec3::Zero();
+};
+
+/// A view of the loads of a world. It is valid until the world is moved or destroyed. Functions that change loads may
+/// only be called between calls of advance. They throw SceneError and change nothing if a handle is stale or a value is
+/// out of range. Loads act on explicit, implicit and rigid bodies. They belong to the state of the world: they are
+/// saved, cloned and hashed. Forces of World::set_loads are independent of these loads.
+class Loads {
+public:
+    explicit Loads(World& world) : world_(&world) {}
+
+    /// Adds a load. A load on a body is removed with the body.
+    LoadHandle add(const ForceLoad& load);
+    LoadHandle add(const TractionLoad& load);
+    LoadHandle add(const AccelerationField& field);
+    LoadHandle add(const GravityScale& factor);
+    LoadHandle add(const DragField& drag);
+    void remove(LoadHandle load);
+    bool alive(LoadHandle load) const;
+    std::vector<LoadHandle> all() const;  // in the order added
+    LoadState state(LoadHandle load) const;
+    /// Replaces the scale of a load. Setting an equal scale changes no bit of the state.
+    void set_scale(LoadHandle load, const TimeTable& scale);
+    /// Replaces force, traction, acceleration or velocity of the wind. Throws SceneError for a factor of the weight.
+    void set_vector(LoadHandle load, const Vec3& vector);
+
+private:
+    World* world_;
+};
+
+}  // namespace skerry
+#pragma GCC visibility pop

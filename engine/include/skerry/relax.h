@@ -1,0 +1,51 @@
+// Static equilibrium: where the bodies of a world come to rest under their loads (docs/methods/loads.md 3).
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "components/handle.h"
+#include "components/types.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+class World;
+
+struct RelaxSettings {
+    // Largest out-of-balance force of a body at rest, relative to the sum of the forces that act on it, > 0 and < 1.
+    Real tolerance = 1e-3;
+    int max_steps = 100000;  // largest number of steps, >= 1
+};
+
+struct RelaxReport {
+    bool converged = false;
+    // The largest out-of-balance force of a body in the last step, relative to the sum of the magnitudes of the
+    // weights, loads and contact forces on its nodes.
+    Real residual = 0;
+    std::optional<BodyHandle> worst{};  // the body with this force; missing if no body can move
+    std::string worst_name;
+    Real speed = 0;       // largest speed of a node of this body in the last step [m/s]
+    int steps = 0;        // number of steps
+    Real seconds = 0;     // sum of the step lengths [s]
+    std::string message;  // reason why a step could not be completed; otherwise empty
+};
+
+/// Moves the bodies of a world to a static equilibrium by dynamic relaxation with kinetic damping (Day 1965;
+/// Cundall 1976): ordinary steps, in which a body loses its velocities each time its kinetic energy has passed a
+/// maximum. Contacts and friction are those of the steps. All bodies start without velocities, and end without them.
+/// The result may depend on the way, where friction or bistable shapes permit several equilibria.
+///
+/// Time does not advance: values over time and prescribed motions stay at their present values, colliders and
+/// attachments do not move, and the report of the run does not count the steps. Viscous stress is fully relaxed at the
+/// end. If the residual stays above the tolerance, for example of a sliding body, or if a step cannot be completed, the
+/// world does not change. Throws the errors of World::settle_start(), and SceneError if a setting is out of range.
+///
+/// Calls `go_on`, if given, with the report so far after each step; if it returns false, the relaxation ends and the
+/// world does not change.
+RelaxReport relax(World& world, const RelaxSettings& settings = {},
+                  const std::function<bool(const RelaxReport&)>& go_on = {});
+
+}  // namespace skerry
+#pragma GCC visibility pop

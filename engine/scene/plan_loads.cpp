@@ -1,0 +1,55 @@
+// Resolves the names of bodies and the parts of bodies that loads use.
+#include <algorithm>
+
+#include "engine/scene/scene_plan.h"
+
+namespace skerry {
+
+namespace {
+
+std::size_t find_loaded_body(const ScenePlan& plan, const std::string& wanted, const Place& place) {
+    std::vector<std::string> names;
+    for (const BodyPlan& body : plan.bodies) names.push_back(body.settings.name);
+    const auto found = std::ranges::find(names, wanted);
+    if (found == names.end()) place.refuse(in_quotes(wanted), "the name of a body", nearest_hint(wanted, names));
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+}  // namespace
+
+LoadPlan plan_load(const LoadEntry& entry, const ScenePlan& plan) {
+    LoadPlan load{.place = entry.place};
+    if (entry.body) load.body = find_loaded_body(plan, *entry.body, entry.place.key("body"));
+    const TimeTable scale = entry.scale.value_or(TimeTable(1));
+    switch (entry.kind) {
+        case LoadKind::force:
+            load.load = ForceLoad{
+                .nodes = nodes_of(entry, plan.bodies[*load.body], plan), .force = *entry.force, .scale = scale};
+            break;
+        case LoadKind::traction:
+            load.load = TractionLoad{
+                .faces = faces_of(entry, plan.bodies[*load.body], plan), .traction = *entry.traction, .scale = scale};
+            break;
+        case LoadKind::acceleration:
+            load.load = AccelerationField{.acceleration = *entry.acceleration, .scale = scale};
+            break;
+        case LoadKind::gravity:
+            load.load = GravityScale{.scale = scale};
+            break;
+        case LoadKind::drag:
+            load.load = DragField{.rate = *entry.rate, .wind = entry.wind.value_or(Vec3(Vec3::Zero())), .scale = scale};
+            break;
+    }
+    return load;
+}
+
+LoadHandle add_planned(const LoadPlan& plan, std::span<const BodyHandle> bodies, World& world) {
+    return std::visit(
+        [&](auto load) {
+            if (plan.body) load.body = bodies[*plan.body];
+            return Loads(world).add(load);
+        },
+        plan.load);
+}
+
+}  // namespace skerry

@@ -1,0 +1,264 @@
+// Functions that add, remove and change loads between steps (docs/methods/loads.md).
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/world/complaint.h"
+#include "engine/world/edit/joining_rows.h"
+#include "engine/world/step/step.h"
+#include "engine/world/validate.h"
+#include "engine/world/world_state.h"
+#include "skerry/load.h"
+#include "systems/forces/add_loads.h"
+
+namespace skerry {
+
+namespace {
+
+/// The values of a row of LoadTable.
+struct LoadRow {
+    LoadKind kind;
+    Index body;  // no_index: all bodies
+    Vec3 vector;
+    Real rate = 0;
+    std::vector<Index> node{};
+    std::vector<Real> weight{};
+};
+
+/// Wakes the body that a load acts on, or all bodies.
+void wake_loaded(Model& model, Index body) {
+    if (body == no_index)
+        model.wake_all();
+    else
+        model.wake(static_cast<std::size_t>(body));
+}
+
+LoadHandle append_load(World& world, const LoadRow& row, const TimeTable& scale) {
+    WorldState& state = WorldAccess::state_of(world);
+    Model& model = state.model;
+    require_table("load", "scale", scale);
+    LoadTable& table = model.loads;
+    const std::size_t place = table.size();
+    AnyTable(table).resize(place + 1);
+    const LoadHandle handle = model.load_map.insert(static_cast<Index>(place));
+    table.slot[place] = handle.slot;
+    table.kind[place] = row.kind;
+    table.body[place] = row.body;
+    table.vector[place] = row.vector;
+    table.rate[place] = row.rate;
+    const auto first = static_cast<Index>(table.node.size());
+    for (const Index node : row.node) table.node.push_back(node);
+    for (const Real weight : row.weight) table.weight.push_back(weight);
+    if (!row.node.empty()) table.nodes[place] = {first, static_cast<Index>(table.node.size())};
+    set_keys(table.scale_keys, table.key, place, scale.keys);
+    wake_loaded(model, row.body);
+    note_forces(model);
+    return handle;
+}
+
+Model& model_between_steps(World& world, const char* call) {
+    WorldState& state = WorldAccess::state_of(world);
+    state.require_between_steps(call);
+    return state.model;
+}
+
+/// Row of the body of a field, or no_index for all bodies.
+Index body_of_field(const Model& model, const std::optional<BodyHandle>& body) {
+    return body ? model.row(*body, "add_load") : no_index;
+}
+
+/// Throws SceneError if the list is empty, or if a node is out of range or appears twice.
+void require_different_nodes(std::span<const Index> nodes, Index count, const std::string& body) {
+    if (nodes.empty()) refuse("load", "nodes", "an empty list", "at least one node");
+    require_nodes("load on body '" + body + "'", nodes, count);
+    std::set<Index> listed;
+    for (const Index node : nodes)
+        if (!listed.insert(node).second)
+            refuse("load", "nodes", "node " + std::to_string(node) + " twice", "each node at most once");
+}
+
+std::array<Index, 3> sorted(std::array<Index, 3> face) {
+    std::ranges::sort(face);
+    return face;
+}
+
+/// Throws SceneError if the list is empty, if a face is not on the surface of the body, or if it appears twice.
+void require_faces(std::span<const std::array<Index, 3>> faces, const Model& model, std::size_t body) {
+    const BodyRecord& record = model.body_records[body];
+    if (model.bodies.core_nodes[body] > 0)
+        refuse("load", "faces",
+               "faces of body '" + record.name + "', which is a " + std::string(model.round_name(body)),
+               "a body with a mesh");
+    if (faces.empty()) refuse("load", "faces", "an empty list", "at least one face");
+    std::set<std::array<Index, 3>> left;
+    for (const std::array<Index, 3>& face : record.surface) left.insert(sorted(face));
+    for (const std::array<Index, 3>& face : faces)
+        if (left.erase(sorted(face)) == 0)
+            refuse("load", "faces",
+                   "the face of the nodes " + std::to_string(face[0]) + ", " + std::to_string(face[1]) + " and " +
+                       std::to_string(face[2]),
+                   "faces of the surface of body '" + record.name + "', each at most once");
+}
+
+const std::string& name_of_row(const Model& model, Index body) {
+    return model.body_records[static_cast<std::size_t>(body)].name;
+}
+
+const char* field_of_vector(LoadKind kind) {
+    return kind == LoadKind::force      ? "force"
+           : kind == LoadKind::traction ? "traction"
+           : kind == LoadKind::drag     ? "wind"
+                                        : "acceleration";
+}
+
+/// Sum of the present forces of a load on all nodes [N].
+Vec3 force_of_load(const Model& model, std::size_t row, Real scale) {
+    const LoadTable& table = model.loads;
+    const LoadInputs loads =
+        LoadInputs::bind({}, table, model.bodies, model.nodes, model.settings.gravity, ForceIntervals{});
+    Vec3 sum = Vec3::Zero();
+    for (const Real weight : table.weights_of(row)) sum += weight * scale * table.vector[row];
+    if (table.nodes[row].size() > 0) return sum;
+    for (std::size_t body = 0; body < model.bodies.slot.size(); ++body) {
+        if (!loads.acts_on(row, body)) continue;
+        for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {
+            Vec3 acceleration = scale * table.vector[row];
+            if (table.kind[row] == LoadKind::gravity) acceleration = (scale - 1) * model.settings.gravity;
+            if (table.kind[row] == LoadKind::drag)
+                acceleration = table.rate[row] * (acceleration - model.nodes.velocity[n]);
+            sum += model.nodes.mass[n] * acceleration;
+        }
+    }
+    return sum;
+}
+
+}  // namespace
+
+LoadHandle Loads::add(const ForceLoad& load) {
+    const Model& model = model_between_steps(*world_, "add_load");
+    const Index body = model.row(load.body, "add_load");
+    const Range nodes = model.bodies.nodes[static_cast<std::size_t>(body)];
+    require_finite("load", "force", load.force);
+    require_different_nodes(load.nodes, nodes.size(), name_of_row(model, body));
+    LoadRow row{.kind = LoadKind::force, .body = body, .vector = load.force, .node = load.nodes};
+    Real whole = 0;
+    for (const Index node : load.nodes) whole += model.nodes.mass[nodes.begin + node];
+    if (!(whole > 0)) refuse("load", "nodes", "nodes without mass", "at least one node with a mass");
+    for (const Index node : load.nodes) row.weight.push_back(model.nodes.mass[nodes.begin + node] / whole);
+    return append_load(*world_, row, load.scale);
+}
+
+LoadHandle Loads::add(const TractionLoad& load) {
+    const Model& model = model_between_steps(*world_, "add_load");
+    const Index body = model.row(load.body, "add_load");
+    require_finite("load", "traction", load.traction);
+    const std::span<const Vec3> rest =
+        rows_of(model.nodes.rest_position, model.bodies.nodes[static_cast<std::size_t>(body)]);
+    require_faces(load.faces, model, static_cast<std::size_t>(body));
+    std::vector<Real> of_node(rest.size(), 0);  // area [m^2]
+    for (const auto& [a, b, c] : load.faces) {
+        const Vec3& first = rest[static_cast<std::size_t>(a)];
+        const Vec3 twice_area =
+            (rest[static_cast<std::size_t>(b)] - first).cross(rest[static_cast<std::size_t>(c)] - first);
+        for (const Index node : {a, b, c}) of_node[static_cast<std::size_t>(node)] += twice_area.norm() / 6;
+    }
+    LoadRow row{.kind = LoadKind::traction, .body = body, .vector = load.traction};
+    for (std::size_t n = 0; n < of_node.size(); ++n) {
+        if (!(of_node[n] > 0)) continue;
+        row.node.push_back(static_cast<Index>(n));
+        row.weight.push_back(of_node[n]);
+    }
+    return append_load(*world_, row, load.scale);
+}
+
+LoadHandle Loads::add(const AccelerationField& field) {
+    const Model& model = model_between_steps(*world_, "add_load");
+    require_finite("load", "acceleration", field.acceleration);
+    return append_load(
+        *world_,
+        {.kind = LoadKind::acceleration, .body = body_of_field(model, field.body), .vector = field.acceleration},
+        field.scale);
+}
+
+LoadHandle Loads::add(const GravityScale& factor) {
+    const Model& model = model_between_steps(*world_, "add_load");
+    const Index body = body_of_field(model, factor.body);
+    for (std::size_t row = 0; row < model.loads.size(); ++row)
+        if (model.loads.kind[row] == LoadKind::gravity && model.loads.body[row] == body)
+            refuse("load", "body",
+                   "a second factor of the weight of " +
+                       (body == no_index ? "all bodies" : "body '" + name_of_row(model, body) + "'"),
+                   "one factor, which set_scale() changes");
+    return append_load(*world_, {.kind = LoadKind::gravity, .body = body, .vector = Vec3::Zero()}, factor.scale);
+}
+
+LoadHandle Loads::add(const DragField& drag) {
+    const Model& model = model_between_steps(*world_, "add_load");
+    if (!(std::isfinite(drag.rate) && drag.rate > 0))
+        refuse("load", "rate", short_text(drag.rate), "a finite number > 0 (1/s)");
+    require_finite("load", "wind", drag.wind);
+    return append_load(
+        *world_,
+        {.kind = LoadKind::drag, .body = body_of_field(model, drag.body), .vector = drag.wind, .rate = drag.rate},
+        drag.scale);
+}
+
+void Loads::remove(LoadHandle load) {
+    Model& model = model_between_steps(*world_, "remove");
+    const auto row = static_cast<std::size_t>(model.row(load, "remove"));
+    wake_loaded(model, model.loads.body[row]);
+    std::vector<bool> gone(model.loads.size(), false);
+    gone[row] = true;
+    erase_joining_rows(gone, model.loads, model.load_map);
+    note_forces(model);
+}
+
+bool Loads::alive(LoadHandle load) const {
+    return WorldAccess::state_of(*world_).model.load_map.row(load) != no_index;
+}
+
+std::vector<LoadHandle> Loads::all() const {
+    std::vector<LoadHandle> handles;
+    const Model& model = WorldAccess::state_of(*world_).model;
+    for (const std::uint32_t slot : model.loads.slot) handles.push_back(model.load_map.handle_of_slot(slot));
+    return handles;
+}
+
+LoadState Loads::state(LoadHandle load) const {
+    const WorldState& state = WorldAccess::state_of(*world_);
+    const Model& model = state.model;
+    const auto row = static_cast<std::size_t>(model.row(load, "load"));
+    LoadState now{.kind = model.loads.kind[row], .vector = model.loads.vector[row], .rate = model.loads.rate[row]};
+    if (const Index body = model.loads.body[row]; body != no_index)
+        now.body = model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(body)]);
+    now.scale = value_at(model.loads.keys_of(row), state.clock.time);
+    now.force = force_of_load(model, row, now.scale);
+    return now;
+}
+
+void Loads::set_scale(LoadHandle load, const TimeTable& scale) {
+    Model& model = model_between_steps(*world_, "set_scale");
+    const auto row = static_cast<std::size_t>(model.row(load, "set_scale"));
+    require_table("load", "scale", scale);
+    if (std::ranges::equal(model.loads.keys_of(row), scale.keys)) return;
+    set_keys(model.loads.scale_keys, model.loads.key, row, scale.keys);
+    wake_loaded(model, model.loads.body[row]);
+}
+
+void Loads::set_vector(LoadHandle load, const Vec3& vector) {
+    Model& model = model_between_steps(*world_, "set_vector");
+    const auto row = static_cast<std::size_t>(model.row(load, "set_vector"));
+    if (model.loads.kind[row] == LoadKind::gravity)
+        refuse("load", "vector", "a vector for a factor of the weight",
+               "a load of another kind; use set_scale() for the factor, or World::set_gravity()");
+    require_finite("load", field_of_vector(model.loads.kind[row]), vector);
+    if (model.loads.vector[row] == vector) return;
+    model.loads.vector[row] = vector;
+    wake_loaded(model, model.loads.body[row]);
+}
+
+}  // namespace skerry

@@ -1,0 +1,274 @@
+// Static equilibrium by dynamic relaxation with kinetic damping (docs/methods/loads.md 3).
+#include "skerry/relax.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "components/union_find.h"
+#include "engine/world/complaint.h"
+#include "engine/world/control/control.h"
+#include "engine/world/edit/rigid_bodies.h"
+#include "engine/world/step/step.h"
+#include "engine/world/validate.h"
+#include "engine/world/world_state.h"
+#include "jobs/arithmetic_scope.h"
+#include "systems/dynamics/motion/move_colliders.h"
+
+namespace skerry {
+
+namespace {
+
+// Number of successive steps in which all bodies must be in balance. In a vibration the forces balance for a moment
+// only.
+constexpr int calm_steps = 10;
+
+/// Sets the values of all tables to those at the time `t`.
+void hold_values(Model& model, Real t) {
+    model.for_each_joining([&](const char*, auto& table, auto&) {
+        if constexpr (requires { table.keys_of(0); })
+            for (std::size_t row = 0; row < table.slot.size(); ++row) {
+                const std::span<const TimeKey> keys = table.keys_of(row);
+                if (keys.empty()) continue;
+                const Real value = value_at(keys, t);
+                const auto first = static_cast<std::size_t>(keys.data() - std::as_const(table.key).data());
+                for (std::size_t k = first; k < first + keys.size(); ++k) table.key[k].value = value;
+            }
+    });
+}
+
+/// Stops colliders or attachments at their poses at the time `t`.
+void hold_poses(auto& table, Real t) {
+    for (std::size_t row = 0; row < table.script.size(); ++row) {
+        const RigidPose pose = pose_at(table.script[row], table.keyframe, table.initial[row], t);
+        table.initial[row] = {pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()};
+        table.script[row] = {
+            .velocity = Vec3::Zero(), .angular_velocity = Vec3::Zero(), .key_begin = 0, .key_end = 0, .start = t};
+    }
+}
+
+/// Gives colliders or attachments the motion that they have in `from`.
+void take_motion(auto& to, const auto& from) {
+    to.script = from.script;
+    to.initial = from.initial;
+    to.motion = from.motion;
+}
+
+/// Gives the tables the values over time that they have in `from`, which has the same rows.
+void take_values(Model& to, Model& from) {
+    std::vector<Column<TimeKey>*> columns;
+    const auto visit_keys = [](Model& model, auto&& visit) {
+        model.for_each_joining([&](const char*, auto& table, auto&) {
+            if constexpr (requires { table.keys_of(0); }) visit(table.key);
+        });
+    };
+    visit_keys(to, [&](Column<TimeKey>& key) { columns.push_back(&key); });
+    std::size_t table = 0;
+    visit_keys(from, [&](Column<TimeKey>& key) { *columns[table++] = key; });
+}
+
+/// Changes the settings that a relaxation needs.
+void set_for_relaxation(WorldState& world, bool sleep, Real tolerance) {
+    world.model.settings.sleep = sleep;
+    world.model.settings.tolerance = tolerance;
+    const Real kick = world.scratch.parameters.kick;
+    world.scratch.parameters = step_parameters(world.model.settings, world.model.tuning);
+    world.scratch.parameters.kick = kick;  // the contacts of the last step are reported with this value
+}
+
+/// Gives the world after a relaxation the record of the run before it. Only the list of contacts is new.
+void keep_record(RunRecord& before, RunRecord& now) {
+    now.counters = before.counters;
+    now.self_crossings = std::move(before.self_crossings);
+    now.limits = before.limits;
+    now.held = before.held;
+    now.balance = before.balance;
+    now.balance.close();
+    now.tracing = before.tracing;
+    now.forces = before.forces;
+    std::swap(now.problem_watch, before.problem_watch);
+    std::swap(now.step_watch, before.step_watch);
+    now.contact_view_is_current = false;
+}
+
+void stop_body(Model& model, std::size_t body) {
+    if (model.has_frame(body)) {
+        std::ranges::fill(rows_of(model.implicit_nodes.velocity, model.bodies.implicit[body]), Vec3::Zero());
+        std::ranges::fill(rows_of(model.implicit_nodes.left, model.bodies.implicit[body]), Vec3::Zero());
+        stop_rigid_body(model, body);
+    } else {
+        relax_fully(model, body);
+    }
+    std::ranges::fill(rows_of(model.nodes.velocity, model.bodies.nodes[body]), Vec3::Zero());
+}
+
+/// Forces and motion of a body in one step.
+struct BodyBalance {
+    Real out_of_balance = 0;  // sum of the out-of-balance forces on its nodes [N]
+    Real forces = 0;          // sum of the magnitudes of weights, loads and contact forces [N]
+    Real momentum = 0;        // sum of the magnitudes of the momenta of its nodes [kg m/s]
+    Real kinetic = 0;         // [J]
+    Real speed = 0;           // largest speed of a node [m/s]
+};
+
+class Relaxation {
+public:
+    Relaxation(World& world, const RelaxSettings& settings)
+        : world_(world), state_(WorldAccess::state_of(world)), settings_(settings) {
+        const std::size_t count = state_.model.bodies.slot.size();
+        sets_.start(count);
+        for (std::size_t link = 0; link < state_.model.links.first.size(); ++link)
+            sets_.join(state_.model.links.first[link], state_.model.links.second[link]);
+        kinetic_.assign(count, 0);
+        for (std::size_t b = 0; b < count; ++b)
+            if (moves(b)) stop_body(state_.model, b);
+    }
+
+    RelaxReport run(const std::function<bool(const RelaxReport&)>& go_on) {
+        RelaxReport report;
+        int calm = 0;
+        Real calm_time = 0;  // [s]
+        while (report.steps < settings_.max_steps) {
+            const NodeTable& nodes = state_.model.nodes;
+            before_.assign(nodes.velocity.begin(), nodes.velocity.end());
+            const Real start = state_.clock.time;
+            const StepReport step = world_.advance(trusted());
+            report.steps += step.steps;
+            if (!step.ok()) {
+                report.message = step.message();
+                return report;
+            }
+            const Real h = state_.clock.time - start;
+            report.seconds += h;
+            measure_bodies(h);
+            calm_time += h;
+            const bool in_balance = find_worst(calm_time, report);
+            calm = in_balance ? calm + 1 : 0;
+            if (!in_balance) calm_time = 0;
+            if (calm >= calm_steps) {
+                report.converged = true;
+                break;
+            }
+            if (go_on && !go_on(std::as_const(report))) break;
+            damp();
+        }
+        for (std::size_t b = 0; b < bodies_.size(); ++b)
+            if (moves(b)) stop_body(state_.model, b);
+        return report;
+    }
+
+private:
+    bool moves(std::size_t body) const {
+        const Model& model = state_.model;
+        return model.bodies.kind[body] == BodyKind::deformable && !(model.is_rigid(body) && model.is_held(body));
+    }
+
+    Real trusted() const {
+        const Real step = trusted_step(state_.model);
+        return std::isfinite(step) ? step : 1.0 / 120;
+    }
+
+    void measure_bodies(Real h) {
+        const Model& model = state_.model;
+        const NodeTable& nodes = model.nodes;
+        bodies_.assign(model.bodies.slot.size(), {});
+        for (std::size_t n = 0; n < nodes.position.size(); ++n) {
+            BodyBalance& of = bodies_[static_cast<std::size_t>(nodes.body[n])];
+            if (!(nodes.inverse_mass[n] > 0)) continue;
+            const Real mass = nodes.mass[n], speed = nodes.velocity[n].norm();
+            Vec3 given = mass * model.settings.gravity;
+            if (model.forced) given += nodes.applied_force[n];
+            of.forces += given.norm();
+            of.out_of_balance += mass * (nodes.velocity[n] - before_[n]).norm() / h;
+            of.momentum += mass * speed;
+            of.kinetic += mass * speed * speed / 2;
+            of.speed = std::max(of.speed, speed);
+        }
+        const ContactTable& contacts = state_.scratch.contacts;
+        for (std::size_t c = 0; c < contacts.size(); ++c) {
+            const Real force = contacts.impulse[c].norm() / h;
+            bodies_[static_cast<std::size_t>(contacts.first_body[c])].forces += force;
+            if (contacts.second_body[c] != no_index)
+                bodies_[static_cast<std::size_t>(contacts.second_body[c])].forces += force;
+        }
+        for (const BodyBalance& of : bodies_) largest_ = std::max(largest_, of.out_of_balance);
+    }
+
+    /// Returns whether all bodies are in balance and slow. A speed is slow if forces of the tolerated size reach it
+    /// within `time` [s]. Without weights, loads and contacts, the largest out-of-balance force so far is the measure.
+    bool find_worst(Real time, RelaxReport& report) const {
+        report.residual = report.speed = 0;
+        report.worst.reset();
+        bool in_balance = true;
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            if (!moves(b)) continue;
+            const BodyBalance& of = bodies_[b];
+            const Real scale = of.forces > 0 ? of.forces : largest_;
+            const Real residual = scale > 0 ? of.out_of_balance / scale : 0;
+            in_balance &= residual <= settings_.tolerance && of.momentum <= settings_.tolerance * scale * time;
+            if (report.worst && residual <= report.residual) continue;
+            report.residual = residual;
+            report.speed = of.speed;
+            report.worst = state_.model.body_map.handle_of_slot(state_.model.bodies.slot[b]);
+            report.worst_name = state_.model.body_records[b].name;
+        }
+        return in_balance;
+    }
+
+    /// Stops each set of joined bodies whose kinetic energy has passed a maximum.
+    void damp() {
+        const std::size_t count = bodies_.size();
+        sum_.assign(count, 0);
+        for (std::size_t b = 0; b < count; ++b) sum_[root(b)] += bodies_[b].kinetic;
+        for (std::size_t b = 0; b < count; ++b)
+            if (moves(b) && sum_[root(b)] < kinetic_[root(b)]) stop_body(state_.model, b);
+        for (std::size_t b = 0; b < count; ++b) kinetic_[b] = sum_[b] < kinetic_[b] ? 0 : sum_[b];
+    }
+    std::size_t root(std::size_t body) { return static_cast<std::size_t>(sets_.root(static_cast<Index>(body))); }
+
+    World& world_;
+    WorldState& state_;
+    RelaxSettings settings_;
+    UnionFind sets_;                     // sets of joined bodies
+    std::vector<Vec3> before_;           // velocities of all nodes before the step [m/s]
+    std::vector<BodyBalance> bodies_;    // by body
+    std::vector<Real> kinetic_, sum_{};  // kinetic energies of the sets, by their roots [J]
+    Real largest_ = 0;                   // largest out-of-balance force of a body so far [N]
+};
+
+}  // namespace
+
+RelaxReport relax(World& world, const RelaxSettings& settings, const std::function<bool(const RelaxReport&)>& go_on) {
+    if (!(settings.tolerance > 0 && settings.tolerance < 1))
+        refuse("relax", "tolerance", short_text(settings.tolerance), "a number > 0 and < 1");
+    if (settings.max_steps < 1) refuse("relax", "max_steps", std::to_string(settings.max_steps), "a number >= 1");
+    WorldAccess::state_of(world).require_between_steps("relax");
+    const ArithmeticScope arithmetic;  // the decisions must not depend on the floating-point mode of the caller
+    world.settle_start();
+    World copy = world.clone();
+    WorldState& before = WorldAccess::state_of(world);
+    WorldState& now = WorldAccess::state_of(copy);
+    const Settings& given = before.model.settings;
+    set_for_relaxation(now, false, std::min(given.tolerance, settings.tolerance / 10));
+    hold_values(now.model, before.clock.time);
+    hold_poses(now.model.colliders, before.clock.time);
+    hold_poses(now.model.attachments, before.clock.time);
+    now.model.wake_all();
+    note_changed_seams(now.model);
+    const RelaxReport report = Relaxation(copy, settings).run(go_on);
+    if (!report.converged) return report;
+    take_values(now.model, before.model);
+    take_motion(now.model.colliders, before.model.colliders);
+    take_motion(now.model.attachments, before.model.attachments);
+    set_for_relaxation(now, given.sleep, given.tolerance);
+    now.model.settings.backend = given.backend;
+    now.model.settings.threads = given.threads;
+    now.clock = before.clock;
+    std::swap(now.executor, before.executor);
+    keep_record(before.record, now.record);
+    world = std::move(copy);
+    return report;
+}
+
+}  // namespace skerry

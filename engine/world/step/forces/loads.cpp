@@ -1,0 +1,37 @@
+// Force element for loads and force fields.
+#include "engine/world/step/seams.h"
+#include "systems/forces/add_loads.h"
+
+namespace skerry {
+
+namespace {
+
+bool any_of_loads(const Model& model) {
+    return model.loads.size() > 0;
+}
+
+void add_load_stages(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    StepScratch& s = w.scratch;
+    const StepParameters& p = s.parameters;
+    const auto if_any = only_if([](std::span<const Index> body) { return !body.empty(); }, read(m.loads.body));
+    g.stage("forces/add_loads", add_loads, inputs<LoadInputs>(m.loads, m.bodies, m.nodes, p.gravity, p.intervals),
+            make(s.fields), write(m.nodes.applied_force), if_any);
+    g.stage("forces/find_driven", find_driven, inputs<LoadedBodies>(m.loads, m.bodies), value(w.clock.time), value(p.h),
+            make(s.driven));
+}
+
+void add_drag_rates(const Model& model, std::span<Real> of_body) {
+    const Vec3 no_gravity = Vec3::Zero();
+    const LoadInputs loads = LoadInputs::bind({}, model.loads, model.bodies, model.nodes, no_gravity, {});
+    for (std::size_t load = 0; load < model.loads.size(); ++load)
+        for (std::size_t body = 0; body < of_body.size() && loads.kind[load] == LoadKind::drag; ++body)
+            if (loads.acts_on(load, body)) of_body[body] += loads.rate[load];
+}
+
+}  // namespace
+
+constinit const ForceElement loads_and_fields{
+    .any = any_of_loads, .add_forces = add_load_stages, .add_damping = add_drag_rates};
+
+}  // namespace skerry

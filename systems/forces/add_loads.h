@@ -1,0 +1,102 @@
+// Force element: loads on nodes and faces, and force fields, with scales that change over time (docs/methods/loads.md).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "components/body_table.h"
+#include "components/column.h"
+#include "components/load_table.h"
+#include "components/node_table.h"
+#include "components/types.h"
+#include "jobs/access.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+/// Time intervals in which forces act in a step. The intervals of successive steps join without gaps.
+struct ForceIntervals {
+    Real begin = 0, length = 0;                    // for explicit and rigid bodies [s]
+    Real begin_implicit = 0, length_implicit = 0;  // for implicit bodies [s]
+};
+
+/// Sum of the fields on a body: the force on a node of mass m and velocity v is m (acceleration - drag v).
+struct BodyField {
+    Vec3 acceleration = Vec3::Zero();  // [m/s^2]
+    Real drag = 0;                     // [1/s]
+};
+
+/// The columns of LoadTable, and the rows that the loads act on.
+struct LoadInputs {
+    std::span<const LoadKind> kind;
+    std::span<const Index> load_body;
+    std::span<const Vec3> vector;
+    std::span<const Real> rate;
+    std::span<const Range> load_nodes, scale_keys;
+    std::span<const Index> share_node;
+    std::span<const Real> weight;
+    std::span<const TimeKey> key;
+    // Columns of BodyTable and NodeTable:
+    std::span<const BodyKind> body_kind;
+    std::span<const Range> body_nodes, body_implicit;
+    std::span<const Index> node_body;
+    std::span<const Real> mass;      // [kg]
+    std::span<const Vec3> velocity;  // at the start of the step [m/s]
+    Vec3 gravity = Vec3::Zero();     // gravity of the settings [m/s^2]
+    ForceIntervals intervals;
+
+    static LoadInputs bind(const Binder& binder, const LoadTable& load, const BodyTable& body, const NodeTable& node,
+                           const Vec3& gravity, const ForceIntervals& intervals) {
+        return {.kind = binder.read(load.kind),
+                .load_body = binder.read(load.body),
+                .vector = binder.read(load.vector),
+                .rate = binder.read(load.rate),
+                .load_nodes = binder.read(load.nodes),
+                .scale_keys = binder.read(load.scale_keys),
+                .share_node = binder.read(load.node),
+                .weight = binder.read(load.weight),
+                .key = binder.read(load.key),
+                .body_kind = binder.read(body.kind),
+                .body_nodes = binder.read(body.nodes),
+                .body_implicit = binder.read(body.implicit),
+                .node_body = binder.read(node.body),
+                .mass = binder.read(node.mass),
+                .velocity = binder.read(node.velocity),
+                .gravity = binder.value(gravity),
+                .intervals = binder.value(intervals)};
+    }
+
+    /// True if a field acts on a body. A factor of the weight that is given for the body replaces the one for all
+    /// bodies.
+    bool acts_on(std::size_t load, std::size_t body) const;
+};
+
+/// Adds the forces of all loads to `applied_force`, by node [N]. A scale that changes over time acts with its exact
+/// mean in the interval of the step, so the sum of impulses over the steps equals the integral over time. Drag uses the
+/// velocities at the start of the step. Parallel over nodes: loads on nodes are added in the order of LoadTable, and
+/// then the sum of all fields. `fields`: working memory. Returns false if there is no load.
+bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& fields, std::span<Vec3> applied_force);
+
+/// The columns that decide on which bodies a load changes.
+struct LoadedBodies {
+    std::span<const Index> load_body;
+    std::span<const Range> scale_keys;
+    std::span<const TimeKey> key;
+    std::span<const BodyKind> body_kind;
+
+    static LoadedBodies bind(const Binder& binder, const LoadTable& load, const BodyTable& body) {
+        return {.load_body = binder.read(load.body),
+                .scale_keys = binder.read(load.scale_keys),
+                .key = binder.read(load.key),
+                .body_kind = binder.read(body.kind)};
+    }
+};
+
+/// Marks the bodies with a load whose scale changes in the step of length `h` [s] that starts at the time `t` [s].
+/// Returns false if there is no such load.
+bool mark_loaded(const LoadedBodies& loads, Real t, Real h, std::span<std::uint8_t> marked);
+
+/// Sets `driven` to marks of all bodies that mark_loaded() marks. Leaves `driven` empty if there are none.
+bool find_driven(const LoadedBodies& loads, Real t, Real h, Column<std::uint8_t>& driven);
+
+}  // namespace skerry

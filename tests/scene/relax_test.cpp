@@ -1,0 +1,142 @@
+// Static equilibria by dynamic relaxation, against closed forms and dynamic runs (docs/methods/loads.md 3).
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "skerry/load.h"
+#include "skerry/relax.h"
+#include "tests/support/worlds.h"
+
+namespace skerry::test::relax_test {
+
+namespace {
+
+std::vector<Index> nodes_above(const World& world, BodyHandle body, Real z) {
+    std::vector<Index> list;
+    const auto nodes = world.positions(body);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (nodes[n].z() > z) list.push_back(static_cast<Index>(n));
+    return list;
+}
+
+Real lowest(const World& world, BodyHandle body) {
+    Real z = infinity;
+    for (const Vec3& x : world.positions(body)) z = std::min(z, x.z());
+    return z;
+}
+
+}  // namespace
+
+TEST_CASE("a hanging bar stretches by rho g L^2 / (2 E)", "[scene]") {
+    constexpr Real L = 0.5, E = 1e6, density = 1000;
+    for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic}) {
+        CAPTURE(static_cast<int>(dynamics));
+        World world;
+        const auto material = world.add_material({.young_modulus = E, .poisson_ratio = 0.0, .density = density});
+        const auto bar =
+            world.add_body(mesh::box({0.1, 0.1, L}, {2, 2, 10}), {.material = material, .dynamics = dynamics});
+        world.attach(bar, nodes_above(world, bar, L / 2 - 1e-6));
+        const std::uint64_t steps = world.report().steps;
+        const RelaxReport report = relax(world, {.tolerance = 1e-5});
+        REQUIRE(report.converged);
+        CHECK(report.residual <= 1e-5);
+        CHECK(world.time() == 0);
+        CHECK(world.report().steps == steps);
+        for (const Vec3& v : world.velocities(bar)) CHECK(v == Vec3::Zero());
+        const Real stretch = -L / 2 - lowest(world, bar), expected = density * standard_gravity * L * L / (2 * E);
+        CHECK(stretch == Approx(expected).epsilon(0.01));
+        // The state is at rest: a run does not move it.
+        REQUIRE(world.advance(0.5).ok());
+        CHECK(-L / 2 - lowest(world, bar) == Approx(stretch).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("a ball comes to rest where the dynamic run ends, in a tenth of the steps", "[scene]") {
+    const auto make = [](Index threads) {
+        Settings settings;
+        settings.threads = threads;
+        World world(settings);
+        // Without friction there is only one equilibrium.
+        const auto rubber = world.add_material({.young_modulus = 2e4, .friction = 0});
+        world.add_collider(Plane{});
+        world.add_body(mesh::ball(0.1, 6),
+                       {.material = rubber, .position = {0, 0, 0.15}, .dynamics = BodyDynamics::explicit_elastic});
+        return world;
+    };
+    World dynamic = make(1), relaxed = make(1), threads = make(3);
+    REQUIRE(dynamic.advance(20).ok());  // A body falls asleep within a thousandth of its static state.
+    const RelaxReport report = relax(relaxed);
+    REQUIRE(report.converged);
+    const auto height = [](const World& world) { return world.center_of_mass(world.bodies()[0]).z(); };
+    CHECK(0.1 - height(relaxed) == Approx(0.1 - height(dynamic)).epsilon(3e-3));
+    CHECK(static_cast<std::uint64_t>(report.steps) < dynamic.report().steps / 10);
+    REQUIRE(relax(threads).converged);
+    CHECK(threads.state_hash() == relaxed.state_hash());
+}
+
+TEST_CASE("a block on an incline rests below the friction angle and is reported above it", "[scene]") {
+    for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::rigid}) {
+        CAPTURE(static_cast<int>(dynamics));
+        const auto on_incline = [&](Real degrees) {
+            Settings settings;
+            settings.gravity = tilted_gravity(degrees);
+            World world(settings);
+            const auto rubber = world.add_material({.young_modulus = 1e5, .friction = 0.5});  // 26.6 degrees
+            world.add_collider(Plane{});
+            world.add_body(mesh::box({0.2, 0.2, 0.1}, {2, 2, 1}),
+                           {.material = rubber, .position = {0, 0, 0.051}, .dynamics = dynamics, .name = "block"});
+            return world;
+        };
+        World below = on_incline(20), above = on_incline(33);
+        const auto x = [](const World& world) { return world.center_of_mass(world.bodies()[0]).x(); };
+        const RelaxReport rests = relax(below);
+        CHECK(rests.converged);
+        CHECK(std::abs(x(below)) < 0.01);
+        above.settle_start();
+        const auto hash = above.state_hash();
+        const RelaxReport slides = relax(above, {.max_steps = 3000});
+        CHECK(!slides.converged);
+        CHECK(slides.steps == 3000);
+        CHECK(slides.worst_name == "block");
+        CHECK(slides.residual > 0.05);
+        CHECK(slides.speed > 0.1);
+        CHECK(above.state_hash() == hash);
+    }
+}
+
+TEST_CASE("values over time and motions stay at the present time", "[scene]") {
+    World world(accurate());
+    const auto rubber = world.add_material({.young_modulus = 1e5});
+    const auto bar = world.add_body(mesh::box({0.1, 0.1, 0.2}, {2, 2, 4}),
+                                    {.material = rubber, .dynamics = BodyDynamics::explicit_elastic});
+    const auto held = world.attach(bar, nodes_above(world, bar, 0.0999), {.velocity = {1, 0, 0}});
+    Loads loads(world);
+    loads.add(GravityScale{.scale = TimeTable({{0, 0}, {0.1, 0}, {0.2, 1}})});
+    const LoadHandle load = loads.add(ForceLoad{bar, {0, 1}, {0, 0, -1}, TimeTable({{0, 0}, {0.1, 1}, {0.2, 5}})});
+    REQUIRE(world.advance(0.1).ok());
+    const Vec3 place = world.pose(held).position;
+    REQUIRE(relax(world, {.tolerance = 1e-4}).converged);
+    CHECK(world.pose(held).position == place);
+    CHECK(world.time() == 0.1);
+    CHECK(loads.state(load).force.z() == Approx(-1));
+    REQUIRE(world.advance(0.1).ok());
+    CHECK(world.pose(held).position.x() == Approx(place.x() + 0.1).epsilon(1e-6));
+    CHECK(loads.state(load).scale == Approx(5).epsilon(1e-6));
+}
+
+TEST_CASE("a relaxation that fails or is refused leaves the world whole", "[scene]") {
+    World world;
+    const auto rubber = world.add_material({.young_modulus = 1e5});
+    const auto body = world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}),
+                                     {.material = rubber, .dynamics = BodyDynamics::explicit_elastic});
+    world.set_loads(body, std::vector<Vec3>(27, Vec3(1e30, 0, 0)));
+    world.settle_start();
+    const auto hash = world.state_hash();
+    const RelaxReport report = relax(world);
+    CHECK(!report.converged);
+    CHECK(!report.message.empty());
+    CHECK(world.state_hash() == hash);
+    CHECK_THROWS_WITH(relax(world, {.tolerance = 0}), Catch::Contains("tolerance") && Catch::Contains("> 0 and < 1"));
+    CHECK_THROWS_WITH(relax(world, {.max_steps = 0}), Catch::Contains("max_steps"));
+}
+
+}  // namespace skerry::test::relax_test
