@@ -211,6 +211,7 @@ struct CableEntry {
     std::vector<AnchorEntry> points;
     std::optional<TimeTable> tension, length, rate;
     Real friction = CableSettings{}.friction;
+    Place place;
 };
 /// A cavity of a body. Without a part, it has the faces that CavitySettings::faces describes as default.
 struct CavityEntry : PartEntry {

@@ -61,6 +61,7 @@ template <>
 const Rule<SurfaceEntry>& rule_of<SurfaceEntry>();
 template <>
 const Rule<PairEntry>& rule_of<PairEntry>();
+template <>
 const Rule<AnchorEntry>& rule_of<AnchorEntry>();
 template <>
 const Rule<CableEntry>& rule_of<CableEntry>();
@@ -74,6 +75,7 @@ template <>
 const Rule<JointEntry>& rule_of<JointEntry>();
 template <>
 const Rule<TieEntry>& rule_of<TieEntry>();
+template <>
 const Rule<GasFilling>& rule_of<GasFilling>();
 template <>
 const Rule<LiquidFilling>& rule_of<LiquidFilling>();
@@ -81,6 +83,7 @@ template <>
 const Rule<CavityEntry>& rule_of<CavityEntry>();
 template <>
 const Rule<PipeEntry>& rule_of<PipeEntry>();
+template <>
 const Rule<LoadEntry>& rule_of<LoadEntry>();
 template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();

@@ -246,7 +246,6 @@ void require_objects(const World& world, const RecordedProbe& probe) {
                           [&](const ReactionProbe& force) { require(force.attachment); },
                           [&](const JointProbe& joint) { require(joint.joint); },
                           [&](const CableProbe& cable) { require(cable.cable); }, [](const EnergyProbe&) {},
-                          [&](const JointProbe& joint) { require(joint.joint); }, [](const EnergyProbe&) {},
                           [&](const CavityProbe& cavity) { require(cavity.cavity); },
                           [&](const BodyProbe& body) { require(body.body); },
                           [&](const VolumeProbe& volume) { require(volume.body); },
