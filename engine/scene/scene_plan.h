@@ -154,7 +154,7 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
 /// unknown set, or a part without nodes or faces. Such errors list the sets that exist.
 std::vector<Index> nodes_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
 std::vector<std::array<Index, 3>> faces_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
-/// The same for a body that is not complete yet. `sets`: BodyPlan::sets.
+/// Resolves a part of a body that is not complete yet. `sets`: BodyPlan::sets.
 std::vector<Index> nodes_of(const PartEntry& part, const Mesh& mesh, const std::map<std::string, MeshSet>& sets);
 
 /// Returns a set of the mesh or of the scene. Throws SceneError if there is none of this name.

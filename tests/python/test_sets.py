@@ -75,7 +75,7 @@ def test_the_tetrahedra_of_a_set_have_its_material() -> None:
 
 def test_a_node_on_a_roller_moves_in_the_other_directions() -> None:
     world, body = cube()
-    world.gravity = (1, 0, -1)
+    world.set_gravity((1, 0, -1))
     roller = body.attach(np.arange(body.node_count), axes="z")
     assert np.array_equal(roller.directions, [(0, 0, 1)])
     world.advance(0.1)
@@ -123,3 +123,40 @@ def test_pyvista_keeps_names() -> None:
     mesh = sk.Mesh.from_pyvista(grid)
     assert mesh.sets["held"] == sk.MeshSet(nodes=[0, 3])
     assert mesh.sets["zone_3"] == sk.MeshSet(tetrahedra=[0, 1]) and len(mesh.sets["zone_2"].faces) == 1
+
+
+def test_gmsh_keeps_names(tmp_path: Path) -> None:
+    gmsh = pytest.importorskip("gmsh")
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 1)
+        gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
+        gmsh.model.occ.addBox(1, 0, 0, 1, 1, 1)
+        gmsh.model.occ.fragment([(3, 1)], [(3, 2)])
+        gmsh.model.occ.synchronize()
+        left = [tag for _, tag in gmsh.model.getEntities(2) if gmsh.model.occ.getCenterOfMass(2, tag)[0] < 1e-9]
+        gmsh.model.addPhysicalGroup(2, left, name="left face")
+        gmsh.model.addPhysicalGroup(3, [1], name="soft")
+        gmsh.model.addPhysicalGroup(3, [1, 2], name="both")
+        gmsh.model.addPhysicalGroup(0, [1], tag=9)
+        gmsh.model.mesh.generate(3)
+        files = []
+        for version, binary in ((2.2, 0), (2.2, 1), (4.1, 0), (4.1, 1)):
+            gmsh.option.setNumber("Mesh.MshFileVersion", version)
+            gmsh.option.setNumber("Mesh.Binary", binary)
+            files.append(tmp_path / f"m_{version}_{binary}.msh")
+            gmsh.write(str(files[-1]))
+        model = sk.Mesh.from_gmsh(gmsh.model)
+    finally:
+        gmsh.finalize()
+    for mesh in (model, *map(sk.Mesh.read, files)):
+        assert set(mesh.sets) == {"left face", "soft", "both", "point_9"}
+        faces = np.asarray(mesh.sets["left face"].faces)
+        assert len(faces) and np.all(mesh.nodes[faces][:, :, 0] == 0)
+        corners = mesh.nodes[faces]
+        assert np.all(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 0] < 0)  # outward
+        assert len(mesh.sets["both"].tetrahedra) == len(mesh.tetrahedra)
+        soft = mesh.tetrahedra[mesh.sets["soft"].tetrahedra]
+        assert np.all(mesh.nodes[soft].mean(axis=1)[:, 0] < 1) and 0 < len(soft) < len(mesh.tetrahedra)
+        assert len(mesh.sets["point_9"].nodes) == 1

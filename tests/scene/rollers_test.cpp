@@ -107,13 +107,18 @@ TEST_CASE("momentum adds up and nothing leaves its rollers when a ball strikes t
     bar.world.add_body(
         mesh::ball(0.03, 4),
         {.material = bar.world.add_material(linear()), .position = {0, -0.03, 0.082}, .velocity = {0, 0.3, -1}});
+    Real farthest = 0;  // distance of a node from its roller in any step [m]
+    bar.world.watch_steps([&](const StepReport&) {
+        for (const Index n : nodes_at(bar.mesh, 1, -0.05))
+            farthest =
+                std::max(farthest, std::abs(bar.world.positions(bar.body)[static_cast<std::size_t>(n)].y() + 0.05));
+    });
     REQUIRE(bar.world.advance(0.1).ok());
+    CHECK(farthest < 1e-12);
     const WorldReport report = bar.world.report();
     REQUIRE(report.mean_contacts > 0);
     CHECK(report.momentum_error_share < 1e-13 * std::sqrt(static_cast<Real>(report.steps)));
     CHECK(report.energy_error_share < 1e-2);
-    for (const Index n : nodes_at(bar.mesh, 1, -0.05))
-        CHECK(std::abs(bar.world.positions(bar.body)[static_cast<std::size_t>(n)].y() + 0.05) < 1e-12);
 }
 
 TEST_CASE("a node on an inclined roller moves along the incline only", "[scene]") {

@@ -35,6 +35,7 @@ _LABEL_NAMES = ("region", "gmsh:physical", "medit:ref", "CellEntityIds")
 _LINEAR_TETRAHEDRON, _CURVED_TETRAHEDRA = 4, (11, 29, 30, 31)  # element types of Gmsh
 _LINEAR_TRIANGLE = 2
 _VTK_TRIANGLE, _VTK_TETRAHEDRON, _VTK_CURVED = 5, 10, (24, 71)
+_VTK_NAMES = {_VTK_TRIANGLE: "triangle", _VTK_TETRAHEDRON: "tetra"}
 _KINDS: Mapping[str, Literal["face", "tetrahedron"]] = {"triangle": "face", "tetra": "tetrahedron"}
 
 
@@ -272,8 +273,8 @@ class Mesh:
                 continue
             for of_set, members in sets_of_numbers(name, np.asarray(grid.cell_data[name])).items():
                 for kind, cells in cells_of.items():
-                    of_kind = {_VTK_TETRAHEDRON: "tetrahedron", _VTK_TRIANGLE: "face"}.get(int(kind), "node")
-                    parts.add_block(of_kind, np.asarray(cells), 0, {of_set: members[kinds == kind]})  # type: ignore[arg-type]
+                    of_kind = _KINDS.get(_VTK_NAMES.get(int(kind), ""), "node")
+                    parts.add_block(of_kind, np.asarray(cells), 0, {of_set: members[kinds == kind]})
         return _mesh_of_used_nodes("PyVista grid", grid.points, rows, labels, parts.arrays())
 
     def to_pyvista(self) -> Any:

@@ -6,6 +6,7 @@
 #include "components/attachment_table.h"
 #include "components/body_table.h"
 #include "components/column.h"
+#include "components/external_work.h"
 #include "components/node_table.h"
 #include "components/resting_nodes.h"
 #include "components/rigid_body_table.h"
@@ -13,11 +14,6 @@
 #include "jobs/executor.h"
 
 namespace skerry {
-
-struct ExternalWork {
-    Vec3 impulse = Vec3::Zero();  // N s
-    Real work = 0;                // J
-};
 
 struct WorkInputs {
     std::span<const Vec3> load;         // applied force by node; empty if there are no applied forces [N]

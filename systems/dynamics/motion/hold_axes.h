@@ -4,11 +4,12 @@
 #include <span>
 
 #include "components/attachment_table.h"
+#include "components/body_table.h"
 #include "components/column.h"
+#include "components/external_work.h"
 #include "components/node_table.h"
 #include "components/resting_nodes.h"
 #include "jobs/access.h"
-#include "systems/dynamics/checks/measure_work.h"
 
 namespace skerry {
 

@@ -188,7 +188,8 @@ TEST_CASE("arrays of whole numbers in VTK XML files are sets", "[unit]") {
 <PointData><DataArray type="UInt8" Name="held" format="ascii">1 0 0 1 0</DataArray>
 <DataArray type="Float64" Name="heat" format="ascii">1 0 0 1 0</DataArray></PointData>
 <CellData><DataArray type="Int32" Name="zone" format="ascii">3 3</DataArray></CellData>
-<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1
+</DataArray></Points>
 <Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3 1 2 3 4</DataArray>
 <DataArray type="Int64" Name="offsets" format="ascii">4 8</DataArray>
 <DataArray type="UInt8" Name="types" format="ascii">10 10</DataArray></Cells>

@@ -47,11 +47,13 @@ TEST_CASE("a set contains the parts of a body that meet all conditions", "[unit]
 
 TEST_CASE("sets are combined by name", "[unit]") {
     const ScenePlan plan = plan_of(R"("sets": {
-        "top": {"half_space": {"point": [0, 0, 0.4]}}, "bottom": {"half_space": {"point": [0, 0, -0.4], "normal": [0, 0, -1]}},
-        "ends": {"set": ["top", "bottom"]}, "edge": {"set": "ends", "half_space": {"point": [0.4, 0, 0], "normal": [1, 0, 0]}}},
+        "top": {"half_space": {"point": [0, 0, 0.4]}},
+        "bottom": {"half_space": {"point": [0, 0, -0.4], "normal": [0, 0, -1]}},
+        "ends": {"set": ["top", "bottom"]},
+        "edge": {"set": "ends", "half_space": {"point": [0.4, 0, 0], "normal": [1, 0, 0]}}},
         "pin": {"set": "ends"})",
                                    R"(, "probes": [{"name": "p", "body": "cube", "set": "edge"},
-                                                   {"name": "q", "body": "cube", "quantity": "stress", "set": "top"}])");
+                                     {"name": "q", "body": "cube", "quantity": "stress", "set": "top"}])");
     CHECK(plan.bodies[0].pins[0].nodes.size() == 18);
     CHECK(plan.probes[0].nodes.size() == 6);
     CHECK(plan.series[0].nodes.size() == 9);

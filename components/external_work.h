@@ -1,0 +1,13 @@
+// Impulse and work of forces from outside in a step.
+#pragma once
+
+#include "components/types.h"
+
+namespace skerry {
+
+struct ExternalWork {
+    Vec3 impulse = Vec3::Zero();  // N s
+    Real work = 0;                // J
+};
+
+}  // namespace skerry
