@@ -7,6 +7,7 @@
 #include "engine/python/bind.h"
 #include "engine/python/world/parts.h"
 #include "engine/python/world_object.h"
+#include "skerry/surface.h"
 
 namespace skerry::python {
 

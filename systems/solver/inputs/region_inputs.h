@@ -137,7 +137,7 @@ struct RegionInputs {
     std::span<const BodyKind> body_kind{};
     std::span<const Real> still_time{};  // [s]
     TouchPlaces touch{};                 // data of contact points on cylinders
-    // By contact; empty: friction is the same in all directions.
+    // friction axis of each contact; empty: friction is the same in all directions
     std::span<const FrictionAxis> friction_axis{};
 
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }
