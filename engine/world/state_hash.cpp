@@ -226,7 +226,7 @@ void add_collider(Hash& hash, Model& model, std::size_t c) {
     add_row_state(hash, table, c);
     add_script(hash, table.script[c], table.keyframe);
     add_filter(hash, table.filter[c]);
-    if (table.material[c] != no_index) hash.add(slot_of(model.materials.slot, table.material[c]));
+    if (table.material[c] != no_index) hash.add(static_cast<std::uint32_t>(table.material[c]));
     if (table.body[c] != no_index) hash.add(body_hash(model, static_cast<std::size_t>(table.body[c])));
 }
 

@@ -73,7 +73,7 @@ def test_a_set_has_its_own_friction_in_two_directions() -> None:
     assert ski.in_copy(twin).friction_across == pytest.approx(0.4)
     twin.advance(0.05)
     world.advance(0.05)
-    assert twin.state_hash() == world.state_hash()
+    assert twin.state_hash == world.state_hash
     ski.set_surface(friction=0.3)
     assert ski.friction_across is None
     world.advance(0.01)

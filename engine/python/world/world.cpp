@@ -8,6 +8,7 @@
 #include "engine/python/world/parts.h"
 #include "engine/python/world_object.h"
 #include "skerry/cavity.h"
+#include "skerry/surface.h"
 
 namespace skerry::python {
 

@@ -76,7 +76,7 @@ struct RegionMemory {
     // Data of regions that touch clusters of nodes or rigid bodies.
     // For each region: list of the touched clusters, list of the touched bodies; may be empty.
     Ragged<Index> region_clusters, region_rigid;
-    // By region: 1 if the friction of a contact depends on the direction. Empty if no contact has a friction axis.
+    // 1 for each region in which the friction of a contact depends on the direction; empty if no contact has an axis
     Column<std::uint8_t> region_has_axes;
     Column<std::size_t> node_base;  // by region: index of the first node row of the region
     // For each cluster and for each body: last region that touched the cluster or body.
