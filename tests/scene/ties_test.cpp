@@ -408,7 +408,8 @@ TEST_CASE("scenes tie a set, a box or nodes of a body to another object", "[scen
                                ".", {});
     };
     Scene scene = load(R"({"body": "pad", "set": "top", "to_collider": "roof"},
-        {"body": "pad", "box": {"lower": [-1, -1, -0.05], "upper": [1, 1, -0.04]}, "to_body": "block", "break_force": 1e6})");
+        {"body": "pad", "box": {"lower": [-1, -1, -0.05], "upper": [1, 1, -0.04]}, "to_body": "block",
+         "break_force": 1e6})");
     REQUIRE(scene.world.advance(1).ok());
     const Ties ties(scene.world);
     REQUIRE(ties.all().size() == 2);
