@@ -27,7 +27,7 @@ struct TieTable {
     Column<Real> break_force;    // force at which a node breaks off; may be infinite [N]
     Column<Real> step;           // time for which the impulses acted in the last step; 0 before the first step [s]
 
-    // By tied node. Nodes have their numbers in the meshes of the bodies.
+    // The next columns have one row per tied node. Nodes have their numbers in the meshes of the bodies.
     Column<Index> node;  // node of the first body
     // Triangle of the second body, and weights of its corners. Used only if the second body deforms.
     Column<std::array<Index, 3>> corner;
@@ -92,7 +92,7 @@ struct TieRowTable {
     Column<Stencil> stencil;
     Column<Vec3> point;    // place of the tied node at the start of the step [m]
     Column<Vec3> impulse;  // impulse on the node; before the solve: the warm start [N s]
-    // By row of TieTable: 1 if its bodies are asleep. The tie then keeps its last impulses.
+    // One row per tie: 1 if its bodies are asleep. The tie then keeps its last impulses.
     Column<std::uint8_t> rests;
 
     std::size_t size() const { return tie.size(); }

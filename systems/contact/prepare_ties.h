@@ -29,7 +29,7 @@ struct TieInputs {
     const TieTable& tie;
     std::span<const Range> body_nodes, body_rigid, body_implicit;  // BodyTable
     std::span<const std::uint8_t> body_asleep;                     // column of BodyTable; empty if no body is asleep
-    // By node. `velocity_next`: predicted velocity [m/s]
+    // Columns of NodeTable. `velocity_next`: predicted velocity [m/s]
     std::span<const Vec3> position, velocity_next;
     // RigidBodyTable
     std::span<const Vec3> center, rest_center;

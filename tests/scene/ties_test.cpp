@@ -399,16 +399,19 @@ TEST_CASE("scenes tie a set, a box or nodes of a body to another object", "[scen
         return load_scene_text(R"({"name": "tied", "seconds": 1, "settings": {"gravity": [0, 0, -10]},
             "materials": {"steel": {"young_modulus": 1e9}},
             "bodies": [
-                {"name": "pad", "mesh": {"box": {"size": [0.1, 0.1, 0.1]}}, "material": "steel", "dynamics": "implicit",
+                {"name": "pad", "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [1, 1, 1]}}, "material": "steel",
+                 "dynamics": "implicit",
                  "sets": {"top": {"half_space": {"point": [0, 0, 0.05]}}}},
-                {"name": "block", "mesh": {"box": {"size": [0.1, 0.1, 0.1]}}, "material": "steel", "dynamics": "rigid",
+                {"name": "block", "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [1, 1, 1]}}, "material": "steel",
+                 "dynamics": "rigid",
                  "position": [0, 0, -0.1]}],
             "colliders": [{"name": "roof", "shape": {"plane": {"normal": [0, 0, -1]}}, "position": [0, 0, 0.05]}],
             "ties": [)" + tie + "]}",
                                ".", {});
     };
     Scene scene = load(R"({"body": "pad", "set": "top", "to_collider": "roof"},
-        {"body": "pad", "box": {"lower": [-1, -1, -0.05], "upper": [1, 1, -0.04]}, "to_body": "block", "break_force": 1e6})");
+        {"body": "pad", "box": {"lower": [-1, -1, -0.05], "upper": [1, 1, -0.04]}, "to_body": "block",
+         "break_force": 1e6})");
     REQUIRE(scene.world.advance(1).ok());
     const Ties ties(scene.world);
     REQUIRE(ties.all().size() == 2);
