@@ -64,6 +64,7 @@ void note_force_rates(Model& model) {
 void note_changed_seams(Model& model) {
     const auto has_one = [&](const ForceElement* element) { return element->any(model); };
     if (model.forced && std::ranges::none_of(force_elements, has_one)) note_forces(model);
+    if (model.force_rate_moves) note_force_rates(model);
     if (!model.links_open) return;
     model.links_open = false;
     model.links.first.clear();
