@@ -7,6 +7,7 @@
 
 #include "engine/world/tuning.h"
 #include "jobs/executor.h"
+#include "skerry/cable.h"
 #include "skerry/rollout.h"
 #include "tests/support/worlds.h"
 
@@ -141,6 +142,25 @@ TEST_CASE("leapfrog allocates nothing, either", "[determinism]") {
     const auto stiff = world.add_material({.young_modulus = 3e6, .friction = 0.5, .damping = 20});
     world.add_body(mesh::ball(0.05, 4), {.material = stiff, .position = {0.5, 0, 0.06}});
     REQUIRE(world.advance(1.5).ok());
+    CHECK(allocations_of_a_fifth_second(world) == 0);
+}
+
+TEST_CASE("cables allocate nothing, either", "[determinism]") {
+    const auto dynamics = GENERATE(BodyDynamics::explicit_elastic, BodyDynamics::rigid, BodyDynamics::implicit_elastic);
+    Settings settings = two_threads();
+    settings.sleep = false;
+    World world(settings);
+    const auto stiff = world.add_material({.young_modulus = 1e6});
+    world.add_collider(Plane{});
+    const BodyHandle block = world.add_body(mesh::box({0.2, 0.1, 0.1}, {4, 2, 2}),
+                                            {.material = stiff, .position = {0, 0, 0.055}, .dynamics = dynamics});
+    const std::vector<Anchor> points{
+        {.point = {1, 0, 0}}, {.body = block, .point = {0, 0, 0.055}}, {.point = {0, 1, 0.2}}};
+    Cables cables(world);
+    cables.add({.points = points, .drive = {.tension = 1}});
+    cables.add({.points = points, .drive = {.tension = 1}, .friction = 0.2});
+    cables.add({.points = points, .drive = {.rate = -1e-4}});
+    REQUIRE(world.advance(1).ok());
     CHECK(allocations_of_a_fifth_second(world) == 0);
 }
 
