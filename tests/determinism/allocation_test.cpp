@@ -8,6 +8,7 @@
 #include "engine/world/tuning.h"
 #include "jobs/executor.h"
 #include "skerry/cavity.h"
+#include "skerry/cable.h"
 #include "skerry/rollout.h"
 #include "tests/support/worlds.h"
 
@@ -156,6 +157,25 @@ TEST_CASE("a pile of balls on a cavity with gas allocates nothing, either", "[de
                                            .volume = 1e-4});
     cavities.add({.first = gas, .conductance = 1e-12, .pressure = TimeTable({{0, 0}, {5, 20}})});
     REQUIRE(world.advance(1.5).ok());
+    CHECK(allocations_of_a_fifth_second(world) == 0);
+}
+
+TEST_CASE("cables allocate nothing, either", "[determinism]") {
+    const auto dynamics = GENERATE(BodyDynamics::explicit_elastic, BodyDynamics::rigid, BodyDynamics::implicit_elastic);
+    Settings settings = two_threads();
+    settings.sleep = false;
+    World world(settings);
+    const auto stiff = world.add_material({.young_modulus = 1e6});
+    world.add_collider(Plane{});
+    const BodyHandle block = world.add_body(mesh::box({0.2, 0.1, 0.1}, {4, 2, 2}),
+                                            {.material = stiff, .position = {0, 0, 0.055}, .dynamics = dynamics});
+    const std::vector<Anchor> points{
+        {.point = {1, 0, 0}}, {.body = block, .point = {0, 0, 0.055}}, {.point = {0, 1, 0.2}}};
+    Cables cables(world);
+    cables.add({.points = points, .drive = {.tension = 1}});
+    cables.add({.points = points, .drive = {.tension = 1}, .friction = 0.2});
+    cables.add({.points = points, .drive = {.rate = -1e-4}});
+    REQUIRE(world.advance(1).ok());
     CHECK(allocations_of_a_fifth_second(world) == 0);
 }
 

@@ -69,8 +69,8 @@ void note_force_rates(Model& model) {
 
 void note_changed_seams(Model& model) {
     const auto has_one = [&](const ForceElement* element) { return element->any(model); };
-    if (model.forced && (!model.force_rate.empty() || std::ranges::none_of(force_elements, has_one)))
-        note_forces(model);
+    if (model.forced && std::ranges::none_of(force_elements, has_one)) note_forces(model);
+    if (model.force_rate_moves) note_force_rates(model);
     if (!model.links_open) return;
     model.links_open = false;
     model.index_surface_sets();

@@ -31,8 +31,8 @@ HeldDepth held_in_surfaces(WorldState& world);
 void note_forces(Model& model);
 /// Computes Model::force_rate for the present positions.
 void note_force_rates(Model& model);
-/// Must be called before steps. Computes Model::links again if rows that join bodies have changed, and Model::forced if
-/// the last force element was removed. Bounds that depend on positions are computed again.
+/// Must be called before steps. Computes Model::links again if rows that join bodies have changed, Model::forced if the
+/// last force element was removed, and Model::force_rate if it depends on positions.
 void note_changed_seams(Model& model);
 
 // stable_steps.cpp

@@ -138,8 +138,6 @@ struct RegionInputs {
     std::span<const BodyKind> body_kind{};
     std::span<const Real> still_time{};  // [s]
     TouchPlaces touch{};                 // contact points on cylinders, and points of ties
-    // By contact; empty: friction is the same in all directions.
-    TouchPlaces touch{};                 // data of contact points on cylinders
     // friction axis of each contact; empty: friction is the same in all directions
     std::span<const FrictionAxis> friction_axis{};
 

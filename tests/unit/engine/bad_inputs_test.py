@@ -103,7 +103,8 @@ SCENES = [
     ("bodies by name", "bodies", {"block": {}}, ["bodies", "the object", "a list"]),
     # cables
     ("a cable without a control", "cables", [{"points": POINTS}], ["cables[0]", "tension", "length", "rate"]),
-    ("a cable that pushes", "cables", [{"points": POINTS, "tension": [[0, 1], [1, -1]]}], ["tension", "-1", "at least 0"]),
+    ("a cable that pushes", "cables", [{"points": POINTS, "tension": [[0, 1], [1, -1]]}],
+     ["tension", "-1", "at least 0"]),
     ("a cable through one point", "cables", [{"points": POINTS[:1], "length": 1}], ["cables[0]", "at least 2 points"]),
     ("a cable of an unknown body", "cables", [{"points": [{"body": "blok"}, {}], "length": 1}],
      ["cables[0].points[0].body", '"blok"', '"block"']),

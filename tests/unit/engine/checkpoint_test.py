@@ -118,7 +118,8 @@ class CheckpointTest(ProgramCase):
         self.assertEqual(parts.read_text(), whole.read_text())
 
     def test_a_run_with_a_cable_goes_on_with_the_same_rows(self):
-        points = [{"point": [0, 0, 1]}, {"body": "block", "point": [0, 0, 0.05]}, {"collider": "floor", "point": [1, 0, 0]}]
+        points = [{"point": [0, 0, 1]}, {"body": "block", "point": [0, 0, 0.05]},
+                  {"collider": "floor", "point": [1, 0, 0]}]
         scene = self.write("cable.json", dict(
             SCENE, cables=[{"points": points, "rate": [[0.05, 0], [0.1, -0.2]], "friction": 0.2}],
             probes=[{"name": "tendon", "quantity": "cable", "cable": "cable_0"}]))
