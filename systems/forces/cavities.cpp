@@ -111,8 +111,8 @@ bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real no
         const Real amount = law == CavityLaw::pressure ? mean_value(cavities.keys_of(c), now - lag, kick)
                             : law == CavityLaw::gas    ? cavities.mass[c]
                                                        : value_at(cavities.keys_of(c), now);
-        out.pressure_now[c] = CavityFilling{law, cavities.fluid[c], amount, out.volume_now[c]}.pressure();
-        const Real third = -out.pressure_now[c] / 3;
+        const CavityFilling filling{law, cavities.fluid[c], amount, out.volume_now[c]};
+        const Real third = -filling.pressure() / 3;
         const Index first = cavities.body_nodes[static_cast<std::size_t>(cavities.body[c])].begin;
         for (auto f = begin; f < static_cast<std::size_t>(cavities.faces[c].end); ++f)
             for (const Index n : cavities.face[f])
@@ -152,9 +152,12 @@ Real flow_between(const PipeEnd& first, const PipeEnd& second, Real conductance,
 bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
                     std::span<const Real> volume_now, Real t, Real h, const CavityMemory& out) {
     for (std::size_t c = 0; c < cavities.size(); ++c) {
-        if (cavities.law[c] == CavityLaw::gas)
+        const CavityLaw law = cavities.law[c];
+        const Real amount = law == CavityLaw::gas ? out.mass[c] : value_at(cavities.keys_of(c), t);
+        out.pressure_now[c] = CavityFilling{law, cavities.fluid[c], amount, volume_now[c]}.pressure();
+        if (law == CavityLaw::gas)
             out.mass[c] = std::max(out.mass[c] + h * mean_value(cavities.keys_of(c), t, h), Real(0));
-        if (cavities.closed[c] || cavities.law[c] == CavityLaw::pressure) continue;
+        if (cavities.closed[c] || law == CavityLaw::pressure) continue;
         out.volume[c] = cavities.volume(c);
         for (auto f = static_cast<std::size_t>(cavities.faces[c].begin);
              f < static_cast<std::size_t>(cavities.faces[c].end); ++f)

@@ -88,13 +88,12 @@ Real mass_of_gas(const CavityFluid& fluid, Real pressure, Real volume);
 struct CavityOutputs {
     Column<Vec3>& area;
     Column<Real>& swept_parts;
-    std::span<Real> pressure_now, volume_now;
+    std::span<Real> volume_now;
     std::span<Vec3> applied_force;  // by node [N]
 
     static CavityOutputs bind(const Binder& binder, CavityTable& cavity, NodeTable& node) {
         return {.area = binder.make(cavity.area),
                 .swept_parts = binder.make(cavity.swept_parts),
-                .pressure_now = binder.write(cavity.pressure_now),
                 .volume_now = binder.write(cavity.volume_now),
                 .applied_force = binder.write(node.applied_force)};
     }
@@ -129,21 +128,23 @@ struct PipeInputs {
 };
 
 struct CavityMemory {
-    std::span<Real> mass, volume;
+    std::span<Real> mass, volume, pressure_now;
     std::span<Mat3> corners;
     std::span<Real> flow;  // PipeTable
 
     static CavityMemory bind(const Binder& binder, CavityTable& cavity, PipeTable& pipe) {
         return {.mass = binder.write(cavity.mass),
                 .volume = binder.write(cavity.volume),
+                .pressure_now = binder.write(cavity.pressure_now),
                 .corners = binder.write(cavity.corners),
                 .flow = binder.write(pipe.flow)};
     }
 };
 
-/// After a step of length `h` that began at time `t`: adds the flow of gas to the masses in cavities, lets gas flow
-/// through pipes one after the other, and adds the swept volumes to open cavities. `volume_now`: column of CavityTable.
-/// A cavity that contains no gas supplies none. Returns false if there is no cavity.
+/// After a step of length `h` that began at time `t`: stores the pressures at its start, adds the flow of gas to the
+/// masses in cavities, lets gas flow through pipes one after the other, and adds the swept volumes to open cavities.
+/// `volume_now`: column of CavityTable. A cavity that contains no gas supplies none. Returns false if there is no
+/// cavity.
 bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
                     std::span<const Real> volume_now, Real t, Real h, const CavityMemory& out);
 

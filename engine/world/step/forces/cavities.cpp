@@ -91,6 +91,6 @@ void add_cavity_rate(const Model& model, std::span<Real> of_body) {
 }  // namespace
 
 constinit const ForceElement cavity_pressures{
-    .any = any_cavity, .add_forces = list_cavity_forces, .add_rate = add_cavity_rate};
+    .any = any_cavity, .add_forces = list_cavity_forces, .add_rate = add_cavity_rate, .rate_moves = true};
 
 }  // namespace skerry
