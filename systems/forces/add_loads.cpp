@@ -1,7 +1,5 @@
 #include "systems/forces/add_loads.h"
 
-#include <algorithm>
-
 #include "jobs/parallel_for.h"
 
 namespace skerry {
