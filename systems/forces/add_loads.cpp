@@ -1,7 +1,5 @@
 #include "systems/forces/add_loads.h"
 
-#include <algorithm>
-
 #include "jobs/parallel_for.h"
 
 namespace skerry {
@@ -31,7 +29,8 @@ void add_to_nodes(Executor& executor, const LoadInputs& loads, std::size_t load,
     const Vec3 whole = scale * loads.vector[load];
     const Index first = loads.body_nodes[static_cast<std::size_t>(loads.load_body[load])].begin;
     parallel_for(executor, nodes.size(), loaded_nodes_per_block, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) force[static_cast<std::size_t>(first + nodes[i])] += weight[i] * whole;
+        for (std::size_t i = begin; i < end; ++i)
+            force[static_cast<std::size_t>(first + nodes[i])] += weight[i] * whole;
     });
 }
 

@@ -9,6 +9,7 @@
 #include "jobs/executor.h"
 #include "skerry/cavity.h"
 #include "skerry/cable.h"
+#include "skerry/load.h"
 #include "skerry/rollout.h"
 #include "tests/support/worlds.h"
 
@@ -134,6 +135,18 @@ TEST_CASE("further intervals of a rollout allocate only where tables grow", "[de
     };
     // Tables of a copy grow when it has more contacts than before. One allocation per interval would be 400 more.
     CHECK(allocated(300) < allocated(100) + 40);
+}
+
+TEST_CASE("loads that change over time allocate nothing, either", "[determinism]") {
+    World world = resting_balls(Backend::serial, 1);
+    Loads loads(world);
+    const TimeTable shake({{1.4, 0}, {1.45, 1}, {1.55, -1}, {1.6, 0}});
+    loads.add(ForceLoad{world.bodies().front(), {0, 1}, {1e-3, 0, 0}, shake});
+    loads.add(AccelerationField{.acceleration = {1e-2, 0, 0}, .scale = shake});
+    loads.add(GravityScale{.scale = TimeTable({{1, 1}, {2, 0.9}})});
+    loads.add(DragField{.rate = 1, .wind = {1e-2, 0, 0}, .scale = shake});
+    REQUIRE(world.advance(1.5).ok());
+    CHECK(allocations_of_a_fifth_second(world) == 0);
 }
 
 TEST_CASE("leapfrog allocates nothing, either", "[determinism]") {

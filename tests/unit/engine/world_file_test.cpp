@@ -347,8 +347,7 @@ TEST_CASE("a saved world in which two motors share their keys is refused", "[uni
 
 TEST_CASE("a saved world with a load on a node that does not exist, or with wrong ranges, is refused", "[unit]") {
     World world;
-    const BodyHandle body =
-        world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = world.add_material({})});
+    const BodyHandle body = world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = world.add_material({})});
     Loads(world).add(ForceLoad{body, {1, 2}, {1, 0, 0}, TimeTable({{0, 0}, {1, 1}})});
     const FileOfWorld saved(world);
     CHECK(saved.refusal(saved.bytes).empty());
