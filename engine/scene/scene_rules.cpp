@@ -2,7 +2,11 @@
 #include "engine/scene/scene_rules.h"
 
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <vector>
+
+#include "skerry/materials.h"
 
 namespace skerry {
 
@@ -16,7 +20,25 @@ const KeyDoc mask_doc{.meaning =
                           "objects can touch if the mask of each object includes a group of the other object",
                       .limits = within(0, all_groups)};
 
+struct MaterialName {};
+std::string_view no_hint(std::string_view) {
+    return {};
+}
+
 }  // namespace
+
+template <>
+struct Value<MaterialName> {
+    static std::vector<std::string> names() {
+        std::vector<std::string> names;
+        for (const NamedMaterial& material : named_materials()) names.emplace_back(material.name);
+        return names;
+    }
+    static void read(const Json& json, const Place& place, const KeyDoc&, MaterialSettings& out) {
+        out = named_material(named_materials()[read_name(json, place, names(), no_hint)].name);
+    }
+    static Json schema(SchemaBook&, const KeyDoc&) { return enum_schema(names()); }
+};
 
 template <>
 const Rule<PinEntry>& rule_of<PinEntry>() {
@@ -152,6 +174,9 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
     using M = MaterialSettings;
     static const auto rule =
         Rule<M>("material", "An elastic material and its surface.")
+            .preset<MaterialName>("like",
+                                  {.meaning = "name of a material from the literature, whose values the other keys "
+                                              "replace; `skerry materials` lists the materials with their sources"})
             .key("young_modulus", &M::young_modulus,
                  {.meaning = "Young's modulus", .unit = "Pa", .alias = "E", .limits = above(0)})
             .key("poisson_ratio", &M::poisson_ratio,

@@ -1,0 +1,39 @@
+"""Materials with values from the literature."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from . import _core
+from ._settings import Material
+
+
+class NamedMaterials(Mapping[str, Material]):
+    """Materials by name: materials["steel"] is a Material. list(materials) lists the names, and sources() names the
+    source of each value. A change: dataclasses.replace(materials["steel"], friction=0.2).
+    """
+
+    def __getitem__(self, name: str) -> Material:
+        if name not in self._names():
+            raise KeyError(f"found {name!r}, expected one of the names {', '.join(self)}")
+        return Material(**_core.named_material(name))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names())
+
+    def __len__(self) -> int:
+        return len(self._names())
+
+    def sources(self, name: str) -> dict[str, str]:
+        """Sources of the values of a material, by the fields of Material. Fields without a source have defaults.
+        KeyError: no material has this name."""
+        self[name]
+        return dict(_core.material_sources(name))
+
+    @staticmethod
+    def _names() -> list[str]:
+        return list(_core.material_names())
+
+
+materials = NamedMaterials()
+"""Materials with values from the literature."""
