@@ -68,30 +68,50 @@ constexpr std::array materials = {
     NamedMaterial{"skin", "skin of the breast", {56300, briot}, soft, {1090, tissue_density}, {}},
     // gels, silicones, rubbers
     NamedMaterial{"gel_polyacrylamide", "polyacrylamide gel, stiff", {13590, subramani}, soft, {1000, water}, {}},
-    NamedMaterial{"silicone_ecoflex_10", "silicone Ecoflex 00-10", from_100_percent_modulus(8), soft,
-                  {1040, smooth_on}, {}},
-    NamedMaterial{"silicone_ecoflex_30", "silicone Ecoflex 00-30", from_100_percent_modulus(10), soft,
-                  {1070, smooth_on}, {}},
-    NamedMaterial{"silicone_ecoflex_50", "silicone Ecoflex 00-50", from_100_percent_modulus(12), soft,
-                  {1070, smooth_on}, {}},
-    NamedMaterial{"silicone_dragon_skin_10", "silicone Dragon Skin 10", from_100_percent_modulus(22), soft,
-                  {1070, smooth_on}, {}},
-    NamedMaterial{"silicone_dragon_skin_20", "silicone Dragon Skin 20", from_100_percent_modulus(49), soft,
-                  {1080, smooth_on}, {}},
-    NamedMaterial{"silicone_dragon_skin_30", "silicone Dragon Skin 30", from_100_percent_modulus(86), soft,
-                  {1080, smooth_on}, {}},
-    NamedMaterial{"silicone_sylgard_184", "silicone Sylgard 184 (PDMS)", {1.32e6, johnston}, soft, {1030, dow}, {}},
-    NamedMaterial{"rubber_natural", "natural rubber, vulcanized", {1.5e6, matweb_rubber}, soft, {950, matweb_rubber},
-                  SourcedValue{0.1, adams}},
-    NamedMaterial{"tpu_85a", "thermoplastic polyurethane, Shore 85A", {1.2e7, ninjaflex}, {0.48, poisson_least},
-                  {1190, ninjaflex}, {}},
-    // foams and cork
-    NamedMaterial{"foam_polystyrene", "expanded polystyrene", {5e6, geofoam}, {0.1, poisson_least}, {21.6, geofoam},
+    NamedMaterial{
+        "silicone_ecoflex_10", "silicone Ecoflex 00-10", from_100_percent_modulus(8), soft, {1040, smooth_on}, {}},
+    NamedMaterial{
+        "silicone_ecoflex_30", "silicone Ecoflex 00-30", from_100_percent_modulus(10), soft, {1070, smooth_on}, {}},
+    NamedMaterial{
+        "silicone_ecoflex_50", "silicone Ecoflex 00-50", from_100_percent_modulus(12), soft, {1070, smooth_on}, {}},
+    NamedMaterial{"silicone_dragon_skin_10",
+                  "silicone Dragon Skin 10",
+                  from_100_percent_modulus(22),
+                  soft,
+                  {1070, smooth_on},
                   {}},
+    NamedMaterial{"silicone_dragon_skin_20",
+                  "silicone Dragon Skin 20",
+                  from_100_percent_modulus(49),
+                  soft,
+                  {1080, smooth_on},
+                  {}},
+    NamedMaterial{"silicone_dragon_skin_30",
+                  "silicone Dragon Skin 30",
+                  from_100_percent_modulus(86),
+                  soft,
+                  {1080, smooth_on},
+                  {}},
+    NamedMaterial{"silicone_sylgard_184", "silicone Sylgard 184 (PDMS)", {1.32e6, johnston}, soft, {1030, dow}, {}},
+    NamedMaterial{"rubber_natural",
+                  "natural rubber, vulcanized",
+                  {1.5e6, matweb_rubber},
+                  soft,
+                  {950, matweb_rubber},
+                  SourcedValue{0.1, adams}},
+    NamedMaterial{"tpu_85a",
+                  "thermoplastic polyurethane, Shore 85A",
+                  {1.2e7, ninjaflex},
+                  {0.48, poisson_least},
+                  {1190, ninjaflex},
+                  {}},
+    // foams and cork
+    NamedMaterial{
+        "foam_polystyrene", "expanded polystyrene", {5e6, geofoam}, {0.1, poisson_least}, {21.6, geofoam}, {}},
     NamedMaterial{"cork", "cork", {3.75e7, granta}, {0, poisson_table}, {198, granta}, SourcedValue{0.2, granta}},
     // plastics
-    NamedMaterial{"polyethylene", "polyethylene of high density", {1.2e9, handbook}, {0.42, handbook},
-                  {950, handbook}, {}},
+    NamedMaterial{
+        "polyethylene", "polyethylene of high density", {1.2e9, handbook}, {0.42, handbook}, {950, handbook}, {}},
     NamedMaterial{"nylon", "nylon 101", {1e9, handbook}, {0.3, handbook}, {1150, handbook}, {}},
     NamedMaterial{"polypropylene", "polypropylene", {1.5e9, handbook}, {0.4, handbook}, {900, handbook}, {}},
     NamedMaterial{"abs", "ABS", {2e9, handbook}, {0.394, handbook}, {1020, handbook}, {}},
@@ -100,14 +120,26 @@ constexpr std::array materials = {
     NamedMaterial{"polystyrene", "polystyrene", {3.3e9, handbook}, {0.35, handbook}, {1050, handbook}, {}},
     // wood, ice, stone, metals
     NamedMaterial{"ice", "ice of many crystals", {9.2e9, gammon}, {0.328, gammon}, {916.7, ice_density}, {}},
-    NamedMaterial{"wood_douglas_fir", "Douglas fir, as isotropic", {1.03e10, wood_handbook}, {0.292, wood_handbook},
-                  {515, wood_handbook}, {}},
-    NamedMaterial{"concrete", "concrete of high strength", {3e10, halliday}, {0.2, poisson_table}, {2320, halliday},
+    NamedMaterial{"wood_douglas_fir",
+                  "Douglas fir, as isotropic",
+                  {1.03e10, wood_handbook},
+                  {0.292, wood_handbook},
+                  {515, wood_handbook},
                   {}},
+    NamedMaterial{
+        "concrete", "concrete of high strength", {3e10, halliday}, {0.2, poisson_table}, {2320, halliday}, {}},
     NamedMaterial{"glass", "glass", {6.5e10, halliday}, {0.265, poisson_middle}, {2190, halliday}, {}},
-    NamedMaterial{"aluminium", "aluminium", {7e10, halliday}, {0.33, poisson_table}, {2710, halliday},
+    NamedMaterial{"aluminium",
+                  "aluminium",
+                  {7e10, halliday},
+                  {0.33, poisson_table},
+                  {2710, halliday},
                   SourcedValue{1e-4, cremer}},
-    NamedMaterial{"steel", "structural steel", {2e11, halliday}, {0.3, poisson_table}, {7860, halliday},
+    NamedMaterial{"steel",
+                  "structural steel",
+                  {2e11, halliday},
+                  {0.3, poisson_table},
+                  {7860, halliday},
                   SourcedValue{4e-4, cremer}},
 };
 
@@ -155,6 +187,43 @@ MaterialSettings named_material(std::string_view name) {
     for (const KnownFriction& pair : frictions)
         if (pair.first == name && pair.second == name) settings.friction = pair.dynamic_friction;
     return settings;
+}
+
+MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, MaterialSettings base) {
+    const auto refuse = [](const char* field, std::string found, std::string expected) {
+        Complaint{.file = {},
+                  .object = "material",
+                  .field = field,
+                  .found = std::move(found),
+                  .expected = std::move(expected),
+                  .hint = {}}
+            .raise();
+    };
+    if (terms.empty() || terms.size() > base.terms.size())
+        refuse("ogden", std::to_string(terms.size()) + " terms", "one to three terms");
+    Real twice_shear = 0;
+    for (const auto& [modulus, exponent] : terms) {
+        if (!(modulus * exponent > 0))
+            refuse("ogden", "the term (" + std::to_string(modulus) + " Pa, " + std::to_string(exponent) + ")",
+                   "modulus and exponent of the same sign, not zero");
+        twice_shear += modulus * exponent;
+    }
+    // Poisson's ratio must be above -1, which any positive bulk modulus satisfies.
+    if (!(bulk_modulus > 0)) refuse("bulk_modulus", std::to_string(bulk_modulus) + " Pa", "a modulus > 0 (Pa)");
+    const Real shear = twice_shear / 2;
+    base.model = MaterialModel::ogden;
+    base.young_modulus = 9 * bulk_modulus * shear / (3 * bulk_modulus + shear);
+    base.poisson_ratio = (3 * bulk_modulus - 2 * shear) / (6 * bulk_modulus + 2 * shear);
+    base.terms = {};
+    for (std::size_t p = 0; p < terms.size(); ++p)
+        base.terms[p] = {terms[p].modulus * terms[p].exponent / twice_shear, terms[p].exponent};
+    return base;
+}
+
+MaterialSettings mooney_rivlin(Real c10, Real c01, Real bulk_modulus, MaterialSettings base) {
+    // mu_1 = 2 c10 with the exponent 2, mu_2 = -2 c01 with the exponent -2
+    const std::array<OgdenTerm, 2> both{{{2 * c10, 2}, {-2 * c01, -2}}};
+    return ogden(std::span(both).first(c01 == 0 ? 1 : 2), bulk_modulus, std::move(base));
 }
 
 }  // namespace skerry

@@ -48,8 +48,7 @@ void print_materials() {
     SourceNumbers number;
     print_row("material", "E", "nu", "density", "loss factor", "");
     for (const NamedMaterial& m : named_materials()) {
-        const std::string modulus =
-            sourced_text(m.young_modulus, with_unit(m.young_modulus.value, "Pa"), number);
+        const std::string modulus = sourced_text(m.young_modulus, with_unit(m.young_modulus.value, "Pa"), number);
         const std::string poisson = sourced_text(m.poisson_ratio, short_number(m.poisson_ratio.value), number);
         const std::string density = sourced_text(m.density, short_number(m.density.value, 4) + " kg/m^3", number);
         const std::string loss =

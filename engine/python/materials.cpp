@@ -12,6 +12,12 @@ nb::str text_of(std::string_view text) {
     return nb::str(text.data(), text.size());
 }
 
+MaterialSettings settings_of(nb::handle material) {
+    MaterialSettings settings;
+    read(material, settings);
+    return settings;
+}
+
 /// Names of all materials.
 nb::list names() {
     nb::list names;
@@ -40,6 +46,14 @@ void bind_materials(nb::module_& module) {
     module.def("material_names", names);
     module.def("named_material", [](const std::string& name) { return values_of(named_material(name)); });
     module.def("material_sources", sources);
+    module.def("ogden", [](const std::vector<std::array<Real, 2>>& pairs, Real bulk_modulus, nb::handle base) {
+        std::vector<OgdenTerm> terms;
+        for (const auto& [modulus, exponent] : pairs) terms.push_back({modulus, exponent});
+        return values_of(ogden(terms, bulk_modulus, settings_of(base)));
+    });
+    module.def("mooney_rivlin", [](Real c10, Real c01, Real bulk_modulus, nb::handle base) {
+        return values_of(mooney_rivlin(c10, c01, bulk_modulus, settings_of(base)));
+    });
 }
 
 }  // namespace skerry::python

@@ -26,6 +26,22 @@ def test_a_named_material_makes_a_body():
     assert body.material.settings == slippery
 
 
+def test_moduli_of_rubber_as_papers_give_them():
+    both = sk.mooney_rivlin(3e4, 1e4, 4e6, sk.Material(density=950.0))
+    assert both.model == "ogden"
+    assert both.density == 950
+    assert both.terms == ((0.75, 2.0), (0.25, -2.0))
+    world = sk.World()
+    body = world.add_body(sk.Mesh.box((0.1, 0.1, 0.1), (1, 1, 1)), both)
+    assert body.material.settings == both
+    three = sk.ogden([(6.3e5, 1.3), (1.2e3, 5), (-1e4, -2)], 1e7)
+    assert sum(share for share, _ in three.terms) == pytest.approx(1)
+    with pytest.raises(sk.SceneError, match="of the same sign"):
+        sk.ogden([(-1e5, 2)], 1e6)
+    with pytest.raises(sk.SceneError, match="up to three pairs"):
+        world.add_material(model="ogden", terms=((0.25, 1.0),) * 4)
+
+
 def test_an_unknown_name_is_refused_with_the_names():
     with pytest.raises(KeyError, match="found 'stel', expected one of the names .*steel"):
         sk.materials["stel"]

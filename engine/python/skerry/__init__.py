@@ -2,7 +2,7 @@
 
 from ._core import version as __version__
 from ._errors import BusyError, Doubt, SceneError, StepError
-from ._materials import NamedMaterials, materials
+from ._materials import NamedMaterials, materials, mooney_rivlin, ogden
 from ._mesh import Mesh, MeshReport, read_surface
 from ._problem import Problem, ProblemError, Solution, StepProblem, problem_error, solve
 from ._recorder import Film, Page, Recorder
@@ -169,6 +169,8 @@ __all__ = [
     "hit_dtype",
     "load_scene",
     "materials",
+    "mooney_rivlin",
+    "ogden",
     "problem_error",
     "read_surface",
     "rollout",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from . import _core
 from ._settings import Material
@@ -33,6 +33,24 @@ class NamedMaterials(Mapping[str, Material]):
     @staticmethod
     def _names() -> list[str]:
         return list(_core.material_names())
+
+
+def ogden(terms: Sequence[tuple[float, float]], bulk_modulus: float, base: Material | None = None) -> Material:
+    """Material with the law of Ogden for rubber, split into changes of shape and volume.
+
+    terms: one to three pairs (modulus mu_p [Pa], exponent alpha_p), of the same sign. bulk_modulus: [Pa]. base: gives
+    density, friction and losses. SceneError: the values give no stable law.
+    """
+    return Material(**_core.ogden([*terms], bulk_modulus, base or Material()))
+
+
+def mooney_rivlin(c10: float, c01: float, bulk_modulus: float, base: Material | None = None) -> Material:
+    """Material with the law of Mooney and Rivlin: the law of Ogden with the exponents 2 and -2.
+
+    c10, c01: moduli of the two invariants [Pa]. bulk_modulus: [Pa]. base: gives density, friction and losses.
+    SceneError: the values give no stable law.
+    """
+    return Material(**_core.mooney_rivlin(c10, c01, bulk_modulus, base or Material()))
 
 
 materials = NamedMaterials()

@@ -73,4 +73,27 @@ TEST_CASE("a material of a scene is like a named one, except for its other keys"
                           Catch::Contains("did you mean \"steel\""));
 }
 
+TEST_CASE("a scene gives the moduli of rubber as papers do", "[unit]") {
+    const TemporaryFolder folder;
+    const auto planned = [&](const std::string& keys) {
+        return plan_scene(folder.write("m.json", material_with(keys))).materials.at(0).second;
+    };
+    const MaterialSettings both =
+        planned(R"("mooney_rivlin": {"c10": 3e4, "c01": 1e4, "bulk_modulus": 4e6}, "like": "rubber_natural")");
+    CHECK(both.model == MaterialModel::ogden);
+    CHECK(both.terms == mooney_rivlin(3e4, 1e4, 4e6).terms);
+    CHECK(both.young_modulus == mooney_rivlin(3e4, 1e4, 4e6).young_modulus);
+    CHECK(both.density == 950);
+    const MaterialSettings one =
+        planned(R"("ogden": {"terms": [{"modulus": 6e5, "exponent": 1.3}], "bulk_modulus": 1e7})");
+    CHECK(one.terms[0] == StretchTerm{1, 1.3});
+    CHECK_THROWS_WITH(planned(R"("mooney_rivlin": {"c10": 3e4, "c01": 1e4, "bulk_modulus": 4e6}, "E": 1e5)"),
+                      Catch::Contains("at most one of the keys \"ogden\", \"mooney_rivlin\", \"E\""));
+    CHECK_THROWS_WITH(planned(R"("ogden": {"terms": [{"modulus": 6e5, "exponent": -1.3}], "bulk_modulus": 1e7})"),
+                      Catch::Contains("materials.rubber.ogden: ") && Catch::Contains("of the same sign"));
+    CHECK_THROWS_WITH(planned(R"("ogden": {"terms": [], "bulk_modulus": 1e7})"), Catch::Contains("one to three terms"));
+    CHECK_THROWS_WITH(planned(R"("mooney_rivlin": {"c10": 3e4, "bulk_modulus": 1e7})"),
+                      Catch::Contains("no key \"c01\""));
+}
+
 }  // namespace skerry::test::named_materials_test
