@@ -22,7 +22,7 @@ namespace skerry {
 
 inline constexpr Real default_loss_factor = 0.05, largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
 
-/// A term of the law `ogden`: its share of the shear modulus, from 0 (not used) to 1, and the exponent of the stretches.
+/// Term of the law `ogden`: share of the shear modulus, from 0 (not used) to 1, and exponent of the stretches.
 struct StretchTerm {
     Real share = 0, exponent = 2;
 
