@@ -1,6 +1,7 @@
 // One row per material.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "components/column.h"
@@ -20,6 +21,8 @@ struct MaterialConstants {
     // loss factor of the material, nearly independent of the frequency (systems/material/relaxation.h)
     Real loss_factor = 0;
     Real bulk_viscosity = 0;  // damping ratio of volume changes, at the highest frequency of an element
+    // Terms of the law of Ogden: shares of the shear modulus, 0 if not used, and exponents of the stretches.
+    std::array<Real, 3> share{1, 0, 0}, exponent{2, 2, 2};
 
     bool relaxes() const { return loss_factor > 0 || bulk_viscosity > 0; }
 };

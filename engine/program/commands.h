@@ -69,6 +69,9 @@ struct InspectOptions {
 };
 int inspect(const InspectOptions& options);
 
+/// Prints the named materials, as JSON or as a table.
+int materials(bool as_json);
+
 struct SolveOptions {
     std::filesystem::path problem, reactions;
     ProblemSettings settings;

@@ -367,6 +367,9 @@ int run_command_line(int argc, char** argv) {
     bool schema_of_sweeps = false;
     app.add_subcommand("schema", "Print the JSON schema of scenes")
         ->add_flag("--sweep", schema_of_sweeps, "print the JSON schema of the input files of `skerry sweep` instead");
+    bool materials_as_json = false;
+    app.add_subcommand("materials", "List materials from the literature with their sources")
+        ->add_flag("--json", materials_as_json, "print the list as JSON");
     require_known_command(app, argc, argv);
     try {
         app.parse(argc, argv);
@@ -376,6 +379,7 @@ int run_command_line(int argc, char** argv) {
     if (app.got_subcommand("run")) return run(run_options);
     if (app.got_subcommand("solve")) return solve(solve_options);
     if (app.got_subcommand("inspect")) return inspect(inspect_options);
+    if (app.got_subcommand("materials")) return materials(materials_as_json);
     if (app.got_subcommand("sweep")) return sweep(sweep_options);
     std::cout << (schema_of_sweeps ? sweep_schema() : scene_schema());
     return exit_ok;

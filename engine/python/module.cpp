@@ -52,6 +52,7 @@ NB_MODULE(_core, module) {
     module.attr("version") = SKERRY_VERSION;
     bind_errors(module);
     bind_settings(module);
+    bind_materials(module);
     bind_mesh(module);
     bind_problem(module);
     bind_world(module);

@@ -75,6 +75,12 @@ private:
             std::vector<std::array<Real, 2>> pairs;
             if (!nb::try_cast(given, pairs)) complain(name, given, "a list of pairs (time, value)");
             value = table_of(pairs);
+        } else if constexpr (std::is_same_v<T, std::array<StretchTerm, 3>>) {
+            std::vector<std::array<Real, 2>> pairs;
+            if (!nb::try_cast(given, pairs) || pairs.size() > value.size())
+                complain(name, given, "up to three pairs (share, exponent)");
+            value = {};
+            for (std::size_t p = 0; p < pairs.size(); ++p) value[p] = {pairs[p][0], pairs[p][1]};
         } else if constexpr (VectorOf<T>::value) {
             if (!nb::isinstance<nb::tuple>(given) && !nb::isinstance<nb::list>(given))
                 complain(name, given, "a tuple of objects of the class " + text_of_class<typename T::value_type>());
@@ -136,6 +142,11 @@ public:
         } else if constexpr (std::is_enum_v<T>) {
             for (const auto& [known, spelled] : EnumNames<T>::table)
                 if (known == value) to_[name] = nb::cast(std::string(spelled));
+        } else if constexpr (std::is_same_v<T, std::array<StretchTerm, 3>>) {
+            nb::list pairs;
+            for (const StretchTerm& term : value)
+                if (term.share != 0) pairs.append(nb::make_tuple(term.share, term.exponent));
+            to_[name] = nb::tuple(pairs);
         } else if constexpr (std::is_same_v<T, Vec3>) {
             to_[name] = nb::make_tuple(value.x(), value.y(), value.z());
         } else if constexpr (std::is_same_v<T, std::vector<Vec3>>) {

@@ -54,6 +54,7 @@ void for_each_setting(Is<MaterialSettings> auto& s, auto&& visit) {
     visit("loss_factor", s.loss_factor);
     visit("bulk_viscosity", s.bulk_viscosity);
     visit("model", s.model);
+    visit("terms", s.terms);
 }
 
 void for_each_setting(Is<BodySettings> auto& s, auto&& visit) {
@@ -210,6 +211,8 @@ static_assert(has_size<Settings, 17>);
 static_assert(has_size<MaterialSettings, 14>);
 static_assert(
     has_size<BodySettings, 18, std::map<int, MaterialHandle>, std::map<std::string, MaterialHandle>, std::string>);
+static_assert(has_size<MaterialSettings, 20>);
+static_assert(has_size<BodySettings, 18, std::map<int, MaterialHandle>, std::string>);
 static_assert(has_size<ColliderSettings, 16, Motion, std::string>);
 static_assert(has_size<LoadSettings, 2>);
 static_assert(has_size<SurfaceSettings, 8>);

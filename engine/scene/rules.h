@@ -118,6 +118,13 @@ public:
         add_key(name, doc, member_offset(static_cast<V T::*>(member)), {read_value<V>, Value<V>::schema});
         return *this;
     }
+    /// Adds a key whose value sets all members of the object. Keys that are added later replace single members.
+    /// Value<Preset> reads the value into an object of type T.
+    template <class Preset>
+    Rule& preset(std::string_view name, const KeyDoc& doc) {
+        add_key(name, doc, 0, {read_preset<Preset>, Value<Preset>::schema});
+        return *this;
+    }
     Rule& exactly_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::exactly_one, std::move(keys)); }
     Rule& at_most_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::at_most_one, std::move(keys)); }
     Rule& together(std::vector<std::string> keys) { return group(KeyGroup::Kind::together, std::move(keys)); }
@@ -140,6 +147,10 @@ public:
     }
 
 private:
+    template <class Preset>
+    static void read_preset(const Json& json, const Place& place, const KeyDoc& doc, void* object) {
+        Value<Preset>::read(json, place, doc, *static_cast<T*>(object));
+    }
     Rule& group(KeyGroup::Kind kind, std::vector<std::string> keys) {
         add_group(kind, std::move(keys));
         return *this;

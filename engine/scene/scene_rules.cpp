@@ -2,7 +2,11 @@
 #include "engine/scene/scene_rules.h"
 
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <vector>
+
+#include "skerry/materials.h"
 
 namespace skerry {
 
@@ -16,7 +20,84 @@ const KeyDoc mask_doc{.meaning =
                           "objects can touch if the mask of each object includes a group of the other object",
                       .limits = within(0, all_groups)};
 
+struct MaterialName {};
+/// Moduli of a law, as papers give them.
+struct OgdenEntry {
+    std::vector<OgdenTerm> terms;
+    Real bulk_modulus = 0;  // [Pa]
+};
+struct MooneyRivlinEntry {
+    Real c10 = 0, c01 = 0, bulk_modulus = 0;  // [Pa]
+};
+MaterialSettings law_of(const OgdenEntry& entry, const MaterialSettings& base) {
+    return ogden(entry.terms, entry.bulk_modulus, base);
+}
+MaterialSettings law_of(const MooneyRivlinEntry& entry, const MaterialSettings& base) {
+    return mooney_rivlin(entry.c10, entry.c01, entry.bulk_modulus, base);
+}
+template <class Entry>
+struct LawBy {};
+std::string_view no_hint(std::string_view) {
+    return {};
+}
+
 }  // namespace
+
+template <>
+struct Value<MaterialName> {
+    static std::vector<std::string> names() {
+        std::vector<std::string> names;
+        for (const NamedMaterial& material : named_materials()) names.emplace_back(material.name);
+        return names;
+    }
+    static void read(const Json& json, const Place& place, const KeyDoc&, MaterialSettings& out) {
+        out = named_material(named_materials()[read_name(json, place, names(), no_hint)].name);
+    }
+    static Json schema(SchemaBook&, const KeyDoc&) { return enum_schema(names()); }
+};
+
+template <>
+const Rule<OgdenTerm>& rule_of<OgdenTerm>() {
+    static const auto rule =
+        Rule<OgdenTerm>("ogden_term", "A term of the law of Ogden. Modulus and exponent have the same sign.")
+            .key("modulus", &OgdenTerm::modulus, {.meaning = "modulus mu_p", .unit = "Pa", .required = true})
+            .key("exponent", &OgdenTerm::exponent, {.meaning = "exponent alpha_p of the stretches", .required = true});
+    return rule;
+}
+
+template <>
+const Rule<OgdenEntry>& rule_of<OgdenEntry>() {
+    static const auto rule = Rule<OgdenEntry>("ogden", "Moduli of the law of Ogden.")
+                                 .key("terms", &OgdenEntry::terms, {.meaning = "one to three terms", .required = true})
+                                 .key("bulk_modulus", &OgdenEntry::bulk_modulus,
+                                      {.meaning = "bulk modulus", .unit = "Pa", .limits = above(0), .required = true});
+    return rule;
+}
+
+template <>
+const Rule<MooneyRivlinEntry>& rule_of<MooneyRivlinEntry>() {
+    using Entry = MooneyRivlinEntry;
+    static const auto rule =
+        Rule<Entry>("mooney_rivlin", "Moduli of the law of Mooney and Rivlin.")
+            .key("c10", &Entry::c10,
+                 {.meaning = "modulus of the first invariant", .unit = "Pa", .limits = above(0), .required = true})
+            .key("c01", &Entry::c01,
+                 {.meaning = "modulus of the second invariant", .unit = "Pa", .limits = at_least(0), .required = true})
+            .key("bulk_modulus", &Entry::bulk_modulus,
+                 {.meaning = "bulk modulus", .unit = "Pa", .limits = above(0), .required = true});
+    return rule;
+}
+
+/// Reads an Entry, which sets the law and the elastic moduli of a material.
+template <class Entry>
+struct Value<LawBy<Entry>> {
+    static void read(const Json& json, const Place& place, const KeyDoc& doc, MaterialSettings& out) {
+        Entry entry;
+        Value<Entry>::read(json, place, doc, entry);
+        called_at(place, [&] { out = law_of(entry, out); });
+    }
+    static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<Entry>::schema(book, doc); }
+};
 
 template <>
 const Rule<PinEntry>& rule_of<PinEntry>() {
@@ -162,6 +243,9 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
     using M = MaterialSettings;
     static const auto rule =
         Rule<M>("material", "An elastic material and its surface.")
+            .preset<MaterialName>("like",
+                                  {.meaning = "name of a material from the literature, whose values the other keys "
+                                              "replace; `skerry materials` lists the materials with their sources"})
             .key("young_modulus", &M::young_modulus,
                  {.meaning = "Young's modulus", .unit = "Pa", .alias = "E", .limits = above(0)})
             .key("poisson_ratio", &M::poisson_ratio,
@@ -190,6 +274,15 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
                  {.meaning = "damping ratio of volume changes at the highest natural frequency of an element",
                   .limits = within(0, largest_bulk_viscosity)})
             .key("model", &M::model, {.meaning = "constitutive law"})
+            .preset<LawBy<OgdenEntry>>("ogden",
+                                       {.meaning = "law of Ogden for rubber; sets the model and the elastic moduli"})
+            .preset<LawBy<MooneyRivlinEntry>>(
+                "mooney_rivlin", {.meaning = "law of Mooney and Rivlin: the law of Ogden with the exponents 2 and -2"})
+            .at_most_one({"ogden", "mooney_rivlin", "model"})
+            .at_most_one({"ogden", "mooney_rivlin", "young_modulus"})
+            .at_most_one({"ogden", "mooney_rivlin", "E"})
+            .at_most_one({"ogden", "mooney_rivlin", "poisson_ratio"})
+            .at_most_one({"ogden", "mooney_rivlin", "nu"})
             .together({"static_friction", "dynamic_friction"})
             .at_most_one({"friction", "static_friction"})
             .at_most_one({"mu", "static_friction"})

@@ -192,6 +192,27 @@ void validate(const Tuning& tuning) {
             "a number > 0 and < 2");
 }
 
+namespace {
+
+/// Checks the terms of the law of Ogden. Positive shares make each term convex (Ogden 1972).
+void require_terms(const MaterialSettings& material, const std::string& object) {
+    constexpr Real least_exponent = 0.1, largest_exponent = 100, rounding = 1e-9;
+    Real sum = 0;
+    for (std::size_t p = 0; p < material.terms.size(); ++p) {
+        const std::string field = "terms[" + std::to_string(p) + "]";
+        const auto [share, exponent] = material.terms[p];
+        require(share >= 0, object, (field + ".share").c_str(), share,
+                "a share >= 0, because modulus and exponent have one sign");
+        const Real size = std::abs(exponent);
+        require(size >= least_exponent && size <= largest_exponent, object, (field + ".exponent").c_str(), exponent,
+                "an exponent between 0.1 and 100 in size");
+        sum += share;
+    }
+    require(std::abs(sum - 1) <= rounding, object, "terms", sum, "shares of the shear modulus that sum to 1");
+}
+
+}  // namespace
+
 void validate(const MaterialSettings& material) {
     const std::string object = "material";
     if (material.model == MaterialModel::guard)
@@ -220,6 +241,7 @@ void validate(const MaterialSettings& material) {
     const Real loss_factor = material.loss_factor.value_or(default_loss_factor);
     require(loss_factor >= 0 && loss_factor <= largest_loss_factor, object, "loss_factor", loss_factor,
             "a number from 0 to 0.3");
+    require_terms(material, object);
     require(material.bulk_viscosity >= 0 && material.bulk_viscosity <= largest_bulk_viscosity, object, "bulk_viscosity",
             material.bulk_viscosity, "a number from 0 to 1");
 }

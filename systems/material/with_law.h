@@ -5,6 +5,7 @@
 #include "systems/material/corotational.h"
 #include "systems/material/guard.h"
 #include "systems/material/linear.h"
+#include "systems/material/ogden.h"
 #include "systems/material/stable_neo_hookean.h"
 
 namespace skerry {
@@ -34,6 +35,8 @@ template <class Visit>
             return visit(Corotational{});
         case MaterialModel::guard:
             return visit(Guard{});
+        case MaterialModel::ogden:
+            return visit(Ogden{});
         case MaterialModel::stable_neo_hookean:
             break;
     }

@@ -22,6 +22,13 @@ namespace skerry {
 
 inline constexpr Real default_loss_factor = 0.05, largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
 
+/// Term of the law `ogden`: share of the shear modulus, from 0 (not used) to 1, and exponent of the stretches.
+struct StretchTerm {
+    Real share = 0, exponent = 2;
+
+    bool operator==(const StretchTerm&) const = default;
+};
+
 struct MaterialSettings {
     Real young_modulus = 1e5;  // > 0 [Pa]
     Real poisson_ratio = 0.4;  // Poisson's ratio, > -1 and < 0.5
@@ -44,6 +51,8 @@ struct MaterialSettings {
     // do not use this value.
     Real bulk_viscosity = 0.06;  // from 0 to 1
     MaterialModel model = MaterialModel::stable_neo_hookean;
+    // Terms of the law `ogden`, whose shares sum to 1. ogden() and mooney_rivlin() of materials.h set them from moduli.
+    std::array<StretchTerm, 3> terms{{{1, 2}, {}, {}}};
 };
 
 /// Kind of motion of a body. Rigid and implicit bodies do not limit the step and have no self-contact.

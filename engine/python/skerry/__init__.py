@@ -2,6 +2,7 @@
 
 from ._core import version as __version__
 from ._errors import BusyError, Doubt, SceneError, StepError
+from ._materials import NamedMaterials, materials, mooney_rivlin, ogden
 from ._mesh import Mesh, MeshReport, read_surface
 from ._problem import Problem, ProblemError, Solution, StepProblem, problem_error, solve
 from ._recorder import Film, Page, Recorder
@@ -161,6 +162,7 @@ __all__ = [
     "MotionKey",
     "Motor",
     "MotorKey",
+    "NamedMaterials",
     "NodesProbe",
     "Objects",
     "Page",
@@ -210,6 +212,9 @@ __all__ = [
     "contact_dtype",
     "hit_dtype",
     "load_scene",
+    "materials",
+    "mooney_rivlin",
+    "ogden",
     "problem_error",
     "read_surface",
     "rollout",

@@ -33,7 +33,7 @@ ContactRegions: TypeAlias = Literal["separate", "global"]
 SolverMethod: TypeAlias = Literal["automatic", "ags", "pgs", "pcg_pgs", "newton", "pcg_fr", "pcg_pr"]
 Friction: TypeAlias = Literal["cone", "pyramid"]
 StartOverlaps: TypeAlias = Literal["resolve", "refuse", "ignore"]
-MaterialModel: TypeAlias = Literal["linear", "corotational", "stable_neo_hookean"]
+MaterialModel: TypeAlias = Literal["linear", "corotational", "stable_neo_hookean", "ogden"]
 ElementKind: TypeAlias = Literal["linear", "smoothed", "edge_smoothed", "edge_node_smoothed"]
 Dynamics: TypeAlias = Literal["explicit", "rigid", "implicit", "automatic"]
 JointKind: TypeAlias = Literal["ball", "hinge", "slider", "fixed"]
@@ -161,6 +161,8 @@ class Material:
     bulk_viscosity: damping ratio of volume changes of an element at its highest frequency, from 0 to 1; for explicit
         bodies.
     model: law of elasticity.
+    terms: up to three terms of the law "ogden", each (share of the shear modulus, exponent of the stretches). The
+        shares sum to 1. ogden() and mooney_rivlin() set them from moduli.
     """
 
     young_modulus: float = 1e5
@@ -174,6 +176,10 @@ class Material:
     loss_factor: float | None = None
     bulk_viscosity: float = 0.06
     model: MaterialModel = "stable_neo_hookean"
+    terms: tuple[tuple[float, float], ...] = ((1.0, 2.0),)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "terms", tuple((share, exponent) for share, exponent in self.terms))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

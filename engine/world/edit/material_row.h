@@ -28,6 +28,10 @@ struct MaterialRow {
             material.loss_factor.value_or(0) > 0};
         row.constants.loss_factor = material.loss_factor.value_or(default_loss_factor);
         row.constants.bulk_viscosity = material.bulk_viscosity;
+        for (std::size_t p = 0; p < material.terms.size(); ++p) {
+            row.constants.share[p] = material.terms[p].share;
+            row.constants.exponent[p] = material.terms[p].exponent;
+        }
         return row;
     }
     void write(MaterialTable& table, std::size_t row) const {
@@ -42,7 +46,8 @@ struct MaterialRow {
     bool same_elements(const MaterialRow& other) const {
         const MaterialConstants &a = constants, &b = other.constants;
         return young_modulus == other.young_modulus && poisson_ratio == other.poisson_ratio && a.density == b.density &&
-               a.loss_factor == b.loss_factor && a.bulk_viscosity == b.bulk_viscosity;
+               a.loss_factor == b.loss_factor && a.bulk_viscosity == b.bulk_viscosity && a.share == b.share &&
+               a.exponent == b.exponent;
     }
     bool same_rest(const MaterialRow& other) const {
         return surface == other.surface && damping == other.damping && sets_losses == other.sets_losses;

@@ -218,6 +218,18 @@ class ProgramTest(ProgramCase):
         self.assertIn("stopped by a signal", stderr)
         self.assertIn("stopped by a signal", json.loads(stats.read_text())["status"])
 
+    def test_materials_are_listed_with_their_sources(self):
+        found = json.loads(self.skerry("materials", "--json").stdout)
+        text = self.skerry("materials").stdout
+        self.assertGreaterEqual(len(found["materials"]), 25)
+        for material in found["materials"]:
+            self.assertIn(material["name"], text)
+            for key in ("young_modulus", "poisson_ratio", "density"):
+                self.assertGreaterEqual(material[key]["value"], 0)
+                self.assertIn(material[key]["source"], text)
+        for pair in found["frictions"]:
+            self.assertIn(pair["source"], text)
+
     def test_help_teaches_and_the_version_is_said(self):
         self.assertIn("Examples", self.skerry("--help").stdout)
         self.assertIn("--contact-regions", self.skerry("run", "--help").stdout)

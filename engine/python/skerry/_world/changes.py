@@ -43,6 +43,7 @@ class MaterialChanges(TypedDict, total=False):
     loss_factor: float | None
     bulk_viscosity: float
     model: MaterialModel
+    terms: tuple[tuple[float, float], ...]
 
 
 class SurfaceChanges(TypedDict, total=False):

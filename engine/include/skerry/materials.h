@@ -1,0 +1,58 @@
+// Materials with values from the literature. The command `skerry materials` prints them.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "skerry/settings.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+struct SourcedValue {
+    Real value;
+    std::string_view source;  // citation, and the way in which the value was derived from it
+};
+
+struct NamedMaterial {
+    std::string_view name;       // for named_material() and for the key "like" of scene files
+    std::string_view title;      // description for people
+    SourcedValue young_modulus;  // at small strain [Pa]
+    SourcedValue poisson_ratio;  // rubber, gels and tissue have 0.49 in place of almost 0.5
+    SourcedValue density;        // [kg/m^3]
+    std::optional<SourcedValue> loss_factor;
+};
+
+/// Friction coefficients of two clean, dry surfaces.
+struct KnownFriction {
+    std::string_view first, second;  // names of materials
+    Real static_friction, dynamic_friction;
+    std::string_view source;
+};
+
+/// All materials, in groups from soft to stiff.
+std::span<const NamedMaterial> named_materials();
+std::span<const KnownFriction> known_frictions();
+
+/// Settings of the material called `name`. `friction` is the dynamic friction of two surfaces of this material if
+/// known_frictions() lists the pair, else the default. Loss factors below 0.01 are not set: implicit bodies, to which
+/// such materials belong, accept none. Throws SceneError if no material has this name.
+MaterialSettings named_material(std::string_view name);
+
+/// A term of the law of Ogden as papers give it: modulus mu_p [Pa] and exponent alpha_p, of the same sign.
+struct OgdenTerm {
+    Real modulus, exponent;
+};
+/// `base` with the law of Ogden (1972, eq. 18), split into changes of shape and volume: Psi = sum_p mu_p / alpha_p
+/// (s_1^ alpha_p + s_2^alpha_p + s_3^alpha_p - 3) + K/2 (J - 1)^2, with the principal stretches s_i divided by J^(1/3),
+/// J = det F, and the bulk modulus K [Pa]. Up to three terms. Sets model, terms, young_modulus and poisson_ratio.
+/// Throws SceneError for values without a stable law.
+MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, MaterialSettings base = {});
+
+/// `base` with the law of Mooney and Rivlin: Psi = c10 (I_1 - 3) + c01 (I_2 - 3) + K/2 (J - 1)^2, with the invariants
+/// I_1, I_2 of the stretches divided by J^(1/3) [Pa]. This is the law of Ogden with the exponents 2 and -2.
+MaterialSettings mooney_rivlin(Real c10, Real c01, Real bulk_modulus, MaterialSettings base = {});
+
+}  // namespace skerry
+#pragma GCC visibility pop

@@ -1,0 +1,57 @@
+"""Materials with values from the literature."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from . import _core
+from ._settings import Material
+
+
+class NamedMaterials(Mapping[str, Material]):
+    """Materials by name: materials["steel"] is a Material. list(materials) lists the names, and sources() names the
+    source of each value. A change: dataclasses.replace(materials["steel"], friction=0.2).
+    """
+
+    def __getitem__(self, name: str) -> Material:
+        if name not in self._names():
+            raise KeyError(f"found {name!r}, expected one of the names {', '.join(self)}")
+        return Material(**_core.named_material(name))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names())
+
+    def __len__(self) -> int:
+        return len(self._names())
+
+    def sources(self, name: str) -> dict[str, str]:
+        """Sources of the values of a material, by the fields of Material. Fields without a source have defaults.
+        KeyError: no material has this name."""
+        self[name]
+        return dict(_core.material_sources(name))
+
+    @staticmethod
+    def _names() -> list[str]:
+        return list(_core.material_names())
+
+
+def ogden(terms: Sequence[tuple[float, float]], bulk_modulus: float, base: Material | None = None) -> Material:
+    """Material with the law of Ogden for rubber, split into changes of shape and volume.
+
+    terms: one to three pairs (modulus mu_p [Pa], exponent alpha_p), of the same sign. bulk_modulus: [Pa]. base: gives
+    density, friction and losses. SceneError: the values give no stable law.
+    """
+    return Material(**_core.ogden([*terms], bulk_modulus, base or Material()))
+
+
+def mooney_rivlin(c10: float, c01: float, bulk_modulus: float, base: Material | None = None) -> Material:
+    """Material with the law of Mooney and Rivlin: the law of Ogden with the exponents 2 and -2.
+
+    c10, c01: moduli of the two invariants [Pa]. bulk_modulus: [Pa]. base: gives density, friction and losses.
+    SceneError: the values give no stable law.
+    """
+    return Material(**_core.mooney_rivlin(c10, c01, bulk_modulus, base or Material()))
+
+
+materials = NamedMaterials()
+"""Materials with values from the literature."""

@@ -1,0 +1,71 @@
+// Law of Ogden (1972) for rubber, with the volume change split off. Psi = sum_p 2 mu c_p / a_p^2 (sum_i (s_i /
+// J^(1/3))^a_p - 3) + K/2 (J - 1)^2 with the stretches s_i, J = det F, exponents a_p and shares c_p of the shear
+// modulus, whose sum is 1. One term of exponent 2 is the neo-Hookean law. Exponents 2 and -2 are the law of Mooney and
+// Rivlin (docs/methods/elasticity.md 2.5).
+#pragma once
+
+#include "components/material_table.h"
+#include "systems/material/lane_power.h"
+#include "systems/material/principal_axes.h"
+#include "systems/material/tangent.h"
+
+namespace skerry {
+
+/// systems/material/with_law.h describes the members of a material law. Functions by lanes are compiled in ogden.cpp.
+struct Ogden {
+    static constexpr bool has_frame = false;
+    static constexpr bool stiffness_varies = true;
+    static constexpr int stress_flops = 900;  // for three terms
+
+    // The law is singular at zero stretch. Below these limits, a stretch x acts as the positive number limit^2 / (2
+    // limit - x), and J likewise. So energy and stress are finite for every F, and the stress is continuous.
+    static constexpr Real least_stretch = 0.05, least_volume = 0.2;
+
+    /// Bulk modulus K = lambda + 2/3 mu at small strain [Pa].
+    static Real bulk_modulus(const MaterialConstants& material) {
+        return material.lame_lambda + 2.0 / 3 * material.shear_modulus;
+    }
+
+    static Real energy_density(const MaterialConstants& material, const Mat3& F);
+    static Mat3 stress(const MaterialConstants& material, const Mat3& F);
+    static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
+    static Tangent tangent(const MaterialConstants& material, const Mat3& F);
+
+    template <class T>
+    static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F);
+    template <class T>
+    static LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F);
+    /// Upper bound of the largest eigenvalue of dP/dF, from its entries in principal axes [Pa].
+    template <class T>
+    static T stiffness_bound(const MaterialConstants& material, const LaneMat3<T>& F);
+    /// Upper bound of stiffness_bound, from |F|^2 and det F alone (docs/methods/stable_step.md 4.5) [Pa]. It is
+    /// infinite below the limits above.
+    template <class T>
+    static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J);
+
+    /// Bound on dP/dF without volume changes, for the rotation R nearest to F: at most `even` for changes X of F with
+    /// X = R X^T R, at most `odd` for changes with X = -R X^T R, less `volume` times the square of R : X [Pa].
+    template <class T>
+    struct FrameBound {
+        LaneMat3<T> R;
+        T even, odd;
+        Real volume;
+    };
+    template <class T>
+    static FrameBound<T> frame_bound(const MaterialConstants& material, const LaneMat3<T>& F);
+
+    /// Adds an upper bound of dP/dF to H. The part of shape changes is at least that of the rest shape.
+    template <class T, class Terms>
+    static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
+        const FrameBound<T> bound = frame_bound(material, F);
+        const LaneMat3<T> cof = cofactor(F);
+        const Real K = bulk_modulus(material);
+        H.add_identity(0.5 * (bound.even + bound.odd));
+        H.add_turned_transpose(0.5 * (bound.even - bound.odd), bound.R);
+        H.add_dyad(T{} - bound.volume, bound.R);
+        H.add_dyad(T{} + K, cof);
+        H.add_cofactor_slope(K * (dot(F.c0, cof.c0) - 1.0), F);
+    }
+};
+
+}  // namespace skerry

@@ -1,0 +1,50 @@
+"""Materials with values from the literature."""
+
+import dataclasses
+
+import pytest
+
+import skerry as sk
+
+
+def test_named_materials_are_records_with_sources():
+    silicone = sk.materials["silicone_ecoflex_30"]
+    assert isinstance(silicone, sk.Material)
+    assert silicone.young_modulus == pytest.approx(118e3, rel=0.01)
+    assert silicone.density == 1070
+    assert len(sk.materials) >= 25
+    for name in sk.materials:
+        assert {"young_modulus", "poisson_ratio", "density"} <= set(sk.materials.sources(name))
+    assert "friction" in sk.materials.sources("steel")
+    assert sk.materials["steel"].friction == 0.57
+
+
+def test_a_named_material_makes_a_body():
+    world = sk.World()
+    slippery = dataclasses.replace(sk.materials["ice"], friction=0.01)
+    body = world.add_body(sk.Mesh.box((0.1, 0.1, 0.1), (1, 1, 1)), slippery)
+    assert body.material.settings == slippery
+
+
+def test_moduli_of_rubber_as_papers_give_them():
+    both = sk.mooney_rivlin(3e4, 1e4, 4e6, sk.Material(density=950.0))
+    assert both.model == "ogden"
+    assert both.density == 950
+    assert both.terms == ((0.75, 2.0), (0.25, -2.0))
+    world = sk.World()
+    body = world.add_body(sk.Mesh.box((0.1, 0.1, 0.1), (1, 1, 1)), both)
+    assert body.material.settings == both
+    three = sk.ogden([(6.3e5, 1.3), (1.2e3, 5), (-1e4, -2)], 1e7)
+    assert sum(share for share, _ in three.terms) == pytest.approx(1)
+    with pytest.raises(sk.SceneError, match="of the same sign"):
+        sk.ogden([(-1e5, 2)], 1e6)
+    with pytest.raises(sk.SceneError, match="up to three pairs"):
+        world.add_material(model="ogden", terms=((0.25, 1.0),) * 4)
+
+
+def test_an_unknown_name_is_refused_with_the_names():
+    with pytest.raises(KeyError, match="found 'stel', expected one of the names .*steel"):
+        sk.materials["stel"]
+    with pytest.raises(KeyError, match="'stel'"):
+        sk.materials.sources("stel")
+    assert "stel" not in sk.materials
