@@ -18,6 +18,7 @@
 #include "components/region_table.h"
 #include "components/resting_contact_table.h"
 #include "components/rigid_body_table.h"
+#include "components/spring_table.h"
 #include "components/surface_table.h"
 
 namespace skerry {
@@ -84,6 +85,7 @@ template std::span<const ColumnInfo> columns_of<PairTable>();
 template std::span<const ColumnInfo> columns_of<RegionTable>();
 template std::span<const ColumnInfo> columns_of<RestingContactTable>();
 template std::span<const ColumnInfo> columns_of<RigidBodyTable>();
+template std::span<const ColumnInfo> columns_of<SpringTable>();
 template std::span<const ColumnInfo> columns_of<SurfaceTables>();
 template std::span<const ColumnInfo> columns_of<TetrahedronBlockTable>();
 template std::span<const ColumnInfo> columns_of<TriangleTable>();

@@ -264,6 +264,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"bodies", report.bodies},
                            {"colliders", report.colliders},
                            {"joints", plan.joints.size()},
+                           {"springs", plan.springs.size()},
                            {"nodes", report.nodes},
                            {"elements", report.elements},
                            {"stable_dt", stable_step},
@@ -290,7 +291,8 @@ int inspect_scene(const InspectOptions& options) {
     std::cout << scene.name << ": " << scene.description << "\n"
               << "  bodies        " << grouped(report.bodies) << ", " << grouped(report.nodes) << " nodes, "
               << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders"
-              << (plan.joints.empty() ? "" : ", " + grouped(plan.joints.size()) + " joints") << "\n"
+              << (plan.joints.empty() ? "" : ", " + grouped(plan.joints.size()) + " joints")
+              << (plan.springs.empty() ? "" : ", " + grouped(plan.springs.size()) + " springs") << "\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
               << (report.stable_step_body.empty() ? "no body limits the step" : "limited by " + report.stable_step_body)

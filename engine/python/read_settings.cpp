@@ -218,6 +218,9 @@ void read(nb::handle from, JointSettings& to) {
 void read(nb::handle from, JointMotor& to) {
     read_members(from, to);
 }
+void read(nb::handle from, SpringSettings& to) {
+    read_members(from, to);
+}
 void read(nb::handle from, ProblemSettings& to) {
     read_members(from, to);
 }

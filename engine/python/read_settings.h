@@ -4,6 +4,7 @@
 #include "engine/python/bind.h"
 #include "skerry/joint.h"
 #include "skerry/problem.h"
+#include "skerry/spring.h"
 #include "skerry/time_table.h"
 #include "skerry/world.h"
 
@@ -23,6 +24,7 @@ void read(nb::handle from, Pose& to);
 void read(nb::handle from, Motion& to);
 void read(nb::handle from, JointSettings& to);
 void read(nb::handle from, JointMotor& to);
+void read(nb::handle from, SpringSettings& to);
 void read(nb::handle from, ProblemSettings& to);
 
 /// Reads a Plane, a Sphere or another of the shapes. The class of the Python object has the name of the C++ struct.

@@ -51,6 +51,9 @@ nb::tuple values_of(const RecordedProbe& probe) {
             } else if constexpr (std::is_same_v<Kind, JointProbe>) {
                 values["joint"] = what.joint;
                 return "JointProbe";
+            } else if constexpr (std::is_same_v<Kind, SpringProbe>) {
+                values["spring"] = what.spring;
+                return "SpringProbe";
             } else if constexpr (std::is_same_v<Kind, EnergyProbe>) {
                 return "EnergyProbe";
             } else if constexpr (std::is_same_v<Kind, StressProbe>) {
@@ -112,6 +115,9 @@ void bind_probes(nb::module_& module) {
     });
     module.def("joint_probe", [](const std::string& name, const JointHandle& joint) {
         return RecordedProbe{name, JointProbe{joint}};
+    });
+    module.def("spring_probe", [](const std::string& name, const SpringHandle& spring) {
+        return RecordedProbe{name, SpringProbe{spring}};
     });
     module.def("energy_probe", [](const std::string& name) { return RecordedProbe{name, EnergyProbe{}}; });
     module.def("stress_probe", [](const std::string& name, const BodyHandle& body, const std::vector<Index>& nodes) {

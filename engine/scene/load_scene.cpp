@@ -15,6 +15,7 @@ struct Built {
     const std::vector<ColliderHandle>& colliders;
     const std::vector<std::vector<AttachmentHandle>>& pins;  // indexed by body
     const std::vector<JointHandle>& joints;
+    const std::vector<SpringHandle>& springs;
 };
 
 decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& built) {
@@ -45,6 +46,8 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
             return ReactionProbe{built.pins[*series.body][series.pin]};
         case ProbeQuantity::joint:
             return JointProbe{built.joints[series.joint]};
+        case ProbeQuantity::spring:
+            return SpringProbe{built.springs[series.spring]};
         case ProbeQuantity::stress:
             return StressProbe{body, series.nodes};
         case ProbeQuantity::volume:
@@ -121,10 +124,17 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         if (joint.second) settings.second = bodies[*joint.second];
         joints.push_back(called_at(joint.place, [&] { return Joints(world).add(settings); }));
     }
+    std::vector<SpringHandle> springs;
+    for (const SpringPlan& spring : plan.springs) {
+        SpringSettings settings = spring.settings;
+        settings.first = anchor_of(spring.first, plan, world, {bodies, colliders});
+        settings.second = anchor_of(spring.second, plan, world, {bodies, colliders});
+        springs.push_back(called_at(spring.place, [&] { return Springs(world).add(settings); }));
+    }
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     for (const SeriesPlan& series : plan.series)
-        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints})});
+        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints, springs})});
     return scene;
 }
 

@@ -108,6 +108,7 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
     if (entry.body) series.body = find_body(plan, *entry.body, entry.place.key("body"));
     if (entry.collider) series.collider = find_collider(plan, *entry.collider, entry.place.key("collider"));
     if (entry.joint) series.joint = find_joint(plan, *entry.joint, entry.place.key("joint"));
+    if (entry.spring) series.spring = find_spring(plan, *entry.spring, entry.place.key("spring"));
     if (entry.by) find_partner(entry, plan, series);
     if (series.body) {
         const BodyPlan& body = plan.bodies[*series.body];

@@ -280,6 +280,7 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
         plan.colliders.push_back(plan_collider(scene.colliders[i], i, plan.notes));
     for (std::size_t i = 0; i < scene.joints.size(); ++i) plan.joints.push_back(plan_joint(scene.joints[i], i, plan));
+    for (std::size_t i = 0; i < scene.springs.size(); ++i) plan_spring(scene.springs[i], i, plan);
     for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);
     return plan;
 }

@@ -23,6 +23,8 @@ KeysOf keys_of(ProbeQuantity quantity) {
             return {{"body"}, {"pin"}};
         case ProbeQuantity::joint:
             return {{"joint"}, {}};
+        case ProbeQuantity::spring:
+            return {{"spring"}, {}};
         case ProbeQuantity::energy:
             return {{}, {}};
         case ProbeQuantity::stress:
@@ -39,7 +41,7 @@ void check_keys(const Place& place, const ProbeEntry& probe) {
     const std::vector<std::pair<std::string, bool>> given{
         {"body", probe.body.has_value()},  {"collider", probe.collider.has_value()}, {"by", probe.by.has_value()},
         {"box", probe.box.has_value()},    {"point", probe.point.has_value()},       {"pin", probe.pin.has_value()},
-        {"joint", probe.joint.has_value()}};
+        {"joint", probe.joint.has_value()}, {"spring", probe.spring.has_value()}};
     for (const auto& [key, is_given] : given) {
         const bool required = std::ranges::find(keys.required, key) != keys.required.end();
         if (required && !is_given)
@@ -76,14 +78,15 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
             .key("quantity", &P::quantity,
                  {.meaning = "recorded quantity: contacts (default); motion of a point or of the centre of mass; force "
                              "of contacts on a body or a collider; reaction of a pin; coordinate and forces of a "
-                             "joint; energy of the world; largest "
-                             "stress; smallest ratio of current volume to rest volume"})
+                             "joint; length, force and energy of a spring; energy of the world; "
+                             "largest stress; smallest ratio of current volume to rest volume"})
             .key("body", &P::body, {.meaning = "name of a body"})
             .key("collider", &P::collider, {.meaning = "for a force: name of the collider on which it acts"})
             .key("by", &P::by,
                  {.meaning = "for a force: name of the body or collider that exerts the force; default: all bodies and "
                              "colliders"})
             .key("joint", &P::joint, {.meaning = "for a joint: name of the joint"})
+            .key("spring", &P::spring, {.meaning = "for a spring: name of the spring"})
             .key("box", &P::box,
                  {.meaning = "box around the recorded nodes, in the mesh's own frame; default for a stress: all nodes"})
             .key("point", &P::point,

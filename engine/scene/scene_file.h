@@ -10,6 +10,7 @@
 #include "engine/scene/values.h"
 #include "skerry/joint.h"
 #include "skerry/settings.h"
+#include "skerry/spring.h"
 
 namespace skerry {
 
@@ -128,6 +129,15 @@ struct AnchorEntry {
     Vec3 point = Vec3::Zero();  // position in the own frame of the mesh or collider, or in the world [m]
     Place place;
 };
+struct SpringEntry {
+    std::string name;
+    AnchorEntry first, second;
+    Real stiffness = SpringSettings{}.stiffness, damping = SpringSettings{}.damping;
+    std::optional<TimeTable> rest_length;
+    SpringSide only = SpringSettings{}.only;
+    std::optional<Real> strength;
+    Place place;
+};
 struct MotorEntry {
     std::optional<Real> speed, position;
     std::vector<MotorKey> keys;
@@ -147,10 +157,10 @@ struct JointEntry {
 };
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
-enum class ProbeQuantity { contacts, motion, force, reaction, joint, energy, stress, volume };
+enum class ProbeQuantity { contacts, motion, force, reaction, joint, energy, stress, volume, spring };
 template <>
 struct EnumNames<ProbeQuantity> {
-    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 8> table{{
+    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 9> table{{
         {ProbeQuantity::contacts, "contacts"},
         {ProbeQuantity::motion, "motion"},
         {ProbeQuantity::force, "force"},
@@ -159,12 +169,13 @@ struct EnumNames<ProbeQuantity> {
         {ProbeQuantity::energy, "energy"},
         {ProbeQuantity::stress, "stress"},
         {ProbeQuantity::volume, "volume"},
+        {ProbeQuantity::spring, "spring"},
     }};
 };
 struct ProbeEntry {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::contacts;
-    std::optional<std::string> body, collider, by, joint;
+    std::optional<std::string> body, collider, by, joint, spring;
     std::optional<RestBox> box;
     std::optional<Vec3> point;  // position in the mesh's own frame [m]
     std::optional<int> pin;
@@ -183,6 +194,7 @@ struct SceneFile {
     std::vector<BodyEntry> bodies;
     std::vector<ColliderEntry> colliders;
     std::vector<JointEntry> joints;
+    std::vector<SpringEntry> springs;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;
 };

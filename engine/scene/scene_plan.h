@@ -12,6 +12,7 @@
 #include "engine/world/tuning.h"
 #include "skerry/anchor.h"
 #include "skerry/scene.h"
+#include "skerry/spring.h"
 
 namespace skerry {
 
@@ -48,6 +49,12 @@ struct JointPlan {
     JointSettings settings;               // settings without body handles, because handles exist only in a built world
     Place place;
 };
+struct SpringPlan {
+    std::string name;
+    AnchorPlan first, second;
+    SpringSettings settings;  // settings without anchors, because handles exist only in a built world
+    Place place;
+};
 struct ProbePlan {
     std::string name;
     std::size_t body = 0;      // index in ScenePlan::bodies
@@ -60,6 +67,7 @@ struct SeriesPlan {
     std::optional<std::size_t> body{}, by_body{};          // indices in ScenePlan::bodies
     std::optional<std::size_t> collider{}, by_collider{};  // indices in ScenePlan::colliders
     std::size_t joint = 0;                                 // index in ScenePlan::joints
+    std::size_t spring = 0;                                // index in ScenePlan::springs
     std::size_t pin = 0;                                   // index in BodyPlan::pins
     std::vector<Index> nodes;                              // local numbers
     std::optional<MaterialPoint> point;
@@ -80,6 +88,7 @@ struct ScenePlan {
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
     std::vector<JointPlan> joints;
+    std::vector<SpringPlan> springs;
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;
     Real probe_step = 0;  // [s]
@@ -110,7 +119,12 @@ struct PlannedHandles {
 /// Returns a planned anchor in the form that a world takes.
 Anchor anchor_of(const AnchorPlan& anchor, const ScenePlan& plan, const World& world, const PlannedHandles& handles);
 
-/// Adds a probe to a plan that already contains all bodies, colliders and joints.
+/// Adds a spring to a plan that already contains all bodies and colliders. `number` counts the springs from 0.
+void plan_spring(const SpringEntry& entry, std::size_t number, ScenePlan& plan);
+/// Returns the index of a spring in a plan. Throws SceneError if the plan has none of this name.
+std::size_t find_spring(const ScenePlan& plan, const std::string& name, const Place& place);
+
+/// Adds a probe to a plan that already contains all bodies, colliders, joints and springs.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 
 /// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.

@@ -295,6 +295,8 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("colliders", &SceneFile::colliders,
                  {.meaning = "rigid shapes that are fixed or follow a prescribed motion"})
             .key("joints", &SceneFile::joints, {.meaning = "joints of rigid bodies"})
+            .key("springs", &SceneFile::springs,
+                 {.meaning = "springs and dampers between points of bodies, colliders and the world"})
             .key("probes", &SceneFile::probes,
                  {.meaning = "recorded quantities: contacts for the report, and time series for --probes"})
             .key("probe_step", &SceneFile::probe_step,

@@ -58,6 +58,8 @@ const Rule<MotorEntry>& rule_of<MotorEntry>();
 template <>
 const Rule<JointEntry>& rule_of<JointEntry>();
 template <>
+const Rule<SpringEntry>& rule_of<SpringEntry>();
+template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();
 template <>
 const Rule<MaterialSettings>& rule_of<MaterialSettings>();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "components/joint_kind.h"
+#include "components/spring_side.h"
 #include "skerry/world.h"
 
 #pragma GCC visibility push(default)
@@ -55,6 +56,10 @@ struct ReactionProbe {
 struct JointProbe {
     JointHandle joint{};
 };
+/// Records length, rate, force and energy of a spring (SpringState).
+struct SpringProbe {
+    SpringHandle spring{};
+};
 /// Records the kinetic, elastic, potential and dissipated energy of the world.
 struct EnergyProbe {};
 /// Records the largest von Mises stress at the given nodes of a body, or at all its nodes if none is given. `nodes` are
@@ -86,7 +91,7 @@ struct NodesProbe {
 struct RecordedProbe {
     std::string name;  // unique and not empty; not "." or "time"; without '/' and control characters
     std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, JointProbe, EnergyProbe,
-                 StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe>
+                 StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe, SpringProbe>
         what;
 };
 

@@ -166,6 +166,10 @@ void put_values(const World& world, TrackedProbe& probe, std::vector<Real>& valu
             [&](const ColliderForceProbe&) { put_force(probe.force, true, values); },
             [&](const ReactionProbe&) { put_force(probe.force, false, values); },
             [&](const JointProbe& joint) { put_joint(state_of(world, joint), values); },
+            [&](const SpringProbe& spring) {
+                const SpringState now = spring_state(WorldAccess::state_of(world), spring.spring);
+                values.insert(values.end(), {now.length, now.rate, now.force, now.energy});
+            },
             [&](const EnergyProbe&) {
                 const Energy energy = world.energy();
                 values.insert(values.end(), {energy.kinetic, energy.elastic, energy.potential, energy.dissipated});
@@ -228,7 +232,8 @@ void require_objects(const World& world, const RecordedProbe& probe) {
                               if (force.by) require(*force.by);
                           },
                           [&](const ReactionProbe& force) { require(force.attachment); },
-                          [&](const JointProbe& joint) { require(joint.joint); }, [](const EnergyProbe&) {},
+                          [&](const JointProbe& joint) { require(joint.joint); },
+                          [&](const SpringProbe& spring) { require(spring.spring); }, [](const EnergyProbe&) {},
                           [&](const BodyProbe& body) { require(body.body); },
                           [&](const VolumeProbe& volume) { require(volume.body); },
                           [&](const NodesProbe& nodes) { require(nodes.body); },
@@ -302,6 +307,12 @@ void add_columns(const World& world, const RecordedProbe& probe, std::vector<Ser
                           [&](const BodyForceProbe&) { contact_force(); },
                           [&](const ColliderForceProbe&) { contact_force(); }, [&](const ReactionProbe&) { force(); },
                           [&](const JointProbe& joint) { of_joint(state_of(world, joint).kind); },
+                          [&](const SpringProbe&) {
+                              one("length", "m");
+                              one("rate", "m/s");
+                              one("force", "N");
+                              one("energy", "J");
+                          },
                           [&](const EnergyProbe&) {
                               for (const char* part : {"kinetic", "elastic", "potential", "dissipated"}) one(part, "J");
                           },

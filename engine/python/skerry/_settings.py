@@ -25,6 +25,7 @@ MaterialModel: TypeAlias = Literal["linear", "corotational", "stable_neo_hookean
 ElementKind: TypeAlias = Literal["linear", "smoothed", "edge_smoothed", "edge_node_smoothed"]
 Dynamics: TypeAlias = Literal["explicit", "rigid", "implicit", "automatic"]
 JointKind: TypeAlias = Literal["ball", "hinge", "slider", "fixed"]
+SpringSide: TypeAlias = Literal["both", "tension", "compression"]
 
 Given = TypeVar("Given", contravariant=True)
 Held = TypeVar("Held", covariant=True)
@@ -422,6 +423,7 @@ __all__ = [
     "Shape",
     "SolverMethod",
     "Sphere",
+    "SpringSide",
     "StartOverlaps",
     "Surface",
     "SurfaceMesh",

@@ -14,6 +14,8 @@ void bind_advance(WorldClass& type);
 void bind_state(WorldClass& type);
 void bind_control(WorldClass& type);
 void bind_joints(WorldClass& type);
+void bind_springs(WorldClass& type);
+void bind_anchors(nb::module_& module);
 void bind_views(WorldClass& type);
 void bind_results(WorldClass& type);
 void bind_problem_watch(WorldClass& type);

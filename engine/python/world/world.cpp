@@ -77,6 +77,8 @@ void bind_world(nb::module_& module) {
     bind_handle<ColliderHandle>(module, "ColliderHandle");
     bind_handle<AttachmentHandle>(module, "AttachmentHandle");
     bind_handle<JointHandle>(module, "JointHandle");
+    bind_handle<SpringHandle>(module, "SpringHandle");
+    bind_anchors(module);
     module.def("end_calls", &CallScope::end_calls);
     module.def("note_fork", [] {
         Use::note_fork();
@@ -89,6 +91,7 @@ void bind_world(nb::module_& module) {
     bind_state(type);
     bind_control(type);
     bind_joints(type);
+    bind_springs(type);
     bind_views(type);
     bind_results(type);
     bind_problem_watch(type);

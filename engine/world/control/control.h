@@ -7,6 +7,7 @@
 
 #include "engine/world/world_state.h"
 #include "skerry/joint.h"
+#include "skerry/spring.h"
 
 namespace skerry {
 
@@ -32,5 +33,10 @@ void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
 
 /// Returns the present pose and motion of a joint, and its force and moment in the last step.
 JointState joint_state(const Model& model, JointHandle joint);
+
+// control_springs.cpp
+
+/// Returns the present state of a spring.
+SpringState spring_state(const WorldState& world, SpringHandle spring);
 
 }  // namespace skerry

@@ -33,6 +33,13 @@ void forget_impulses(WorldState& world, std::size_t body) {
         joints.impulse[j] = joints.moment[j] = Vec3::Zero();
         joints.coordinate[j] = joints.motor_impulse[j] = joints.step[j] = 0;
     }
+    SpringTable& springs = model.springs;
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+        if (springs.first.body[s] != static_cast<Index>(body) && springs.second.body[s] != static_cast<Index>(body))
+            continue;
+        springs.force[s] = Vec3::Zero();
+        springs.tension[s] = springs.rest_rate[s] = 0;
+    }
 }
 
 /// Sets the strains of the springs of a body to zero, and the corotational frames of its elements to `turn`, the
@@ -135,6 +142,7 @@ void World::reset(const World& saved) {
     now.model.collider_map.differ_from(before.model.collider_map);
     now.model.attachment_map.differ_from(before.model.attachment_map);
     now.model.joint_map.differ_from(before.model.joint_map);
+    now.model.spring_map.differ_from(before.model.spring_map);
     std::swap(now.executor, before.executor);
     now.record.tracing = before.record.tracing;
     std::swap(now.record.problem_watch, before.record.problem_watch);

@@ -15,7 +15,7 @@ namespace {
 /// True for columns that may contain infinity. It stands for a bound that does not exist, or is the value in an unused
 /// lane.
 bool may_be_infinite(std::string_view path) {
-    constexpr std::array<std::string_view, 18> paths{"watch/step",
+    constexpr std::array<std::string_view, 19> paths{"watch/step",
                                                      "watch/look/in_frame",
                                                      "watch/look/highest",
                                                      "tetrahedra/altitude",
@@ -32,7 +32,8 @@ bool may_be_infinite(std::string_view path) {
                                                      "search/collider_valid_until",
                                                      "joints/lower",
                                                      "joints/upper",
-                                                     "joints/motor"};
+                                                     "joints/motor",
+                                                     "springs/strength"};
     return std::find(paths.begin(), paths.end(), path) != paths.end();
 }
 

@@ -65,6 +65,9 @@ Index Model::row(AttachmentHandle attachment, const char* call) const {
 Index Model::row(JointHandle joint, const char* call) const {
     return live_row(joint_map, joint, call, "joint");
 }
+Index Model::row(SpringHandle spring, const char* call) const {
+    return live_row(spring_map, spring, call, "spring");
+}
 
 ElementInputs Model::all_elements() const {
     return ElementInputs::bind({}, elements, element_nodes, materials);

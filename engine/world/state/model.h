@@ -25,6 +25,7 @@
 #include "components/ragged.h"
 #include "components/range.h"
 #include "components/rigid_body_table.h"
+#include "components/spring_table.h"
 #include "components/step_watch.h"
 #include "components/surface_table.h"
 #include "engine/world/state/field_cache.h"
@@ -99,12 +100,14 @@ struct Model {
     ColliderTable colliders;
     AttachmentTable attachments;
     JointTable joints;
+    SpringTable springs;
     DisabledPairTable disabled_pairs;
     HandleMap<MaterialHandle> material_map;
     HandleMap<BodyHandle> body_map;
     HandleMap<ColliderHandle> collider_map;
     HandleMap<AttachmentHandle> attachment_map;
     HandleMap<JointHandle> joint_map;
+    HandleMap<SpringHandle> spring_map;
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
     std::vector<ColliderRecord> collider_records;  // one record for each row of ColliderTable
@@ -119,6 +122,9 @@ struct Model {
     // For each body: sum of the bounds that ForceElement::add_rate adds for all force elements [1/s^2]. If the column
     // is empty, all sums are zero. Computed by note_forces.
     Column<Real> force_rate;
+    // For each body: bound of the rate at which force elements damp velocities [1/s]; empty if all are zero. Computed by
+    // note_forces.
+    Column<Real> force_damping;
     BodyLinks links;          // pairs of bodies that are joined, for example by a joint; computed by note_changed_seams
     bool links_open = false;  // true if joints (or other rows that join bodies) have changed since `links` was computed
     // True if a body is asleep. If false, no stage tests for sleeping bodies. Computed by note_rest.
@@ -132,6 +138,7 @@ struct Model {
     Index row(MaterialHandle material, const char* call) const;
     Index row(AttachmentHandle attachment, const char* call) const;
     Index row(JointHandle joint, const char* call) const;
+    Index row(SpringHandle spring, const char* call) const;
 
     /// All elements, including the elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
@@ -224,12 +231,16 @@ struct Model {
         visit("colliders", colliders);
         visit("attachments", attachments);
         visit("joints", joints);
+        visit("springs", springs);
         visit("disabled_pairs", disabled_pairs);
     }
     /// Visits the tables whose rows join bodies, each with its handles. The column role `body` marks the columns that
     /// contain the joined bodies. Generic code can therefore save, check, hash and renumber these tables, and erase
     /// their rows with a body.
-    void for_each_joining(auto&& visit) { visit("joints", joints, joint_map); }
+    void for_each_joining(auto&& visit) {
+        visit("joints", joints, joint_map);
+        visit("springs", springs, spring_map);
+    }
 };
 
 }  // namespace skerry

@@ -22,6 +22,7 @@
 #include "systems/dynamics/joints/measure_joints.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
+#include "systems/forces/springs.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {
@@ -62,6 +63,7 @@ struct StepFindings {
     ExternalWork external;
     TakenByRest rest;
     JointMeasures joints;
+    SpringWork springs;
     Index unstrained = 0;  // number of bodies whose elements are skipped, because they are undeformed in free flight
     Real relaxed = 0;      // energy dissipated by relaxation of the elements in this step [J]
     Real viscous = 0;      // energy dissipated by the viscosity of implicit elements in this step [J]

@@ -35,12 +35,19 @@ void note_forces(Model& model) {
     const bool was_forced = model.forced;
     model.forced = false;
     model.force_rate.clear();
+    model.force_damping.clear();
     for (const ForceElement* element : force_elements) {
         if (!element->any(model)) continue;
         model.forced = true;
-        if (!element->add_rate) continue;
-        model.force_rate.resize(model.bodies.slot.size());
-        element->add_rate(model, model.force_rate);
+        if (element->derive) element->derive(model);
+        if (element->add_rate) {
+            model.force_rate.resize(model.bodies.slot.size());
+            element->add_rate(model, model.force_rate);
+        }
+        if (element->bound_damping) {
+            model.force_damping.resize(model.bodies.slot.size());
+            element->bound_damping(model, model.force_damping);
+        }
     }
     // If the last force element was removed, the next step must still account for the work of its last forces.
     if (was_forced && !model.forced)

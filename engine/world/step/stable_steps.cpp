@@ -31,7 +31,8 @@ Real step_of_body(const Model& model, std::size_t body) {
     if (const Real rate = model.force_rate.empty() ? 0 : model.force_rate[body]; rate > 0)
         step = 2 / std::sqrt(4 / (step * step) + rate);
     const Index material = model.bodies.material[body];
-    const Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
+    Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
+    if (!model.force_damping.empty()) damping += model.force_damping[body];
     // In each step, damping multiplies velocities by a factor k. A mode of the circular frequency omega is then stable
     // for step lengths h with omega h < sqrt(2 (1 + k)).
     return damping > 0 && std::isfinite(step) ? step * std::sqrt((1 + std::exp(-damping * step)) / 2) : step;

@@ -32,8 +32,10 @@ void measure_travel(WorldState&, TaskGraph&);
 void put_to_rest(WorldState&, TaskGraph&);
 void keep_forces(WorldState&, TaskGraph&);
 
-void add_applied_forces(WorldState& world, TaskGraph& graph) {
-    for (const ForceElement* element : force_elements) element->add_forces(world, graph);
+template <auto stages>
+void of_forces(WorldState& world, TaskGraph& graph) {
+    for (const ForceElement* element : force_elements)
+        if (element->*stages) (element->*stages)(world, graph);
 }
 template <auto stages>
 void of_models(WorldState& world, TaskGraph& graph) {
@@ -55,7 +57,7 @@ void build_step(WorldState& w) {
     g.begin_phase("Watch stable steps");
     watch_stable_steps_beside(w, g);
     g.begin_phase("Predict velocities without contacts");
-    add_applied_forces(w, g);
+    of_forces<&ForceElement::add_forces>(w, g);
     of_models<&MotionModel::add_forces>(w, g);
     of_models<&MotionModel::predict>(w, g);
     g.begin_phase("Find contacts and joint rows");
@@ -120,6 +122,7 @@ void separate(WorldState& w, TaskGraph& g) {
             make(w.scratch.pressed), if_any_asleep);
     g.stage("dynamics/mark_driven", mark_driven, inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep),
             value(w.clock.time), value(p.h), write(w.scratch.pressed), if_any_asleep);
+    of_forces<&ForceElement::mark_driven>(w, g);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
@@ -174,6 +177,7 @@ void check_end(WorldState& w, TaskGraph& g) {
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,
                         inputs<WorkInputs>(n, m.attachments, b, m.rigid_bodies, m.forced, m.any_asleep, p.gravity),
                         value(p.h), value(p.kick), value(p.work_lag), make(w.scratch.work_parts), if_any);
+    of_forces<&ForceElement::measure>(w, g);
 }
 
 auto if_sleepy(const WorldState& w) {
@@ -202,6 +206,7 @@ void keep_forces(WorldState& w, TaskGraph& g) {
     const auto if_forced = only_if([](bool forced) { return forced; }, value(w.model.forced));
     g.stage("forces/keep_applied_forces", keep_applied_forces, read(n.applied_force), write(n.applied_before),
             if_taken(w), if_forced);
+    of_forces<&ForceElement::remember>(w, g);
 }
 
 void put_to_rest(WorldState& w, TaskGraph& g) {

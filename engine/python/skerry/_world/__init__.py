@@ -1,5 +1,6 @@
 """The world, its bodies, colliders, attachments and joints, and their reports."""
 
+from .anchor import Anchor
 from .body import Attachment, Body
 from .collider import Collider
 from .joint import Joint, JointState
@@ -17,9 +18,11 @@ from .reports import (
     StepReport,
     WorldReport,
 )
+from .spring import Spring, SpringState
 from .world import World
 
 __all__ = [
+    "Anchor",
     "Attachment",
     "Body",
     "Collider",
@@ -31,6 +34,8 @@ __all__ = [
     "MaterialHandle",
     "Objects",
     "SelfCrossing",
+    "Spring",
+    "SpringState",
     "StageReport",
     "StartMove",
     "StartOverlap",

@@ -3,11 +3,25 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Mapping
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Unpack, cast
 
-from .._arrays import RotationLike, VectorLike, checked, flag, index_array, name_text, read_only, real, vector, whole
+from .._arrays import (
+    RotationLike,
+    TimeTableLike,
+    VectorLike,
+    checked,
+    flag,
+    index_array,
+    name_text,
+    read_only,
+    real,
+    time_table,
+    vector,
+    whole,
+)
 from .._arrays import rotation as rotation_vector
 from .._errors import scene_error
 from .._mesh import Mesh
@@ -25,8 +39,10 @@ from .._settings import (
     Plane,
     Shape,
     Sphere,
+    SpringSide,
     SurfaceMesh,
 )
+from .anchor import Anchor, core_anchor
 from .body import Attachment, Body, Indices
 from .changes import MaterialChanges
 from .collider import Collider
@@ -34,6 +50,7 @@ from .joint import Joint, joint_label
 from .material import MaterialHandle
 from .objects import Objects, PosedObject
 from .reports import StepReport
+from .spring import Spring
 
 if TYPE_CHECKING:
     from .._recorder import Follower
@@ -236,9 +253,36 @@ class Building:
         other = None if second is None else self._own(second, "second", Body)
         return self._joint(self._core.add_joint(one, other, given))
 
-    def remove(self, removed: PosedObject | Joint) -> None:
-        """Removes a body, a collider, an attachment or a joint. BufferError: arrays of views() are in use."""
-        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint)
+    def add_spring(
+        self,
+        first: Anchor,
+        second: Anchor,
+        *,
+        stiffness: float = 0.0,
+        damping: float = 0.0,
+        rest_length: TimeTableLike | None = None,
+        only: SpringSide = "both",
+        strength: float = math.inf,
+    ) -> Spring:
+        """Adds a spring, a damper, or both in parallel, between two anchors, and returns the spring.
+
+        stiffness: [N/m]. damping: force per rate of the length [N s/m]. rest_length: a number, or pairs (time [s],
+        length); None: the present length [m]. only: "both", "tension" (acts only while longer than the rest length) or
+        "compression". strength: largest force [N]. SceneError: no anchor is on a body, or a value is out of range."""
+        given = Arguments(
+            of="spring",
+            stiffness=real(stiffness, "stiffness"),
+            damping=real(damping, "damping"),
+            rest_length=None if rest_length is None else time_table(rest_length, "rest_length"),
+            only=only,
+            strength=real(strength, "strength"),
+        )
+        one, other = core_anchor(self._self, first, "first"), core_anchor(self._self, second, "second")
+        return self._spring(self._core.add_spring(one, other, given))
+
+    def remove(self, removed: PosedObject | Joint | Spring) -> None:
+        """Removes a body, a collider, an attachment, a joint or a spring. BufferError: arrays of views() are in use."""
+        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint, Spring)
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)
 
@@ -256,6 +300,11 @@ class Building:
     def joints(self) -> list[Joint]:
         """The joints in the order added. They have no names."""
         return [self._joint(handle) for handle in self._core.joints()]
+
+    @property
+    def springs(self) -> list[Spring]:
+        """The springs in the order added. They have no names."""
+        return [self._spring(handle) for handle in self._core.springs()]
 
     @property
     def attachments(self) -> list[Attachment]:
@@ -284,6 +333,9 @@ class Building:
             state["kind"], self._core.name(state["first"]), None if second is None else self._core.name(second)
         )
         return Joint(self._self, handle, label)
+
+    def _spring(self, handle: Any) -> Spring:
+        return Spring(self._self, handle, "spring")
 
     def _mesh_of(self, body: Any) -> tuple[Indices, Indices]:
         """Surface and tetrahedra of a body, which never change."""

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .body import Attachment, Body
     from .collider import Collider
     from .joint import Joint
+    from .spring import Spring
     from .objects import PosedObject
     from .world import World
 
@@ -89,6 +90,16 @@ class JointProbe:
 
 
 @dataclass(frozen=True, slots=True)
+class SpringProbe:
+    """Length, rate, force and energy of a spring.
+
+    spring: the spring.
+    """
+
+    spring: Spring
+
+
+@dataclass(frozen=True, slots=True)
 class EnergyProbe:
     """Kinetic, elastic, potential and dissipated energy of the world."""
 
@@ -154,6 +165,7 @@ Probe: TypeAlias = (
     | ForceProbe
     | ReactionProbe
     | JointProbe
+    | SpringProbe
     | EnergyProbe
     | StressProbe
     | VolumeProbe
@@ -175,6 +187,7 @@ def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
     from .body import Attachment, Body
     from .collider import Collider
     from .joint import Joint
+    from .spring import Spring
 
     def handle_of(field: str, *kinds: type) -> Any:
         given, place = getattr(probe, field), f"probe '{name}': {field}"
@@ -194,6 +207,8 @@ def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
             return _core.reaction_probe(name, handle_of("attachment", Attachment))
         case JointProbe():
             return _core.joint_probe(name, handle_of("joint", Joint))
+        case SpringProbe():
+            return _core.spring_probe(name, handle_of("spring", Spring))
         case EnergyProbe():
             return _core.energy_probe(name)
         case StressProbe():
@@ -228,6 +243,8 @@ def _object_of(world: World, value: Any) -> Any:
         return world._collider(value)
     if isinstance(value, _core.JointHandle):
         return world._joint(value)
+    if isinstance(value, _core.SpringHandle):
+        return world._spring(value)
     return world._attachment(value) if isinstance(value, _core.AttachmentHandle) else value
 
 
