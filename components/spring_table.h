@@ -26,7 +26,8 @@ struct AnchorMass {
 struct SpringForce {
     Vec3 force = Vec3::Zero();  // on the first anchor [N]
     Vec3 damping = Vec3::Zero();  // part of `force` that the damper exerts [N]
-    Real tension = 0;             // force that pulls the anchors together; negative if it pushes them apart [N]
+    Real tension = 0;  // force that pulls the anchors together; negative if it pushes them apart [N]
+    Real elastic = 0;  // part of `tension` that the spring exerts [N]
     Real rest_rate = 0;           // rate of the rest length [m/s]
 };
 
@@ -38,10 +39,10 @@ struct SpringTable {
     Column<Real> damping;       // [N s/m]
     Column<Real> strength;      // largest force [N]
     Column<Range> rest_length;  // range of rows in the column `key`
-    // The next three columns describe the last step. They affect reports and the energy balance, but no later step.
-    Column<Vec3> force;      // on the first anchor [N]
-    Column<Real> tension;    // [N]
-    Column<Real> rest_rate;  // rate of the rest length [m/s]
+    // The next four columns describe the last step. They affect reports and the energy balance, but no later step.
+    Column<Vec3> force;             // on the first anchor [N]
+    Column<Real> tension, elastic;  // all of the tension, and the part of the spring [N]
+    Column<Real> rest_rate;         // rate of the rest length [m/s]
     Column<AnchorMass> first_mass, second_mass;  // written by weigh_springs
     Column<Mat3> first_response, second_response;  // written by respond_at_anchors [1/kg]
     Column<SpringForce> next;                      // written by add_spring_forces
@@ -64,6 +65,7 @@ struct SpringTable {
         visit("rest_length", rest_length, ColumnRole::link);
         visit("force", force, ColumnRole::memory);
         visit("tension", tension, ColumnRole::memory);
+        visit("elastic", elastic, ColumnRole::memory);
         visit("rest_rate", rest_rate, ColumnRole::memory);
         visit("first_mass", first_mass, ColumnRole::derived);
         visit("second_mass", second_mass, ColumnRole::derived);

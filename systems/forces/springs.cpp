@@ -81,6 +81,7 @@ SpringForce force_of(const SpringInputs& springs, const SpringMasses& masses, st
         const Real decay = kick * law.damping * inverse_mass;
         damper = law.damping * rate * (decay > 0 ? -std::expm1(-decay) / decay : Real(1));
     }
+    found.elastic = elastic;
     found.tension = law.with_damper(extension, elastic, damper);
     found.force = -found.tension * stretch.along;
     found.damping = -(found.tension - elastic) * stretch.along;
@@ -134,9 +135,9 @@ SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& 
         const Vec3 before = springs.first.velocity(s) - springs.second.velocity(s);
         const Vec3 during = velocity_in_step(springs.first, s, step.velocity_next, h) -
                             velocity_in_step(springs.second, s, step.velocity_next, h);
-        sum.work += h * (now.force.dot(during) + now.tension * now.rest_rate);
+        sum.work += h * (now.force.dot(during) + now.elastic * now.rest_rate);
         sum.work += lag * ((now.force - step.force_before[s]).dot(before) +
-                           (now.tension - step.tension_before[s]) * step.rest_rate_before[s]);
+                           (now.elastic - step.elastic_before[s]) * step.rest_rate_before[s]);
         sum.dissipated -= kick / 2 * now.damping.dot(before + during);
     }
     return sum;
@@ -153,7 +154,7 @@ Real spring_energy(const SpringInputs& springs, const SpringWorkInputs& last, Re
         const Real tension = law.tension(extension);
         const Vec3 apart = springs.first.velocity(s) - springs.second.velocity(s);
         sum += lag * ((-tension * stretch.along - last.force_before[s]).dot(apart) +
-                      (tension - last.tension_before[s]) * last.rest_rate_before[s]);
+                      (tension - last.elastic_before[s]) * last.rest_rate_before[s]);
     }
     return sum;
 }
@@ -162,6 +163,7 @@ bool keep_spring_forces(std::span<const SpringForce> next, const SpringMemory& o
     for (std::size_t s = 0; s < next.size(); ++s) {
         out.force[s] = next[s].force;
         out.tension[s] = next[s].tension;
+        out.elastic[s] = next[s].elastic;
         out.rest_rate[s] = next[s].rest_rate;
     }
     return !next.empty();

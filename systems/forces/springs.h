@@ -115,14 +115,14 @@ struct SpringWork {
 struct SpringWorkInputs {
     std::span<const SpringForce> next;
     std::span<const Vec3> force_before;     // of the last step [N]
-    std::span<const Real> tension_before;   // [N]
+    std::span<const Real> elastic_before;   // elastic tension [N]
     std::span<const Real> rest_rate_before;  // [m/s]
     std::span<const Vec3> velocity_next;    // NodeTable [m/s]
 
     static SpringWorkInputs bind(const Binder& binder, const SpringTable& springs, const NodeTable& nodes) {
         return {.next = binder.read(springs.next),
                 .force_before = binder.read(springs.force),
-                .tension_before = binder.read(springs.tension),
+                .elastic_before = binder.read(springs.elastic),
                 .rest_rate_before = binder.read(springs.rest_rate),
                 .velocity_next = binder.read(nodes.velocity_next)};
     }
@@ -138,11 +138,12 @@ Real spring_energy(const SpringInputs& springs, const SpringWorkInputs& last, Re
 
 struct SpringMemory {
     std::span<Vec3> force;
-    std::span<Real> tension, rest_rate;
+    std::span<Real> tension, elastic, rest_rate;
 
     static SpringMemory bind(const Binder& binder, SpringTable& springs) {
         return {.force = binder.write(springs.force),
                 .tension = binder.write(springs.tension),
+                .elastic = binder.write(springs.elastic),
                 .rest_rate = binder.write(springs.rest_rate)};
     }
 };

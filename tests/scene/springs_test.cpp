@@ -174,7 +174,7 @@ TEST_CASE("the weight of a body on a spring with a damper stretches it by the cl
     const Real stiffness = 500;
     Oscillator hanging(with_step(5e-3, {0, 0, -standard_gravity}),
                        {.second = {.point = {0, 0, 1}}, .stiffness = stiffness, .damping = 200});
-    REQUIRE(hanging.world.advance(4).ok());
+    REQUIRE(hanging.world.advance(8).ok());
     CHECK(hanging.state().length == Approx(1 + ball_mass * standard_gravity / stiffness).epsilon(1e-6));
     CHECK(hanging.state().force == Approx(ball_mass * standard_gravity).epsilon(1e-6));
     CHECK(std::abs(hanging.state().rate) < 1e-6);
@@ -230,7 +230,7 @@ TEST_CASE("a spring for tension only is slack below its rest length, and one for
         bool acted = false;
         for (int step = 0; step < 500; ++step) {
             REQUIRE(oscillator.world.advance(1e-3).ok());
-            CHECK(oscillator.state().force * -towards <= 0);
+            CHECK(oscillator.state().force * towards <= 0);
             acted |= oscillator.state().force != 0;
         }
         CHECK(acted);
@@ -251,11 +251,14 @@ TEST_CASE("many strong dampers on one body bring it to rest and never push it ba
         for (int step = 0; step < 200; ++step) {
             REQUIRE(oscillator.world.advance(5e-3).ok());
             const Real speed = momentum_of(oscillator.world).x() / oscillator.mass;
-            CHECK(speed <= before);
-            CHECK(speed > -1e-6);
+            CHECK(std::abs(speed) <= 1);
+            if (dynamics == BodyDynamics::rigid) {  // a body that deforms bounces
+                CHECK(speed <= before + 1e-12);
+                CHECK(speed > -1e-12);
+            }
             before = speed;
         }
-        CHECK(before < 1e-3);
+        CHECK(std::abs(before) < 1e-3);
     }
 }
 
@@ -274,7 +277,7 @@ TEST_CASE("a rest length that changes over time does work, and the balance accou
 }
 
 TEST_CASE("an anchor on a moving collider pulls a body, and the balance accounts for the work", "[scene][springs]") {
-    World world(with_step(1e-3));
+    World world(with_step(2e-4));
     const auto material = world.add_material({});
     const BodyHandle ball = world.add_body(Sphere{radius}, {.material = material});
     const ColliderHandle hook =
@@ -299,7 +302,7 @@ TEST_CASE("a limited spring drags a body to a point that moves", "[scene][spring
         REQUIRE(mouse.world.advance(1.0 / 60).ok());
         CHECK(std::abs(mouse.state().force) <= 5);
     }
-    REQUIRE(mouse.world.advance(2).ok());
+    REQUIRE(mouse.world.advance(8).ok());
     CHECK((mouse.world.center_of_mass(mouse.body) - Vec3(0, 0.6, 0)).norm() < 1e-4);
 }
 
@@ -419,11 +422,21 @@ TEST_CASE("a scene file defines springs by points in the frames of their objects
                }),
                Catch::Contains("springs[0]") && Catch::Contains("body") && Catch::Contains("ball"));
     CHECK_THAT(message_of([&] { load_scene_text(text(R"({"name": "line", "first": {"body": "ball"}, "second": {}})"), "."); }),
-               Catch::Contains("probes[0].spring") && Catch::Contains("line"));
+               Catch::Contains("probes[0].spring") && Catch::Contains("the name of a spring"));
     CHECK_THAT(message_of([&] {
                    load_scene_text(text(R"({"name": "cord", "first": {}, "second": {"collider": "hook"}})"), ".");
                }),
                Catch::Contains("springs[0]") && Catch::Contains("no body"));
+}
+
+TEST_CASE("a spring on an implicit body acts in every step, whatever implicit_step is", "[scene][springs]") {
+    constexpr Real h = 2e-4, omega = 10;
+    Settings settings = with_step(h);
+    settings.implicit_step = 0.05;
+    Oscillator oscillator(settings, {.second = {.point = {-1, 0, 0}}}, BodyDynamics::implicit_elastic);
+    Springs(oscillator.world).set_stiffness(oscillator.spring, omega * omega * oscillator.mass);
+    oscillator.world.set_velocity(oscillator.body, {1, 0, 0}, Vec3::Zero());
+    CHECK(vibration_of(oscillator, 0.01, 5).frequency == Approx(omega).epsilon(1e-3));
 }
 
 TEST_CASE("a lighter material of a body on a spring shortens the step", "[scene][springs]") {

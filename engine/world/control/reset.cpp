@@ -38,7 +38,7 @@ void forget_impulses(WorldState& world, std::size_t body) {
         if (springs.first.body[s] != static_cast<Index>(body) && springs.second.body[s] != static_cast<Index>(body))
             continue;
         springs.force[s] = Vec3::Zero();
-        springs.tension[s] = springs.rest_rate[s] = 0;
+        springs.tension[s] = springs.elastic[s] = springs.rest_rate[s] = 0;
     }
 }
 

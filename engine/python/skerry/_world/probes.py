@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from .body import Attachment, Body
     from .collider import Collider
     from .joint import Joint
-    from .spring import Spring
     from .objects import PosedObject
+    from .spring import Spring
     from .world import World
 
 
