@@ -39,8 +39,8 @@ void check_keys(const Place& place, const ProbeEntry& probe) {
     const KeysOf keys = keys_of(probe.quantity);
     const std::string of = "the quantity " + in_quotes(name_of(probe.quantity));
     const std::vector<std::pair<std::string, bool>> given{
-        {"body", probe.body.has_value()},  {"collider", probe.collider.has_value()}, {"by", probe.by.has_value()},
-        {"box", probe.box.has_value()},    {"point", probe.point.has_value()},       {"pin", probe.pin.has_value()},
+        {"body", probe.body.has_value()},   {"collider", probe.collider.has_value()}, {"by", probe.by.has_value()},
+        {"box", probe.box.has_value()},     {"point", probe.point.has_value()},       {"pin", probe.pin.has_value()},
         {"joint", probe.joint.has_value()}, {"spring", probe.spring.has_value()}};
     for (const auto& [key, is_given] : given) {
         const bool required = std::ranges::find(keys.required, key) != keys.required.end();

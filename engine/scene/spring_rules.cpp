@@ -8,7 +8,7 @@ const Rule<SpringEntry>& rule_of<SpringEntry>() {
     using Entry = SpringEntry;
     static const auto rule =
         Rule<Entry>("spring",
-                    "A spring, a damper, or both in parallel, between two points. At least one point must be on a body.")
+                    "A spring, a damper, or both in parallel, between two points. At least one must be on a body.")
             .key("name", &Entry::name, {.meaning = "name for probes; default: spring_NUMBER"})
             .key("first", &Entry::first, {.meaning = "first point", .required = true})
             .key("second", &Entry::second, {.meaning = "second point", .required = true})

@@ -16,13 +16,13 @@ Real SpringLaw::tension(Real extension) const {
 Real SpringLaw::energy(Real extension) const {
     if (!acts(extension)) return 0;
     const Real size = std::abs(extension);
-    return stiffness * size <= strength ? stiffness * size * size / 2
-                                        : strength * (size - strength / stiffness / 2);
+    return stiffness * size <= strength ? stiffness * size * size / 2 : strength * (size - strength / stiffness / 2);
 }
 
 Real SpringLaw::with_damper(Real extension, Real elastic, Real damper) const {
     if (!acts(extension)) return 0;
-    const Real least = side == SpringSide::tension ? 0 : -strength, most = side == SpringSide::compression ? 0 : strength;
+    const Real least = side == SpringSide::tension ? 0 : -strength,
+               most = side == SpringSide::compression ? 0 : strength;
     return std::clamp(elastic + damper, least, most);
 }
 
@@ -72,11 +72,10 @@ SpringForce force_of(const SpringInputs& springs, const SpringMasses& masses, st
     Real damper = 0;
     if (law.damping > 0 && stretch.length > 0) {
         const Real rate = stretch.along.dot(springs.first.velocity(s) - springs.second.velocity(s));
-        const Real inverse_mass =
-            divided_inverse_mass(masses, masses.first[s], masses.first_response[s], springs.first.body[s],
-                                 springs.first.at(s), stretch.along) +
-            divided_inverse_mass(masses, masses.second[s], masses.second_response[s], springs.second.body[s],
-                                 springs.second.at(s), stretch.along);
+        const Real inverse_mass = divided_inverse_mass(masses, masses.first[s], masses.first_response[s],
+                                                       springs.first.body[s], springs.first.at(s), stretch.along) +
+                                  divided_inverse_mass(masses, masses.second[s], masses.second_response[s],
+                                                       springs.second.body[s], springs.second.at(s), stretch.along);
         // Mean force over the step, if the damper alone acts: the rate then decays by the factor exp(-decay).
         const Real decay = kick * law.damping * inverse_mass;
         damper = law.damping * rate * (decay > 0 ? -std::expm1(-decay) / decay : Real(1));

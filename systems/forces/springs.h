@@ -96,8 +96,8 @@ struct SpringMasses {
 };
 
 /// Adds the forces of all springs to `applied_force`, by node [N]. `t`: time at the start of the step [s]; `h`: step
-/// length [s]; `kick`: time for which the forces act [s]. Parallel over springs; the sum is sequential. Returns false if
-/// there is no spring (skipped).
+/// length [s]; `kick`: time for which the forces act [s]. Parallel over springs; the sum is sequential. Returns false
+/// if there is no spring (skipped).
 bool add_spring_forces(Executor& executor, const SpringInputs& springs, const SpringMasses& masses, Real t, Real h,
                        Real kick, std::span<SpringForce> next, std::span<Vec3> applied_force);
 
@@ -114,10 +114,10 @@ struct SpringWork {
 
 struct SpringWorkInputs {
     std::span<const SpringForce> next;
-    std::span<const Vec3> force_before;     // of the last step [N]
-    std::span<const Real> elastic_before;   // elastic tension [N]
+    std::span<const Vec3> force_before;      // of the last step [N]
+    std::span<const Real> elastic_before;    // elastic tension [N]
     std::span<const Real> rest_rate_before;  // [m/s]
-    std::span<const Vec3> velocity_next;    // NodeTable [m/s]
+    std::span<const Vec3> velocity_next;     // NodeTable [m/s]
 
     static SpringWorkInputs bind(const Binder& binder, const SpringTable& springs, const NodeTable& nodes) {
         return {.next = binder.read(springs.next),

@@ -69,6 +69,7 @@ bool same_folder(const std::string& a, const std::string& b) {
 bool is_public(const std::string& path) {
     static const std::set<std::string> components{
         "components/types.h",  "components/options.h", "components/handle.h",      "components/joint_kind.h",
+        "components/spring_side.h",
         "components/column.h", "components/range.h",   "components/access_check.h"};
     return path.starts_with("engine/include/skerry/") || components.contains(path);
 }

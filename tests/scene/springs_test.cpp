@@ -36,10 +36,9 @@ struct Oscillator {
                const Vec3& at = Vec3::Zero())
         : world(settings) {
         const auto material = world.add_material(lossless({.young_modulus = 1e7}));
-        body = dynamics == BodyDynamics::rigid
-                   ? world.add_body(Sphere{radius}, {.material = material})
-                   : world.add_body(mesh::box({0.2, 0.2, 0.2}, {2, 2, 2}),
-                                    {.material = material, .dynamics = dynamics});
+        body = dynamics == BodyDynamics::rigid ? world.add_body(Sphere{radius}, {.material = material})
+                                               : world.add_body(mesh::box({0.2, 0.2, 0.2}, {2, 2, 2}),
+                                                                {.material = material, .dynamics = dynamics});
         mass = world.mass(body);
         with.first = {.body = body, .point = at};
         spring = Springs(world).add(with);
@@ -147,10 +146,9 @@ TEST_CASE("a stiff spring at the stable step gains no energy in 100,000 steps", 
             Settings settings = accurate(Vec3::Zero());
             World world(settings);
             const auto material = world.add_material(lossless({.young_modulus = 1e4}));
-            const BodyHandle body =
-                dynamics == BodyDynamics::rigid
-                    ? world.add_body(Sphere{0.02}, {.material = material})
-                    : world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = material});
+            const BodyHandle body = dynamics == BodyDynamics::rigid
+                                        ? world.add_body(Sphere{0.02}, {.material = material})
+                                        : world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = material});
             // The damper acts at a right angle to the spring, so that it limits the step without damping this motion.
             Springs(world).add({.first = {.body = body}, .second = {.point = {-1, 0, 0}}, .stiffness = 1e6});
             if (damping > 0)
@@ -178,19 +176,17 @@ TEST_CASE("the weight of a body on a spring with a damper stretches it by the cl
     CHECK(hanging.state().length == Approx(1 + ball_mass * standard_gravity / stiffness).epsilon(1e-6));
     CHECK(hanging.state().force == Approx(ball_mass * standard_gravity).epsilon(1e-6));
     CHECK(std::abs(hanging.state().rate) < 1e-6);
-    CHECK(hanging.state().energy ==
-          Approx(std::pow(ball_mass * standard_gravity, 2) / (2 * stiffness)).epsilon(1e-5));
+    CHECK(hanging.state().energy == Approx(std::pow(ball_mass * standard_gravity, 2) / (2 * stiffness)).epsilon(1e-5));
     CHECK(hanging.world.report().energy_error_share < 1e-3);
 }
 
 TEST_CASE("a spring beside the centre of a rigid body turns it", "[scene][springs]") {
     // The strength makes the force constant: F = 2 N along y at the arm 0.1 m.
     constexpr Real h = 1e-4, strength = 2;
-    Oscillator oscillator(with_step(h), {.second = {.point = {radius, 1000, 0}},
-                                         .stiffness = 1000,
-                                         .rest_length = 0,
-                                         .strength = strength},
-                          BodyDynamics::rigid, {radius, 0, 0});
+    Oscillator oscillator(
+        with_step(h),
+        {.second = {.point = {radius, 1000, 0}}, .stiffness = 1000, .rest_length = 0, .strength = strength},
+        BodyDynamics::rigid, {radius, 0, 0});
     const int steps = 20;
     for (int step = 0; step < steps; ++step) REQUIRE(oscillator.world.advance(h).ok());
     const Model& model = WorldAccess::state_of(oscillator.world).model;
@@ -203,8 +199,8 @@ TEST_CASE("a spring beside the centre of a rigid body turns it", "[scene][spring
 TEST_CASE("steps ten times shorter give the same motion of a damped spring", "[scene][springs]") {
     const auto end_of = [](Real h) {
         Oscillator oscillator(with_step(h, {0, 0, -standard_gravity}),
-                              {.second = {.point = {-1, 0, 0.5}}, .stiffness = 300, .damping = 3},
-                              BodyDynamics::rigid, {-radius, 0, 0});
+                              {.second = {.point = {-1, 0, 0.5}}, .stiffness = 300, .damping = 3}, BodyDynamics::rigid,
+                              {-radius, 0, 0});
         REQUIRE(oscillator.world.advance(1).ok());
         return oscillator.world.center_of_mass(oscillator.body);
     };
@@ -243,9 +239,8 @@ TEST_CASE("many strong dampers on one body bring it to rest and never push it ba
     for (const BodyDynamics dynamics : {BodyDynamics::rigid, BodyDynamics::implicit_elastic}) {
         Oscillator oscillator(with_step(5e-3), {.second = {.point = {-10, 0, 0}}, .damping = 1e4}, dynamics);
         for (int k = 1; k < 8; ++k)
-            Springs(oscillator.world).add({.first = {.body = oscillator.body},
-                                           .second = {.point = {-10.0 - k, 0, 0}},
-                                           .damping = 1e4});
+            Springs(oscillator.world)
+                .add({.first = {.body = oscillator.body}, .second = {.point = {-10.0 - k, 0, 0}}, .damping = 1e4});
         oscillator.world.set_velocity(oscillator.body, {1, 0, 0}, Vec3::Zero());
         Real before = 1;
         for (int step = 0; step < 200; ++step) {
@@ -264,11 +259,10 @@ TEST_CASE("many strong dampers on one body bring it to rest and never push it ba
 
 TEST_CASE("a rest length that changes over time does work, and the balance accounts for it", "[scene][springs]") {
     // A winch lifts the ball by half a metre.
-    Oscillator winch(with_step(1e-3, {0, 0, -standard_gravity}),
-                     {.second = {.point = {0, 0, 2}},
-                      .stiffness = 2000,
-                      .damping = 40,
-                      .rest_length = TimeTable({{0.2, 2}, {1.2, 1.5}})});
+    Oscillator winch(with_step(1e-3, {0, 0, -standard_gravity}), {.second = {.point = {0, 0, 2}},
+                                                                  .stiffness = 2000,
+                                                                  .damping = 40,
+                                                                  .rest_length = TimeTable({{0.2, 2}, {1.2, 1.5}})});
     REQUIRE(winch.world.advance(4).ok());
     CHECK(winch.state().rest_length == Approx(1.5));
     CHECK(winch.world.center_of_mass(winch.body).z() ==
@@ -282,10 +276,8 @@ TEST_CASE("an anchor on a moving collider pulls a body, and the balance accounts
     const BodyHandle ball = world.add_body(Sphere{radius}, {.material = material});
     const ColliderHandle hook =
         world.add_collider(Sphere{0.05}, {.position = {1, 0, 0}, .motion = {.velocity = {0.5, 0, 0}}});
-    const SpringHandle spring = Springs(world).add({.first = {.body = ball},
-                                                    .second = {.collider = hook, .point = {1, 0, 0}},
-                                                    .stiffness = 400,
-                                                    .damping = 80});
+    const SpringHandle spring = Springs(world).add(
+        {.first = {.body = ball}, .second = {.collider = hook, .point = {1, 0, 0}}, .stiffness = 400, .damping = 80});
     REQUIRE(world.advance(2).ok());
     CHECK(Springs(world).state(spring).second.point.x() == Approx(2));
     CHECK(Springs(world).state(spring).length == Approx(1).epsilon(1e-6));
@@ -388,9 +380,7 @@ TEST_CASE("a spring in the wrong place is refused by field", "[scene][springs]")
     CHECK(oscillator.world.state_hash() == before);
     Settings trapezoid = with_step(1e-3);
     trapezoid.theta = 0.5;
-    CHECK_THAT(message_of([&] {
-                   Oscillator(trapezoid, {.stiffness = 1}, BodyDynamics::implicit_elastic);
-               }),
+    CHECK_THAT(message_of([&] { Oscillator(trapezoid, {.stiffness = 1}, BodyDynamics::implicit_elastic); }),
                Catch::Contains("theta 0.5"));
     springs.remove(oscillator.spring);
     CHECK_FALSE(springs.alive(oscillator.spring));
@@ -408,7 +398,8 @@ TEST_CASE("a scene file defines springs by points in the frames of their objects
     };
     Scene scene = load_scene_text(text(R"({"name": "cord", "first": {"body": "ball", "point": [0.1, 0, 0]},
         "second": {"collider": "hook", "point": [1, 0, 0]}, "stiffness": 50, "damping": 2, "strength": 9,
-        "only": "tension", "rest_length": [[0, 1], [2, 3]]})"), ".");
+        "only": "tension", "rest_length": [[0, 1], [2, 3]]})"),
+                                  ".");
     const std::vector<SpringHandle> all = Springs(scene.world).all();
     REQUIRE(all.size() == 1);
     const SpringState state = Springs(scene.world).state(all.front());
@@ -417,12 +408,12 @@ TEST_CASE("a scene file defines springs by points in the frames of their objects
     CHECK(state.rest_length == 1);
     CHECK(state.energy == Approx(9 * (1.9 - 9.0 / 100)));
     CHECK(std::holds_alternative<SpringProbe>(scene.recorded.front().what));
-    CHECK_THAT(message_of([&] {
-                   load_scene_text(text(R"({"name": "cord", "first": {"body": "bal"}, "second": {}})"), ".");
-               }),
-               Catch::Contains("springs[0]") && Catch::Contains("body") && Catch::Contains("ball"));
-    CHECK_THAT(message_of([&] { load_scene_text(text(R"({"name": "line", "first": {"body": "ball"}, "second": {}})"), "."); }),
-               Catch::Contains("probes[0].spring") && Catch::Contains("the name of a spring"));
+    CHECK_THAT(
+        message_of([&] { load_scene_text(text(R"({"name": "cord", "first": {"body": "bal"}, "second": {}})"), "."); }),
+        Catch::Contains("springs[0]") && Catch::Contains("body") && Catch::Contains("ball"));
+    CHECK_THAT(
+        message_of([&] { load_scene_text(text(R"({"name": "line", "first": {"body": "ball"}, "second": {}})"), "."); }),
+        Catch::Contains("probes[0].spring") && Catch::Contains("the name of a spring"));
     CHECK_THAT(message_of([&] {
                    load_scene_text(text(R"({"name": "cord", "first": {}, "second": {"collider": "hook"}})"), ".");
                }),

@@ -27,17 +27,17 @@ struct SpringSettings {
 /// Present state of a spring. Before the first step `force` is zero.
 struct SpringState {
     Anchor first{}, second{};  // at their present positions
-    Real length = 0;       // [m]
-    Real rate = 0;         // rate of the length [m/s]
-    Real rest_length = 0;  // [m]
-    Real force = 0;        // force in the last step; positive if it pulls the anchors together [N]
-    Real energy = 0;       // elastic energy [J]
+    Real length = 0;           // [m]
+    Real rate = 0;             // rate of the length [m/s]
+    Real rest_length = 0;      // [m]
+    Real force = 0;            // force in the last step; positive if it pulls the anchors together [N]
+    Real energy = 0;           // elastic energy [J]
 };
 
 /// A view of the springs of a world. It is valid until the world is moved or destroyed. Like the functions of World,
 /// functions that change springs may only be called between calls of advance. They throw SceneError and change nothing
-/// if a handle is stale or a value is out of range. Springs belong to the state of the world: they are saved, cloned and
-/// hashed. Each change wakes the bodies of the spring, unless the new value equals the old one.
+/// if a handle is stale or a value is out of range. Springs belong to the state of the world: they are saved, cloned
+/// and hashed. Each change wakes the bodies of the spring, unless the new value equals the old one.
 class Springs {
 public:
     explicit Springs(World& world) : world_(&world) {}

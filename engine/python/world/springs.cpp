@@ -41,10 +41,9 @@ nb::dict values_of(const SpringState& state) {
 }  // namespace
 
 void bind_anchors(nb::module_& module) {
-    nb::class_<Anchor>(module, "Anchor")
-        .def_prop_ro("values", [](const Anchor& anchor) {
-            return nb::make_tuple(handle_of(anchor.body), handle_of(anchor.collider), tuple_of(anchor.point));
-        });
+    nb::class_<Anchor>(module, "Anchor").def_prop_ro("values", [](const Anchor& anchor) {
+        return nb::make_tuple(handle_of(anchor.body), handle_of(anchor.collider), tuple_of(anchor.point));
+    });
     module.def("anchor", &make_anchor, nb::arg("body").none(), nb::arg("collider").none(), nb::arg("point"));
 }
 
@@ -58,8 +57,8 @@ void bind_springs(WorldClass& type) {
         .def("set_second", guarded([](World& world, const SpringHandle& spring, const Anchor& anchor) {
                  Springs(world).set_second(spring, anchor);
              }))
-        .def("set_rest_length", guarded([](World& world, const SpringHandle& spring,
-                                           const std::vector<std::array<Real, 2>>& pairs) {
+        .def("set_rest_length",
+             guarded([](World& world, const SpringHandle& spring, const std::vector<std::array<Real, 2>>& pairs) {
                  Springs(world).set_rest_length(spring, table_of(pairs));
              }))
         .def("set_stiffness", guarded([](World& world, const SpringHandle& spring, Real stiffness) {

@@ -29,8 +29,8 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
     map.rows_moved(row_now);
 }
 
-/// Removes all rows that join an object to others, for example the joints of a body. Must be called before the object is
-/// removed. Wakes all bodies of the removed rows. `role`: `body` or `collider`; `object`: row of BodyTable or
+/// Removes all rows that join an object to others, for example the joints of a body. Must be called before the object
+/// is removed. Wakes all bodies of the removed rows. `role`: `body` or `collider`; `object`: row of BodyTable or
 /// ColliderTable.
 void erase_rows_joining(ColumnRole role, Index object, Model& model);
 

@@ -122,8 +122,8 @@ struct Model {
     // For each body: sum of the bounds that ForceElement::add_rate adds for all force elements [1/s^2]. If the column
     // is empty, all sums are zero. Computed by note_forces.
     Column<Real> force_rate;
-    // For each body: bound of the rate at which force elements damp velocities [1/s]; empty if all are zero. Computed by
-    // note_forces.
+    // For each body: bound of the rate at which force elements damp velocities [1/s]. If the column is empty, all are
+    // zero. Computed by note_forces.
     Column<Real> force_damping;
     BodyLinks links;          // pairs of bodies that are joined, for example by a joint; computed by note_changed_seams
     bool links_open = false;  // true if joints (or other rows that join bodies) have changed since `links` was computed

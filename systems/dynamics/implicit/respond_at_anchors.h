@@ -34,8 +34,8 @@ struct AnchorResponses {
     }
 };
 
-/// For each anchor of a damper on an implicit body: the change of its velocity by deformation within this step, per unit
-/// impulse, in world axes. For all other anchors: zero. Returns false if there is no implicit body (skipped).
+/// For each anchor of a damper on an implicit body: the change of its velocity by deformation within this step, per
+/// unit impulse, in world axes. For all other anchors: zero. Returns false if there is no implicit body (skipped).
 bool respond_at_anchors(const ImplicitBodies& bodies, const DampedAnchors& anchors, const ImplicitTimes& times,
                         StiffBodies& stiff, const AnchorResponses& out);
 
