@@ -18,6 +18,8 @@ struct AnchorRow {
     std::array<Real, 4> weight{};
     // On a collider: position in the frame of the collider. Without body and collider: position in the world [m].
     Vec3 point = Vec3::Zero();
+
+    bool operator==(const AnchorRow&) const = default;
 };
 template <>
 struct MembersOf<AnchorRow> {

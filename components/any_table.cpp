@@ -22,6 +22,7 @@
 #include "components/resting_contact_table.h"
 #include "components/rigid_body_table.h"
 #include "components/surface_rules.h"
+#include "components/spring_table.h"
 #include "components/surface_table.h"
 #include "components/tie_table.h"
 
@@ -95,6 +96,7 @@ template std::span<const ColumnInfo> columns_of<PipeTable>();
 template std::span<const ColumnInfo> columns_of<RegionTable>();
 template std::span<const ColumnInfo> columns_of<RestingContactTable>();
 template std::span<const ColumnInfo> columns_of<RigidBodyTable>();
+template std::span<const ColumnInfo> columns_of<SpringTable>();
 template std::span<const ColumnInfo> columns_of<SurfaceSetTable>();
 template std::span<const ColumnInfo> columns_of<SurfaceTables>();
 template std::span<const ColumnInfo> columns_of<TetrahedronBlockTable>();

@@ -11,11 +11,11 @@ enum class ColumnRole : std::uint8_t {
     state,  // the next step depends on the column, and the column cannot be derived from other columns
     // state whose meaning is hashed instead of its value, for example a row index of another table
     link,
-    body,     // link to a row of BodyTable, or no_index; only in tables of Model::for_each_joining
+    body,      // link to a row of BodyTable, or no_index; only in tables of Model::for_each_joining
     collider,  // link to a row of ColliderTable, or no_index; only in tables of Model::for_each_joining
-    memory,   // bounds and their reference values; they decide when a check is repeated, but do not change any result
-    derived,  // computed from the state by the function that the comment of the table names
-    scratch,  // values that each step writes before reading them, or that affect no result
+    memory,    // bounds and their reference values; they decide when a check is repeated, but do not change any result
+    derived,   // computed from the state by the function that the comment of the table names
+    scratch,   // values that each step writes before reading them, or that affect no result
 };
 
 inline constexpr bool is_state(ColumnRole role) {

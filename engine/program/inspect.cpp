@@ -268,6 +268,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"cables", plan.cables.size()},
                            {"cavities", plan.cavities.size()},
                            {"loads", plan.loads.size()},
+                           {"springs", plan.springs.size()},
                            {"nodes", report.nodes},
                            {"elements", report.elements},
                            {"stable_dt", stable_step},
@@ -299,6 +300,7 @@ int inspect_scene(const InspectOptions& options) {
               << (plan.cables.empty() ? "" : ", " + grouped(plan.cables.size()) + " cables")
               << (plan.cavities.empty() ? "" : ", " + grouped(plan.cavities.size()) + " cavities") << "\n"
               << (plan.loads.empty() ? "" : ", " + grouped(plan.loads.size()) + " loads") << "\n"
+              << (plan.springs.empty() ? "" : ", " + grouped(plan.springs.size()) + " springs") << "\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
               << (report.stable_step_body.empty() ? "no body limits the step" : "limited by " + report.stable_step_body)

@@ -241,6 +241,9 @@ void read(nb::handle from, GasFilling& to) {
 void read(nb::handle from, LiquidFilling& to) {
     read_members(from, to);
 }
+void read(nb::handle from, SpringSettings& to) {
+    read_members(from, to);
+}
 void read(nb::handle from, ProblemSettings& to) {
     read_members(from, to);
 }

@@ -6,6 +6,7 @@
 #include "skerry/joint.h"
 #include "skerry/problem.h"
 #include "skerry/tie.h"
+#include "skerry/spring.h"
 #include "skerry/time_table.h"
 #include "skerry/world.h"
 
@@ -29,6 +30,7 @@ void read(nb::handle from, JointMotor& to);
 void read(nb::handle from, TieSettings& to);
 void read(nb::handle from, GasFilling& to);
 void read(nb::handle from, LiquidFilling& to);
+void read(nb::handle from, SpringSettings& to);
 void read(nb::handle from, ProblemSettings& to);
 
 /// Reads a Plane, a Sphere or another of the shapes. The class of the Python object has the name of the C++ struct.

@@ -57,6 +57,9 @@ nb::tuple values_of(const RecordedProbe& probe) {
             } else if constexpr (std::is_same_v<Kind, CavityProbe>) {
                 values["cavity"] = what.cavity;
                 return "CavityProbe";
+            } else if constexpr (std::is_same_v<Kind, SpringProbe>) {
+                values["spring"] = what.spring;
+                return "SpringProbe";
             } else if constexpr (std::is_same_v<Kind, EnergyProbe>) {
                 return "EnergyProbe";
             } else if constexpr (std::is_same_v<Kind, StressProbe>) {
@@ -124,6 +127,9 @@ void bind_probes(nb::module_& module) {
     });
     module.def("cavity_probe", [](const std::string& name, const CavityHandle& cavity) {
         return RecordedProbe{name, CavityProbe{cavity}};
+    });
+    module.def("spring_probe", [](const std::string& name, const SpringHandle& spring) {
+        return RecordedProbe{name, SpringProbe{spring}};
     });
     module.def("energy_probe", [](const std::string& name) { return RecordedProbe{name, EnergyProbe{}}; });
     module.def("stress_probe", [](const std::string& name, const BodyHandle& body, const std::vector<Index>& nodes) {

@@ -14,6 +14,7 @@
 #include "skerry/problem.h"
 #include "skerry/settings.h"
 #include "skerry/tie.h"
+#include "skerry/spring.h"
 #include "skerry/world.h"
 
 namespace skerry::python {
@@ -132,6 +133,14 @@ void for_each_setting(Is<JointPassive> auto& s, auto&& visit) {
     visit("friction", s.friction);
 }
 
+void for_each_setting(Is<SpringSettings> auto& s, auto&& visit) {
+    visit("stiffness", s.stiffness);
+    visit("damping", s.damping);
+    visit("rest_length", s.rest_length);
+    visit("only", s.only);
+    visit("strength", s.strength);
+}
+
 void for_each_setting(Is<MotorKey> auto& s, auto&& visit) {
     visit("time", s.time);
     visit("speed", s.speed);
@@ -221,6 +230,7 @@ static_assert(has_size<MotionKey, 7>);
 static_assert(has_size<Motion, 6, std::vector<MotionKey>>);
 static_assert(has_size<JointSettings, 15, std::optional<JointMotor>, JointPassive>);
 static_assert(has_size<JointPassive, 4>);
+static_assert(has_size<SpringSettings, 4, Anchor, Anchor, std::optional<TimeTable>>);
 static_assert(has_size<MotorKey, 5>);
 static_assert(has_size<JointMotor, 6, std::vector<MotorKey>>);
 static_assert(has_size<TieSettings, 8, std::vector<Index>>);

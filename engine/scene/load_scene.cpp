@@ -18,6 +18,7 @@ struct Built {
     const std::vector<JointHandle>& joints;
     const std::vector<CableHandle>& cables;
     const std::vector<CavityHandle>& cavities;
+    const std::vector<SpringHandle>& springs;
 };
 
 decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& built) {
@@ -52,6 +53,8 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
             return CableProbe{built.cables[series.cable]};
         case ProbeQuantity::cavity:
             return CavityProbe{built.cavities[series.cavity]};
+        case ProbeQuantity::spring:
+            return SpringProbe{built.springs[series.spring]};
         case ProbeQuantity::stress:
             return StressProbe{body, series.nodes};
         case ProbeQuantity::volume:
@@ -161,10 +164,17 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         }));
     const std::vector<CavityHandle> cavities = add_cavities(plan, bodies, world);
     for (const LoadPlan& load : plan.loads) called_at(load.place, [&] { return add_planned(load, bodies, world); });
+    std::vector<SpringHandle> springs;
+    for (const SpringPlan& spring : plan.springs) {
+        SpringSettings settings = spring.settings;
+        settings.first = anchor_of(spring.first, plan, world, {bodies, colliders});
+        settings.second = anchor_of(spring.second, plan, world, {bodies, colliders});
+        springs.push_back(called_at(spring.place, [&] { return Springs(world).add(settings); }));
+    }
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     for (const SeriesPlan& series : plan.series)
-        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints, cables, cavities})});
+        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints, cables, cavities, springs})});
     return scene;
 }
 

@@ -108,6 +108,7 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
     if (entry.joint) series.joint = find_joint(plan, *entry.joint, entry.place.key("joint"));
     if (entry.cable) series.cable = find_cable(plan, *entry.cable, entry.place.key("cable"));
     if (entry.cavity) series.cavity = find_cavity(plan, *entry.cavity, entry.place.key("cavity"));
+    if (entry.spring) series.spring = find_spring(plan, *entry.spring, entry.place.key("spring"));
     if (entry.by) find_partner(entry, plan, series);
     if (series.body) {
         const BodyPlan& body = plan.bodies[*series.body];

@@ -25,6 +25,8 @@ KeysOf keys_of(ProbeQuantity quantity) {
             return {{"joint"}, {}};
         case ProbeQuantity::cable:
             return {{"cable"}, {}};
+        case ProbeQuantity::spring:
+            return {{"spring"}, {}};
         case ProbeQuantity::energy:
             return {{}, {}};
         case ProbeQuantity::stress:
@@ -45,7 +47,8 @@ void check_keys(const Place& place, const ProbeEntry& probe) {
         {"by", probe.by.has_value()},       {"box", probe.box.has_value()},
         {"point", probe.point.has_value()}, {"pin", probe.pin.has_value()},
         {"joint", probe.joint.has_value()}, {"set", probe.set.has_value()},
-        {"cable", probe.cable.has_value()},   {"cavity", probe.cavity.has_value()}};
+        {"cable", probe.cable.has_value()},   {"cavity", probe.cavity.has_value()},
+        {"spring", probe.spring.has_value()}};
     for (const auto& [key, is_given] : given) {
         const bool required = std::ranges::find(keys.required, key) != keys.required.end();
         if (required && !is_given)
@@ -84,7 +87,7 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
                              "of contacts on a body or a collider; reaction of a pin; coordinate and forces of a "
                              "joint; tensions and length of a cable; energy of the world; largest "
                              "stress; smallest ratio of current volume to rest volume; pressure, volume, gas mass, "
-                             "energy and force of a cavity"})
+                             "energy and force of a cavity; length, force and energy of a spring"})
             .key("body", &P::body, {.meaning = "name of a body"})
             .key("collider", &P::collider, {.meaning = "for a force: name of the collider on which it acts"})
             .key("by", &P::by,
@@ -93,6 +96,7 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
             .key("joint", &P::joint, {.meaning = "for a joint: name of the joint"})
             .key("cable", &P::cable, {.meaning = "for a cable: name of the cable"})
             .key("cavity", &P::cavity, {.meaning = "for a cavity: name of the cavity"})
+            .key("spring", &P::spring, {.meaning = "for a spring: name of the spring"})
             .key("box", &P::box,
                  {.meaning = "box around the recorded nodes, in the mesh's own frame; default for a stress: all nodes"})
             .key("set", &P::set, {.meaning = "set of the body that contains the recorded nodes, instead of \"box\""})

@@ -17,6 +17,7 @@
 #include "skerry/settings.h"
 #include "skerry/tie.h"
 #include "skerry/time_table.h"
+#include "skerry/spring.h"
 
 namespace skerry {
 
@@ -181,6 +182,15 @@ struct PairEntry {
     std::optional<Real> friction, static_friction, dynamic_friction, restitution;
     Place place;
 };
+struct SpringEntry {
+    std::string name;
+    AnchorEntry first, second;
+    Real stiffness = SpringSettings{}.stiffness, damping = SpringSettings{}.damping;
+    std::optional<TimeTable> rest_length;
+    SpringSide only = SpringSettings{}.only;
+    std::optional<Real> strength;
+    Place place;
+};
 struct MotorEntry {
     std::optional<Real> speed, position;
     std::vector<MotorKey> keys;
@@ -239,10 +249,10 @@ struct LoadEntry : PartEntry {
 };
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
-enum class ProbeQuantity { contacts, motion, force, reaction, joint, cable, energy, stress, volume, cavity };
+enum class ProbeQuantity { contacts, motion, force, reaction, joint, cable, energy, stress, volume, cavity, spring };
 template <>
 struct EnumNames<ProbeQuantity> {
-    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 10> table{{
+    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 11> table{{
         {ProbeQuantity::contacts, "contacts"},
         {ProbeQuantity::motion, "motion"},
         {ProbeQuantity::force, "force"},
@@ -253,12 +263,14 @@ struct EnumNames<ProbeQuantity> {
         {ProbeQuantity::stress, "stress"},
         {ProbeQuantity::volume, "volume"},
         {ProbeQuantity::cavity, "cavity"},
+        {ProbeQuantity::spring, "spring"},
     }};
 };
 struct ProbeEntry {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::contacts;
     std::optional<std::string> body, collider, by, joint, set, cable, cavity;
+    std::optional<std::string> body, collider, by, joint, spring;
     std::optional<RestBox> box;
     std::optional<Vec3> point;  // position in the mesh's own frame [m]
     std::optional<int> pin;
@@ -283,6 +295,7 @@ struct SceneFile {
     std::vector<CavityEntry> cavities;
     std::vector<PipeEntry> pipes;
     std::vector<LoadEntry> loads;
+    std::vector<SpringEntry> springs;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;
 };

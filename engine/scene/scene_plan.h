@@ -18,6 +18,7 @@
 #include "skerry/load.h"
 #include "skerry/scene.h"
 #include "skerry/surface.h"
+#include "skerry/spring.h"
 
 namespace skerry {
 
@@ -98,6 +99,12 @@ struct LoadPlan {
     std::variant<ForceLoad, TractionLoad, AccelerationField, GravityScale, DragField> load{};
     Place place;
 };
+struct SpringPlan {
+    std::string name;
+    AnchorPlan first, second;
+    SpringSettings settings;  // settings without anchors, because handles exist only in a built world
+    Place place;
+};
 struct ProbePlan {
     std::string name;
     std::size_t body = 0;      // index in ScenePlan::bodies
@@ -112,6 +119,7 @@ struct SeriesPlan {
     std::size_t joint = 0;                                 // index in ScenePlan::joints
     std::size_t cable = 0;                                 // index in ScenePlan::cables
     std::size_t cavity = 0;                                // index in ScenePlan::cavities
+    std::size_t spring = 0;                                // index in ScenePlan::springs
     std::size_t pin = 0;                                   // index in BodyPlan::pins
     std::vector<Index> nodes;                              // local numbers
     std::optional<MaterialPoint> point;
@@ -138,6 +146,7 @@ struct ScenePlan {
     std::vector<CavityPlan> cavities;
     std::vector<PipePlan> pipes;
     std::vector<LoadPlan> loads;
+    std::vector<SpringPlan> springs;
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;
     Real probe_step = 0;  // [s]
@@ -194,13 +203,17 @@ void plan_cavities(const SceneFile& scene, ScenePlan& plan);
 /// cavities.
 std::vector<CavityHandle> add_cavities(const ScenePlan& plan, const std::vector<BodyHandle>& bodies, World& world);
 
-/// Adds a probe to a plan that already contains all bodies, colliders, joints, cables and cavities.
 /// Plans a load. `plan` already contains all bodies.
 LoadPlan plan_load(const LoadEntry& entry, const ScenePlan& plan);
 /// Adds a planned load to a world with the given bodies, in the order of ScenePlan::bodies.
 LoadHandle add_planned(const LoadPlan& load, std::span<const BodyHandle> bodies, World& world);
 
-/// Adds a probe to a plan that already contains all bodies, colliders and joints.
+/// Adds a spring to a plan that already contains all bodies and colliders. `number` counts the springs from 0.
+void plan_spring(const SpringEntry& entry, std::size_t number, ScenePlan& plan);
+/// Returns the index of a spring in a plan. Throws SceneError if the plan has none of this name.
+std::size_t find_spring(const ScenePlan& plan, const std::string& name, const Place& place);
+
+/// Adds a probe to a plan that already contains all bodies, colliders, joints and springs.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 
 /// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.

@@ -405,6 +405,8 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("cavities", &SceneFile::cavities, {.meaning = "pressure on faces, and gas or liquid in cavities"})
             .key("pipes", &SceneFile::pipes, {.meaning = "pipes between cavities with gas"})
             .key("loads", &SceneFile::loads, {.meaning = "forces, tractions and force fields"})
+            .key("springs", &SceneFile::springs,
+                 {.meaning = "springs and dampers between points of bodies, colliders and the world"})
             .key("probes", &SceneFile::probes,
                  {.meaning = "recorded quantities: contacts for the report, and time series for --probes"})
             .key("probe_step", &SceneFile::probe_step,

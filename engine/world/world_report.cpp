@@ -9,6 +9,7 @@
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
 #include "engine/world/state_hash.h"
+#include "engine/world/step/seams.h"
 #include "engine/world/step/step.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/dynamics/checks/volume_ratios.h"
@@ -16,7 +17,7 @@
 
 namespace skerry {
 
-Energy energy_of(const Model& model, Real dissipated) {
+Energy energy_of(const Model& model, Real time, Real dissipated) {
     Energy energy;
     const NodeTable& nodes = model.nodes;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
@@ -29,6 +30,9 @@ Energy energy_of(const Model& model, Real dissipated) {
         energy.elastic += sums.elastic;
     }
     energy.elastic += kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position);
+    constexpr Real lag = 0;
+    for (const ForceElement* element : force_elements)
+        if (element->energy && element->any(model)) energy.elastic += element->energy(model, time, lag);
     energy.dissipated = dissipated;
     return energy;
 }
@@ -165,7 +169,7 @@ std::uint64_t World::state_hash() const {
 }
 Energy World::energy() const {
     state_->settle();
-    return energy_of(state_->model, state_->record.counters.dissipated);
+    return energy_of(state_->model, state_->clock.time, state_->record.counters.dissipated);
 }
 
 namespace {
@@ -254,7 +258,7 @@ WorldReport World::report() const {
     report.crossings_found = world.cache.crossings.hits;
     report.crossed = world.cache.crossings.let_through;
     note_held(world, report);
-    report.energy = energy_of(world.model, report.dissipated);
+    report.energy = energy_of(world.model, world.clock.time, report.dissipated);
     for (const Index body : world.model.rigid_bodies.body) {
         const RigidSums sums = rigid_sums(world.model, static_cast<std::size_t>(body));
         report.momentum += sums.momentum;
@@ -279,7 +283,8 @@ WorldReport World::report() const {
         report.worst_volume_body = world.model.body_records[b].name;
         report.worst_volume_element = world.model.user_tetrahedron(b, ratios.item);
     }
-    const Balance balance = checked_balance(world.model, lag_between_steps(world), world.record.balance);
+    const Balance balance =
+        checked_balance(world.model, world.clock.time, lag_between_steps(world), world.record.balance);
     const auto share = [](Real of, Real whole) { return whole > 0 ? of / whole : 0; };
     report.energy_error = balance.energy_error;
     report.energy_error_share =

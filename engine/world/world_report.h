@@ -5,7 +5,7 @@
 
 namespace skerry {
 
-/// Returns the present energies of a world. `dissipated`: energy dissipated over the run [J].
-Energy energy_of(const Model& model, Real dissipated);
+/// Returns the energies of a world at the present time `time` [s]. `dissipated`: energy dissipated over the run [J].
+Energy energy_of(const Model& model, Real time, Real dissipated);
 
 }  // namespace skerry

@@ -17,7 +17,7 @@ namespace skerry {
 struct AnchorInputs {
     std::span<const Index> body, collider;  // AnchorColumns
     std::span<const AnchorRow> point;
-    std::span<const Range> body_nodes;             // BodyTable
+    std::span<const Range> body_nodes;              // BodyTable
     std::span<const Vec3> position, node_velocity;  // NodeTable [m, m/s]
     std::span<const RigidMotion> motion;            // ColliderTable
 
@@ -66,8 +66,8 @@ struct AnchorInputs {
         return sum;
     }
 
-    /// Adds the force `force` at an anchor to the forces on nodes [N]. Force and moment of the nodal forces are those of
-    /// `force`. A force on a collider or on the world changes nothing.
+    /// Adds the force `force` at an anchor to the forces on nodes [N]. Force and moment of the nodal forces are those
+    /// of `force`. A force on a collider or on the world changes nothing.
     void add_force(std::size_t anchor, const Vec3& force, std::span<Vec3> node_force) const {
         for_each_node(anchor, [&](std::size_t node, Real weight) { node_force[node] += weight * force; });
     }

@@ -96,6 +96,7 @@ TEST_CASE("the list of stages captures nothing", "[contract]") {
         }
     }
     CHECK(found >= 8);
+    CHECK(found == 9);
 }
 
 }  // namespace skerry::test::house_rules_test

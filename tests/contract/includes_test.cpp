@@ -71,7 +71,7 @@ bool is_public(const std::string& path) {
         "components/types.h",  "components/options.h", "components/handle.h",       "components/joint_kind.h",
         "components/column.h", "components/range.h",   "components/access_check.h", "components/tie_kind.h",
         "components/cable_control.h", "components/cavity_law.h", "components/time_key.h",
-        "components/load_kind.h"};
+        "components/load_kind.h", "components/spring_side.h"};
     return path.starts_with("engine/include/skerry/") || components.contains(path);
 }
 

@@ -11,6 +11,7 @@
 #include "skerry/cable.h"
 #include "skerry/load.h"
 #include "skerry/rollout.h"
+#include "skerry/spring.h"
 #include "tests/support/worlds.h"
 
 extern "C" void* __libc_malloc(std::size_t);
@@ -206,6 +207,28 @@ TEST_CASE("rigid and implicit bodies at rest allocate nothing, either", "[determ
     do REQUIRE(world.advance(1).ok());
     while (settings.sleep && world.report().asleep < 4 && world.time() < 10);
     REQUIRE(world.report().asleep == (settings.sleep ? 4 : 0));
+    CHECK(allocations_of_a_fifth_second(world) == 0);
+}
+
+TEST_CASE("springs and dampers allocate nothing, either", "[determinism]") {
+    Settings settings = two_threads();
+    settings.sleep = false;
+    World world(settings);
+    const auto stiff = world.add_material({.young_modulus = 1e6, .friction = 0.3});
+    world.add_collider(Plane{});
+    const Mesh block = mesh::box({0.2, 0.1, 0.1}, {4, 2, 2});
+    for (const BodyDynamics dynamics :
+         {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic, BodyDynamics::rigid}) {
+        const Real y = 0.15 * static_cast<Real>(dynamics);
+        const BodyHandle body =
+            world.add_body(block, {.material = stiff, .position = {0, y, 0.051}, .dynamics = dynamics});
+        Springs(world).add({.first = {.body = body, .point = {0.1, y, 0.1}},
+                            .second = {.point = {0.2, y, 1}},
+                            .stiffness = 5,
+                            .damping = 1,
+                            .rest_length = TimeTable({{0, 0.9}, {10, 0.8}})});
+    }
+    REQUIRE(world.advance(1).ok());
     CHECK(allocations_of_a_fifth_second(world) == 0);
 }
 

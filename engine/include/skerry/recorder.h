@@ -13,6 +13,7 @@
 #include "components/cable_control.h"
 #include "components/cavity_law.h"
 #include "components/joint_kind.h"
+#include "components/spring_side.h"
 #include "skerry/world.h"
 
 #pragma GCC visibility push(default)
@@ -65,6 +66,10 @@ struct CableProbe {
 struct CavityProbe {
     CavityHandle cavity{};
 };
+/// Records length, rate, force and energy of a spring (SpringState).
+struct SpringProbe {
+    SpringHandle spring{};
+};
 /// Records the kinetic, elastic, potential and dissipated energy of the world.
 struct EnergyProbe {};
 /// Records the largest von Mises stress at the given nodes of a body, or at all its nodes if none is given. `nodes` are
@@ -96,7 +101,7 @@ struct NodesProbe {
 struct RecordedProbe {
     std::string name;  // unique and not empty; not "." or "time"; without '/' and control characters
     std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, JointProbe, CableProbe,
-                 EnergyProbe, StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe, CavityProbe>
+                 EnergyProbe, StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe, CavityProbe, SpringProbe>
         what;
 };
 

@@ -182,6 +182,10 @@ void put_values(const World& world, TrackedProbe& probe, std::vector<Real>& valu
                 values.insert(values.end(), {now.pressure, now.volume, now.mass, now.energy});
                 put_vector(now.force, values);
             },
+            [&](const SpringProbe& spring) {
+                const SpringState now = spring_state(WorldAccess::state_of(world), spring.spring);
+                values.insert(values.end(), {now.length, now.rate, now.force, now.energy});
+            },
             [&](const EnergyProbe&) {
                 const Energy energy = world.energy();
                 values.insert(values.end(), {energy.kinetic, energy.elastic, energy.potential, energy.dissipated});
@@ -247,6 +251,7 @@ void require_objects(const World& world, const RecordedProbe& probe) {
                           [&](const JointProbe& joint) { require(joint.joint); },
                           [&](const CableProbe& cable) { require(cable.cable); }, [](const EnergyProbe&) {},
                           [&](const CavityProbe& cavity) { require(cavity.cavity); },
+                          [&](const SpringProbe& spring) { require(spring.spring); }, [](const EnergyProbe&) {},
                           [&](const BodyProbe& body) { require(body.body); },
                           [&](const VolumeProbe& volume) { require(volume.body); },
                           [&](const NodesProbe& nodes) { require(nodes.body); },
@@ -335,6 +340,12 @@ void add_columns(const World& world, const RecordedProbe& probe, std::vector<Ser
                               one("mass", "kg");
                               one("energy", "J");
                               three("force", "N");
+                          },
+                          [&](const SpringProbe&) {
+                              one("length", "m");
+                              one("rate", "m/s");
+                              one("force", "N");
+                              one("energy", "J");
                           },
                           [&](const EnergyProbe&) {
                               for (const char* part : {"kinetic", "elastic", "potential", "dissipated"}) one(part, "J");

@@ -56,6 +56,13 @@ class Recorder:
         self._world = world
         self._core = _core.Recorder(world._core, given, seconds(every, "recorder", "every"))
         kinds = (_core.BodyHandle, _core.ColliderHandle, _core.AttachmentHandle, _core.JointHandle, _core.CableHandle)
+        kinds = (
+            _core.BodyHandle,
+            _core.ColliderHandle,
+            _core.AttachmentHandle,
+            _core.JointHandle,
+            _core.SpringHandle,
+        )
         self._handles = [
             (name, value)
             for name, probe in zip(probes, given, strict=True)

@@ -39,6 +39,7 @@ Dynamics: TypeAlias = Literal["explicit", "rigid", "implicit", "automatic"]
 JointKind: TypeAlias = Literal["ball", "hinge", "slider", "fixed"]
 TieKind: TypeAlias = Literal["weld", "slide"]
 CavityLaw: TypeAlias = Literal["pressure", "gas", "liquid"]
+SpringSide: TypeAlias = Literal["both", "tension", "compression"]
 
 Given = TypeVar("Given", contravariant=True)
 Held = TypeVar("Held", covariant=True)
@@ -502,6 +503,7 @@ __all__ = [
     "Shape",
     "SolverMethod",
     "Sphere",
+    "SpringSide",
     "StartOverlaps",
     "Surface",
     "SurfaceMesh",

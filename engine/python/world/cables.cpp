@@ -1,12 +1,8 @@
 // Cables that run through points of bodies.
 #include "skerry/cable.h"
 
-#include <nanobind/stl/tuple.h>
-
 #include <array>
 #include <optional>
-#include <tuple>
-#include <variant>
 #include <vector>
 
 #include "engine/python/read_settings.h"
@@ -16,17 +12,7 @@ namespace skerry::python {
 
 namespace {
 
-/// A point of a cable: the handle of its body or collider, or None for the world; and its position in the world [m].
-using GivenAnchor = std::tuple<std::optional<std::variant<BodyHandle, ColliderHandle>>, std::array<Real, 3>>;
 using GivenTable = std::optional<std::vector<std::array<Real, 2>>>;
-
-Anchor anchor_of(const GivenAnchor& given) {
-    const auto& [object, point] = given;
-    Anchor anchor{.point = {point[0], point[1], point[2]}};
-    if (object && std::holds_alternative<BodyHandle>(*object)) anchor.body = std::get<BodyHandle>(*object);
-    if (object && std::holds_alternative<ColliderHandle>(*object)) anchor.collider = std::get<ColliderHandle>(*object);
-    return anchor;
-}
 
 CableDrive drive_of(const GivenTable& tension, const GivenTable& length, const GivenTable& rate) {
     CableDrive drive;
@@ -54,11 +40,10 @@ nb::dict values_of(const CableState& state) {
 
 void bind_cables(WorldClass& type) {
     type.def("add_cable",
-             guarded([](World& world, const std::vector<GivenAnchor>& points, const GivenTable& tension,
+             guarded([](World& world, const std::vector<Anchor>& points, const GivenTable& tension,
                         const GivenTable& length, const GivenTable& rate, Real friction) {
-                 CableSettings settings{.points = {}, .drive = drive_of(tension, length, rate), .friction = friction};
-                 for (const GivenAnchor& point : points) settings.points.push_back(anchor_of(point));
-                 return Cables(world).add(settings);
+                 return Cables(world).add(
+                     {.points = points, .drive = drive_of(tension, length, rate), .friction = friction});
              }),
              nb::arg("points"), nb::arg("tension").none(), nb::arg("length").none(), nb::arg("rate").none(),
              nb::arg("friction"))

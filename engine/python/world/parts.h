@@ -22,6 +22,8 @@ void bind_ties(WorldClass& type);
 void bind_cavities(WorldClass& type);
 void bind_loads(WorldClass& type);
 void bind_sets(WorldClass& type);
+void bind_springs(WorldClass& type);
+void bind_anchors(nb::module_& module);
 void bind_views(WorldClass& type);
 void bind_results(WorldClass& type);
 void bind_problem_watch(WorldClass& type);

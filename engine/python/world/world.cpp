@@ -85,6 +85,8 @@ void bind_world(nb::module_& module) {
     bind_handle<CavityHandle>(module, "CavityHandle");
     bind_handle<PipeHandle>(module, "PipeHandle");
     bind_handle<LoadHandle>(module, "LoadHandle");
+    bind_handle<SpringHandle>(module, "SpringHandle");
+    bind_anchors(module);
     module.def("end_calls", &CallScope::end_calls);
     module.def("note_fork", [] {
         Use::note_fork();
@@ -103,6 +105,7 @@ void bind_world(nb::module_& module) {
     bind_cavities(type);
     bind_loads(type);
     bind_sets(type);
+    bind_springs(type);
     bind_views(type);
     bind_results(type);
     bind_problem_watch(type);

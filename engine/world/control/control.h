@@ -11,6 +11,7 @@
 #include "skerry/cavity.h"
 #include "skerry/joint.h"
 #include "skerry/tie.h"
+#include "skerry/spring.h"
 
 namespace skerry {
 
@@ -67,5 +68,9 @@ TieState tie_state(const WorldState& world, TieHandle tie);
 /// Enables the collisions that ties have switched off, for each tie whose nodes have all broken off. Must be called
 /// after a step in which the last node of a tie has broken off.
 void release_ties(WorldState& world);
+// control_springs.cpp
+
+/// Returns the present state of a spring.
+SpringState spring_state(const WorldState& world, SpringHandle spring);
 
 }  // namespace skerry

@@ -49,8 +49,9 @@ void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
                       "a body without attachments",
                       "remove the attachments, change the dynamics, then attach the body again");
     if (has_rows_joining(body, model))
-        refuse_change(model, body, "dynamics", "a change of dynamics for a body with joints", "a body without joints",
-                      "remove the joints, change the dynamics, then add the joints again");
+        refuse_change(model, body, "dynamics", "a change of dynamics for a body with joints or springs",
+                      "a body without joints and springs",
+                      "remove the joints and springs, change the dynamics, then add them again");
 }
 
 /// Centre of mass and momenta of a free body.

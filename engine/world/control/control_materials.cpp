@@ -179,6 +179,7 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
             throw;
         }
         for (const std::size_t body : bodies) weigh(model, body);
+        note_forces(model);  // bounds of force elements depend on the masses
         model.clusters_open |= !bodies.empty();
         settle_clusters(model, state_->scratch.stiffness_sum);
         // If the new material does not relax, a step writes neither spring_strain nor spring_strain_next, but swaps

@@ -48,6 +48,13 @@ void forget_impulses(WorldState& world, std::size_t body) {
         std::ranges::fill(rows_of(cables.tension, cables.points[c]), Real(0));
         cables.step[c] = 0;
     }
+    SpringTable& springs = model.springs;
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+        if (springs.first.body[s] != static_cast<Index>(body) && springs.second.body[s] != static_cast<Index>(body))
+            continue;
+        springs.force[s] = Vec3::Zero();
+        springs.tension[s] = springs.elastic[s] = springs.rest_rate[s] = 0;
+    }
 }
 
 /// Sets the strains of the springs of a body to zero, and the corotational frames of its elements to `turn`, the
@@ -155,6 +162,7 @@ void World::reset(const World& saved) {
     now.model.cavity_map.differ_from(before.model.cavity_map);
     now.model.pipe_map.differ_from(before.model.pipe_map);
     now.model.load_map.differ_from(before.model.load_map);
+    now.model.spring_map.differ_from(before.model.spring_map);
     std::swap(now.executor, before.executor);
     now.record.tracing = before.record.tracing;
     std::swap(now.record.problem_watch, before.record.problem_watch);

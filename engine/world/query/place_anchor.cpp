@@ -16,8 +16,8 @@ AnchorRow row_of(const MaterialPoint& point) {
     return {point.node, point.weight, Vec3::Zero()};
 }
 
-/// Fixes a point to a rigid body, wherever the point is. Any tetrahedron that is not flat represents it exactly; the one
-/// with the smallest weights has the smallest rounding errors.
+/// Fixes a point to a rigid body, wherever the point is. Any tetrahedron that is not flat represents it exactly; the
+/// one with the smallest weights has the smallest rounding errors.
 AnchorRow point_of_rigid_body(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                               const Vec3& point) {
     MaterialPoint best;
@@ -44,12 +44,13 @@ AnchorRow point_of_body(WorldState& world, std::size_t body, const Vec3& point, 
     const Real reach = model.bodies.mean_edge[body];
     const std::optional<TrianglePoint> nearest = nearest_point(fitted_tree(world, body), point, infinity);
     if (!nearest || !(nearest->distance <= reach))
-        refuse(object, (field + ".point").c_str(),
-               "a point " + short_text(nearest ? nearest->distance : infinity) + " m outside body '" + record.name + "'",
-               "a point in the body, or at most " + short_text(reach) +
-                   " m outside (the mean edge length of its surface)");
-    const Index tetrahedron = model.user_tetrahedron(
-        body, model.surface.triangles.element[static_cast<std::size_t>(nearest->triangle)]);
+        refuse(
+            object, (field + ".point").c_str(),
+            "a point " + short_text(nearest ? nearest->distance : infinity) + " m outside body '" + record.name + "'",
+            "a point in the body, or at most " + short_text(reach) +
+                " m outside (the mean edge length of its surface)");
+    const Index tetrahedron =
+        model.user_tetrahedron(body, model.surface.triangles.element[static_cast<std::size_t>(nearest->triangle)]);
     return row_of(point_of_tetrahedron(nodes, record.tetrahedra[static_cast<std::size_t>(tetrahedron)], point));
 }
 
@@ -102,7 +103,8 @@ AnchorsBetweenSteps::AnchorsBetweenSteps(const WorldState& world) : model_(world
     for (std::size_t c = 0; c < table.slot.size(); ++c) {
         const RigidPose pose = pose_of_collider(world, c);
         RigidMotion motion = table.motion[c];
-        if (before > 0) motion = motion_of_step(table.script[c], table.keyframe, table.initial[c], now - before, before);
+        if (before > 0)
+            motion = motion_of_step(table.script[c], table.keyframe, table.initial[c], now - before, before);
         motion.position = pose.position;
         motion.rotation = pose.rotation;
         motion_.push_back(motion);

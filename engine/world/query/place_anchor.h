@@ -26,8 +26,8 @@ PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::st
 /// Returns an anchor as users give it: with handles, at its present position in the world.
 Anchor present_anchor(const WorldState& world, const AnchorColumns& columns, std::size_t row);
 
-/// Inputs of anchors between steps. They stay valid until the world changes. Velocities of colliders are mean velocities
-/// of the last step, because the velocities of nodes also are.
+/// Inputs of anchors between steps. They stay valid until the world changes. Velocities of colliders are mean
+/// velocities of the last step, because the velocities of nodes also are.
 class AnchorsBetweenSteps {
 public:
     explicit AnchorsBetweenSteps(const WorldState& world);

@@ -526,6 +526,36 @@ void check_loads(const SavedFile& file, const Model& model) {
                       std::to_string(listed) + ", as many as all ranges together");
 }
 
+/// Checks anchors of a table. `table` and `name`: names for messages.
+void check_anchors(const SavedFile& file, const Model& model, const std::string& table, const std::string& name,
+                   const AnchorColumns& anchors) {
+    for (std::size_t row = 0; row < anchors.body.size(); ++row) {
+        const Index body = anchors.body[row];
+        if (body == no_index) continue;
+        if (anchors.collider[row] != no_index)
+            file.complain(table + "/" + name + "_collider", at_row(anchors.collider[row], row),
+                          "-1, because the anchor is on a body");
+        const Index count = model.bodies.nodes[static_cast<std::size_t>(body)].size();
+        for (const Index node : anchors.point[row].node)
+            if (node < 0 || node >= count)
+                file.complain(table + "/" + name + "_point/node", at_row(node, row),
+                              "the number of a node of the body, from 0 to " + std::to_string(count - 1));
+    }
+}
+
+void check_springs(const SavedFile& file, const Model& model) {
+    const SpringTable& table = model.springs;
+    check_keys(file, "springs", "rest_length", table.rest_length.span(), table.key.span());
+    check_anchors(file, model, "springs", "first", table.first);
+    check_anchors(file, model, "springs", "second", table.second);
+    expect_between(file, "springs/stiffness", table.stiffness, 0.0, infinity);
+    expect_between(file, "springs/damping", table.damping, 0.0, infinity);
+    expect_between(file, "springs/strength", table.strength, 0.0, infinity);
+    for (std::size_t s = 0; s < table.size(); ++s)
+        if (table.rest_length[s].size() == 0)
+            file.complain("springs/rest_length", at_row("no keys", s), "at least one key");
+}
+
 void check_implicit_nodes(const SavedFile& file, const ImplicitNodeTable& table) {
     for (std::size_t row = 0; row < table.size(); ++row) {
         const std::string found = "a value that is not finite at row " + std::to_string(row);
@@ -557,6 +587,7 @@ void check_model(const SavedFile& file, Model& model) {
     check_cables(file, model);
     check_cavities(file, model);
     check_loads(file, model);
+    check_springs(file, model);
     check_implicit_nodes(file, model.implicit_nodes);
     check_watch(file, model);
 }

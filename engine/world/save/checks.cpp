@@ -15,7 +15,7 @@ namespace {
 /// True for columns that may contain infinity. It stands for a bound that does not exist, or is the value in an unused
 /// lane.
 bool may_be_infinite(std::string_view path) {
-    constexpr std::array<std::string_view, 20> paths{"watch/step",
+    constexpr std::array<std::string_view, 21> paths{"watch/step",
                                                      "watch/look/in_frame",
                                                      "watch/look/highest",
                                                      "tetrahedra/altitude",
@@ -34,7 +34,8 @@ bool may_be_infinite(std::string_view path) {
                                                      "joints/upper",
                                                      "joints/motor",
                                                      "ties/break_force",
-                                                     "ties/broken"};
+                                                     "ties/broken",
+                                                     "springs/strength"};
     return std::find(paths.begin(), paths.end(), path) != paths.end();
 }
 

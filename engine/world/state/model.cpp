@@ -83,6 +83,9 @@ Index Model::row(PipeHandle pipe, const char* call) const {
 Index Model::row(LoadHandle load, const char* call) const {
     return live_row(load_map, load, call, "load");
 }
+Index Model::row(SpringHandle spring, const char* call) const {
+    return live_row(spring_map, spring, call, "spring");
+}
 
 ElementInputs Model::all_elements() const {
     return ElementInputs::bind({}, elements, element_nodes, materials);

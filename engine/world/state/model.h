@@ -29,6 +29,7 @@
 #include "components/ragged.h"
 #include "components/range.h"
 #include "components/rigid_body_table.h"
+#include "components/spring_table.h"
 #include "components/step_watch.h"
 #include "components/surface_rules.h"
 #include "components/surface_table.h"
@@ -113,6 +114,7 @@ struct Model {
     CavityTable cavities;
     PipeTable pipes;
     LoadTable loads;
+    SpringTable springs;
     DisabledPairTable disabled_pairs;
     MaterialPairTable material_pairs;
     SurfaceSetTable surface_sets;
@@ -128,6 +130,7 @@ struct Model {
     HandleMap<CavityHandle> cavity_map;
     HandleMap<PipeHandle> pipe_map;
     HandleMap<LoadHandle> load_map;
+    HandleMap<SpringHandle> spring_map;
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
     std::vector<ColliderRecord> collider_records;  // one record for each row of ColliderTable
@@ -145,9 +148,9 @@ struct Model {
     // True if the bounds depend on positions, so that they must be computed again before each step. Computed by
     // note_forces.
     bool force_rate_moves = false;
-    // For each body: sum of the rates of damping that ForceElement::add_damping adds [1/s]. Empty if all sums are zero.
-    // Computed by note_forces.
-    Column<Real> force_damping;
+    // For each body: what ForceElement::bound_damping and add_drag find [1/s]. If a column is empty, all its values are
+    // zero. Computed by note_forces.
+    Column<Real> force_damping, force_drag;
     BodyLinks links;          // pairs of bodies that are joined, for example by a joint; computed by note_changed_seams
     bool links_open = false;  // true if joints (or other rows that join bodies) have changed since `links` was computed
     // True if a body is asleep. If false, no stage tests for sleeping bodies. Computed by note_rest.
@@ -167,6 +170,7 @@ struct Model {
     Index row(CavityHandle cavity, const char* call) const;
     Index row(PipeHandle pipe, const char* call) const;
     Index row(LoadHandle load, const char* call) const;
+    Index row(SpringHandle spring, const char* call) const;
 
     /// All elements, including the elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
@@ -269,6 +273,7 @@ struct Model {
         visit("cavities", cavities);
         visit("pipes", pipes);
         visit("loads", loads);
+        visit("springs", springs);
         visit("disabled_pairs", disabled_pairs);
         visit("material_pairs", material_pairs);
         visit("surface_sets", surface_sets);
@@ -284,6 +289,7 @@ struct Model {
         visit("cavities", cavities, cavity_map);
         visit("pipes", pipes, pipe_map);
         visit("loads", loads, load_map);
+        visit("springs", springs, spring_map);
     }
 };
 

@@ -28,6 +28,7 @@
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "systems/forces/prepare_cables.h"
 #include "systems/forces/add_loads.h"
+#include "systems/forces/springs.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {
@@ -72,6 +73,7 @@ struct StepFindings {
     TakenByRest rest;
     JointMeasures joints;
     TieMeasures ties;
+    SpringWork springs;
     CableMeasures cables;
     Index released_ties = 0;  // number of ties of which the last node has broken off in this step
     Index unstrained = 0;     // number of bodies whose elements are skipped, because they are undeformed in free flight

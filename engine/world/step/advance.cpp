@@ -217,7 +217,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     // The stored crossings belong to an abandoned step, and bodies may have changed since then.
     world.cache.crossings.row.clear();
     if (world.record.counters.steps == 0 && left > 0)
-        check_balance(model, lag_between_steps(world), world.record.balance);
+        check_balance(model, clock.time, lag_between_steps(world), world.record.balance);
     world.scratch.self_crossing_places.resize(model.bodies.slot.size());
     // force elements read all nodes in every step, so these nodes must be up to date
     world.scratch.parameters.draws_late = !model.forced;

@@ -7,6 +7,7 @@
 #include "engine/world/kernels.h"
 #include "engine/world/state/model.h"
 #include "engine/world/state/step_scratch.h"
+#include "engine/world/step/seams.h"
 #include "engine/world/step/step.h"
 
 namespace skerry {
@@ -19,7 +20,7 @@ struct Present {
     Real momentum_size = 0;  // sum of the magnitudes of the momenta of all nodes and bodies [kg m/s]
 };
 
-Present measure(const Model& model, Real lag) {
+Present measure(const Model& model, Real time, Real lag) {
     Present now;
     const NodeTable& nodes = model.nodes;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
@@ -59,6 +60,8 @@ Present measure(const Model& model, Real lag) {
         now.kinetic += lag * power;
     }
     now.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position) + implicit;
+    for (const ForceElement* element : force_elements)
+        if (element->energy && element->any(model)) now.elastic += element->energy(model, time, lag);
     return now;
 }
 
@@ -106,7 +109,8 @@ void add_step(const StepScratch& step, Balance& balance) {
     const Real work = push_work + external.work + step.findings.held.work + step.findings.held_again.work +
                       step.findings.joints.work + step.findings.ties.work + step.findings.cables.work +
                       contacts.outer_work - contacts.dissipated - step.findings.damped - step.findings.strained.damped -
-                      step.findings.relaxed - step.findings.viscous - step.findings.rest.energy;
+                      step.findings.relaxed - step.findings.viscous - step.findings.rest.energy -
+                      step.findings.springs.work - step.findings.springs.dissipated;
     ++balance.steps;
     // Impulses that cancel each other also count as exchanged momentum, for example those of weight and support.
     Vec3 impulse = Vec3::Zero();
@@ -119,8 +123,8 @@ void add_step(const StepScratch& step, Balance& balance) {
     balance.energy_flow += std::abs(work);
 }
 
-void check_balance(const Model& model, Real lag, Balance& balance) {
-    const Present now = measure(model, lag);
+void check_balance(const Model& model, Real time, Real lag, Balance& balance) {
+    const Present now = measure(model, time, lag);
     const Real energy = now.kinetic + now.elastic + now.potential;
     const bool was_open = balance.open;
     if (!was_open) {
@@ -146,8 +150,8 @@ void check_balance(const Model& model, Real lag, Balance& balance) {
             std::max(balance.momentum_error, (now.momentum - balance.momentum - balance.impulse).norm());
 }
 
-Balance checked_balance(const Model& model, Real lag, Balance balance) {
-    if (balance.open) check_balance(model, lag, balance);
+Balance checked_balance(const Model& model, Real time, Real lag, Balance balance) {
+    if (balance.open) check_balance(model, time, lag, balance);
     return balance;
 }
 

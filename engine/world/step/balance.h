@@ -39,11 +39,11 @@ struct Balance {
 void add_step(const StepScratch& step, Balance& balance);
 
 /// Compares the present energy and momentum with the expected values. Records the error if it is the largest so far.
-/// Opens the balance if it is closed. Reads all tables. `lag`: time by which velocities are older than positions [s].
-/// The kinetic energy is corrected for this lag with the present forces.
-void check_balance(const Model& model, Real lag, Balance& balance);
+/// Opens the balance if it is closed. Reads all tables. `time`: present time [s]; `lag`: time by which velocities are
+/// older than positions [s]. The kinetic energy is corrected for this lag with the present forces.
+void check_balance(const Model& model, Real time, Real lag, Balance& balance);
 
 /// Returns a copy of the balance, checked by check_balance, for a report. A closed balance is returned unchanged.
-Balance checked_balance(const Model& model, Real lag, Balance balance);
+Balance checked_balance(const Model& model, Real time, Real lag, Balance balance);
 
 }  // namespace skerry

@@ -2,11 +2,10 @@
 // (docs/methods/skipping.md 3.2).
 #include <algorithm>
 
+#include "engine/world/step/seams.h"
 #include "engine/world/step/step.h"
 #include "systems/dynamics/joints/prepare_joints.h"
 #include "systems/dynamics/motion/move_colliders.h"
-#include "systems/forces/prepare_cables.h"
-#include "systems/forces/cavities.h"
 
 namespace skerry {
 
@@ -36,23 +35,10 @@ bool a_motor_moves(const Model& model, Real time, Real h) {
     return false;
 }
 
-bool a_cable_is_driven(const Model& model, Real time, Real h) {
-    const CableInputs cables =
-        CableInputs::bind({}, model.cables, model.bodies, model.nodes, model.colliders, model.any_asleep);
-    for (std::size_t c = 0; c < cables.size(); ++c)
-        if (cables.is_driven(c, time, h)) return true;
-    return false;
-}
-
-bool a_cavity_fills(const Model& model, Real time, Real h) {
-    return mark_filled(CavityInputs::bind({}, model.cavities, model.bodies, model.nodes),
-                       PipeInputs::bind({}, model.pipes), model.cavity_map, time, h, {});
-}
-
-bool a_load_changes(const Model& model, Real time, Real h) {
-    for (std::size_t row = 0; row < model.loads.size(); ++row)
-        if (changes(model.loads.keys_of(row), time, h)) return true;
-    return false;
+bool a_force_changes(const Model& model, Real time, Real h) {
+    return std::ranges::any_of(force_elements, [&](const ForceElement* element) {
+        return element->is_driven && element->any(model) && element->is_driven(model, time, h);
+    });
 }
 
 /// True if a stable step is still to be evaluated for a stored shape. This can be so if a body was moving when its
@@ -72,9 +58,7 @@ bool nothing_moves(WorldState& world) {
     if (!model.any_asleep || !model.tuning.contact_budgets || !all_bodies_rest(model.bodies)) return false;
     if (scratch.contacts.size() > 0 || scratch.regions.size() > 0 || scratch.regions.pushed) return false;
     if (!world.cache.crossings.row.empty() || looks_are_due(model.watch)) return false;
-    if (a_motor_moves(model, time, h) || a_cable_is_driven(model, time, h) || a_cavity_fills(model, time, h) ||
-        a_load_changes(model, time, h))
-        return false;
+    if (a_motor_moves(model, time, h) || a_force_changes(model, time, h)) return false;
     if (!all_stand_still(model.colliders, time, h) || !all_stand_still(model.attachments, time, h)) return false;
     drive_nodes(NodeMotionInputs::bind({}, model.attachments), h, model.nodes.position, model.nodes.velocity);
     return true;
@@ -89,7 +73,7 @@ void check_balance_after_motion(WorldState& world) {
     Balance& balance = world.record.balance;
     // the balance cannot have changed, because nothing has moved since the last check
     if (balance.open && world.scratch.left_out && world.record.balance_of_rest) return;
-    check_balance(world.model, lag_between_steps(world), balance);
+    check_balance(world.model, world.clock.time, lag_between_steps(world), balance);
     world.record.balance_of_rest = world.scratch.left_out;
 }
 

@@ -44,6 +44,7 @@ void note_forces(Model& model) {
         if (!element->any(model)) continue;
         model.forced = true;
         model.force_rate_moves |= element->rate_moves;
+        if (element->derive) element->derive(model);
     }
     note_force_rates(model);
     // If the last force element was removed, the next step must still account for the work of its last forces.
@@ -55,6 +56,7 @@ void note_forces(Model& model) {
 void note_force_rates(Model& model) {
     model.force_rate.clear();
     model.force_damping.clear();
+    model.force_drag.clear();
     for (const ForceElement* element : force_elements) {
         if (!element->any(model)) continue;
         const auto add = [&](auto* add_of, Column<Real>& of_body) {
@@ -63,7 +65,8 @@ void note_force_rates(Model& model) {
             add_of(model, of_body);
         };
         add(element->add_rate, model.force_rate);
-        add(element->add_damping, model.force_damping);
+        add(element->bound_damping, model.force_damping);
+        add(element->add_drag, model.force_drag);
     }
 }
 

@@ -45,8 +45,24 @@ StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
     return plan;
 }
 
+namespace {
+
+/// True if a force that follows the motion acts on an implicit body. Such a force must be evaluated in every step.
+bool forces_follow_implicit_bodies(const Model& model) {
+    const auto acts = [](const Column<Real>& bound, std::size_t body) { return !bound.empty() && bound[body] > 0; };
+    for (const Index body : model.rigid_bodies.body) {
+        const auto b = static_cast<std::size_t>(body);
+        if (!model.is_rigid(b) && (acts(model.force_rate, b) || acts(model.force_damping, b) ||
+                                   acts(model.force_drag, b))) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
 Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
     if (!(model.settings.implicit_step > 0) || model.implicit_nodes.size() == 0) return left;
+    if (forces_follow_implicit_bodies(model)) return left;
     if (clock.length == 0) {
         // The tolerance prevents an extra long step for a remaining time that is only a rounding error.
         const Real count = std::max(1.0, std::ceil(left / model.settings.implicit_step - 1e-9));

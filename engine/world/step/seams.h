@@ -14,21 +14,35 @@ namespace skerry {
 /// A function that adds stages to the graph of the step.
 using ListStages = void (*)(WorldState&, TaskGraph&);
 
-/// A force element: a force on nodes that is neither elastic nor a constraint. It acts on the nodes of all bodies,
-/// whatever their motion model. The balance of a run counts its forces as external work.
+/// A force element: a force on nodes that is neither an elastic force of a body nor a constraint. It acts on the nodes
+/// of all bodies, whatever their motion model. The balance of a run counts its forces as external work, unless the
+/// element has a function `energy`. All members after add_forces may be null.
 struct ForceElement {
     // Returns whether the world has this force element. If none is present, the stages of all force elements are
     // skipped.
     bool (*any)(const Model&);
     ListStages add_forces;  // adds forces to NodeTable::applied_force at the start of the step
+    // Computes derived columns. It is called after force elements, or bodies on which they act, have changed.
+    void (*derive)(Model&) = nullptr;
     // For each body, adds an upper bound of the contribution of this force element to the squared natural frequencies
     // of the body [1/s^2]. This bound limits the stable step. The pointer is null if the forces do not depend on
     // positions.
     void (*add_rate)(const Model&, std::span<Real> of_body) = nullptr;
     bool rate_moves = false;  // true: the bound depends on positions, and is computed again before each step
-    // For each body, adds the rate c of forces -c m v that oppose the velocities v of its nodes of mass m [1/s]. The
-    // pointer is null if the forces do not depend on velocities.
-    void (*add_damping)(const Model&, std::span<Real> of_body) = nullptr;
+    // For each body, raises a bound to the rate at which dampers of this force element reduce velocities [1/s]. In a
+    // step of length h they must reduce no velocity by more than the factor exp(-rate h). The bound limits the stable
+    // step.
+    void (*bound_damping)(const Model&, std::span<Real> of_body) = nullptr;
+    // For each body, adds the rate c of forces -c m v that oppose the velocities v of its nodes of mass m [1/s]. They
+    // act as at the start of the step, and limit the stable step too.
+    void (*add_drag)(const Model&, std::span<Real> of_body) = nullptr;
+    ListStages mark_driven = nullptr;  // marks bodies that a change over time wakes, in StepScratch::pressed
+    // Whether the forces change in the step of length `h` that starts at time `t` although no body moves.
+    bool (*is_driven)(const Model&, Real t, Real h) = nullptr;
+    ListStages measure = nullptr;   // measures work and losses, which the balance then no longer counts as external
+    ListStages remember = nullptr;  // stores results for the next step, if the step can be committed
+    // Stored energy at the time `t`, in the sense of spring_energy (systems/forces/springs.h) [J].
+    Real (*energy)(const Model&, Real t, Real lag) = nullptr;
 };
 
 /// A motion model: the rule by which the degrees of freedom of some bodies move in a step. Each member is a function
@@ -55,14 +69,14 @@ struct ConstraintLaw {
     ListStages remember = nullptr;  // stores the impulses for the next step, if the step can be committed
 };
 
-extern const ForceElement nodal_loads, cable_forces, cavity_pressures, loads_and_fields;
+extern const ForceElement nodal_loads, cable_forces, cavity_pressures, loads_and_fields, spring_forces;
 extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies, held_axes;
 extern const ConstraintLaw contact_law, joint_law, tie_law, cable_law;
 
 /// All force elements. Nodal loads come first: their stage sets the total force on each node, to which the other force
 /// elements add.
-inline constexpr std::array<const ForceElement*, 4> force_elements{&nodal_loads, &loads_and_fields, &cable_forces,
-                                                                   &cavity_pressures};
+inline constexpr std::array<const ForceElement*, 5> force_elements{&nodal_loads, &loads_and_fields, &spring_forces,
+                                                                   &cable_forces, &cavity_pressures};
 /// All motion models. The order matters where two models write the same columns. Rigid bodies come first, because the
 /// frames of implicit bodies move like rigid bodies. Held axes come last, because they correct velocities.
 inline constexpr std::array<const MotionModel*, 5> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,

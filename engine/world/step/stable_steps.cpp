@@ -31,13 +31,14 @@ Real step_of_body(const Model& model, std::size_t body) {
     if (const Real rate = model.force_rate.empty() ? 0 : model.force_rate[body]; rate > 0)
         step = 2 / std::sqrt(4 / (step * step) + rate);
     const Index material = model.bodies.material[body];
-    const Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
+    Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
+    if (!model.force_damping.empty()) damping += model.force_damping[body];
     // In each step, damping multiplies velocities by a factor k. A mode of the circular frequency omega is then stable
     // for step lengths h with omega h < sqrt(2 (1 + k)).
     // Half the bound of the squared product of frequency and step length: 1 + k, at most 2.
     const Real half = damping > 0 && std::isfinite(step) ? 1 + std::exp(-damping * step) : 2;
     step *= std::sqrt(half / 2);
-    const Real drag = model.force_damping.empty() ? 0 : model.force_damping[body];
+    const Real drag = model.force_drag.empty() ? 0 : model.force_drag[body];
     if (!(drag > 0)) return step;
     // Forces -c m v reduce the factor k by c h. The condition (omega h)^2 < 2 (1 + k - c h) then is a quadratic
     // inequality for h. The bound 1/c keeps the decay free of oscillation in bodies that have no other limit.

@@ -16,10 +16,7 @@
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
-#include "systems/forces/add_loads.h"
 #include "systems/forces/add_nodal_loads.h"
-#include "systems/forces/prepare_cables.h"
-#include "systems/forces/cavities.h"
 
 namespace skerry {
 
@@ -36,8 +33,10 @@ void measure_travel(WorldState&, TaskGraph&);
 void put_to_rest(WorldState&, TaskGraph&);
 void keep_forces(WorldState&, TaskGraph&);
 
-void add_applied_forces(WorldState& world, TaskGraph& graph) {
-    for (const ForceElement* element : force_elements) element->add_forces(world, graph);
+template <auto stages>
+void of_forces(WorldState& world, TaskGraph& graph) {
+    for (const ForceElement* element : force_elements)
+        if (element->*stages) (element->*stages)(world, graph);
 }
 template <auto stages>
 void of_models(WorldState& world, TaskGraph& graph) {
@@ -59,7 +58,7 @@ void build_step(WorldState& w) {
     g.begin_phase("Watch stable steps");
     watch_stable_steps_beside(w, g);
     g.begin_phase("Predict velocities without contacts");
-    add_applied_forces(w, g);
+    of_forces<&ForceElement::add_forces>(w, g);
     of_models<&MotionModel::add_forces>(w, g);
     of_models<&MotionModel::predict>(w, g);
     g.begin_phase("Find contacts and joint rows");
@@ -128,14 +127,7 @@ void separate(WorldState& w, TaskGraph& g) {
     g.stage("contact/mark_led", mark_led,
             inputs<TieInputs>(m.ties, m.bodies, m.nodes, m.rigid_bodies, m.colliders, m.any_asleep),
             write(w.scratch.pressed), if_any_asleep);
-    g.stage("forces/mark_driven_cables", mark_driven_cables,
-            inputs<CableInputs>(m.cables, m.bodies, m.nodes, m.colliders, m.any_asleep), value(w.clock.time),
-            value(p.h), write(w.scratch.pressed), if_any_asleep);
-    g.stage("forces/mark_filled", mark_filled, inputs<CavityInputs>(m.cavities, m.bodies, m.nodes),
-            inputs<PipeInputs>(m.pipes), value(m.cavity_map), value(w.clock.time), value(p.h), write(w.scratch.pressed),
-            if_any_asleep);
-    g.stage("forces/mark_loaded", mark_loaded, inputs<LoadedBodies>(m.loads, m.bodies), value(w.clock.time), value(p.h),
-            write(w.scratch.pressed), if_any_asleep);
+    of_forces<&ForceElement::mark_driven>(w, g);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints, w.scratch.cables),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
@@ -190,6 +182,7 @@ void check_end(WorldState& w, TaskGraph& g) {
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,
                         inputs<WorkInputs>(n, m.attachments, b, m.rigid_bodies, m.forced, m.any_asleep, p.gravity),
                         value(p.h), value(p.kick), value(p.work_lag), make(w.scratch.work_parts), if_any);
+    of_forces<&ForceElement::measure>(w, g);
 }
 
 auto if_sleepy(const WorldState& w) {
@@ -215,13 +208,10 @@ void measure_travel(WorldState& w, TaskGraph& g) {
 
 void keep_forces(WorldState& w, TaskGraph& g) {
     NodeTable& n = w.model.nodes;
-    CavityTable& c = w.model.cavities;
     const auto if_forced = only_if([](bool forced) { return forced; }, value(w.model.forced));
-    g.stage("forces/store_cavities", store_cavities, inputs<CavityInputs>(c, w.model.bodies, n),
-            inputs<PipeInputs>(w.model.pipes), value(w.model.cavity_map), read(c.volume_now), value(w.clock.time),
-            value(w.scratch.parameters.h), outputs<CavityMemory>(c, w.model.pipes), if_taken(w), if_forced);
     g.stage("forces/keep_applied_forces", keep_applied_forces, read(n.applied_force), write(n.applied_before),
             if_taken(w), if_forced);
+    of_forces<&ForceElement::remember>(w, g);
 }
 
 void put_to_rest(WorldState& w, TaskGraph& g) {

@@ -69,10 +69,10 @@ TEST_CASE("an anchor is at the given point, and spreads a force without changing
     const ColliderHandle box = world.add_collider(Box{{1, 1, 1}}, {.position = {8, 0, 0}, .rotation = {0, 0.5, 0}});
     Anchors anchors(world);
     const std::vector<Anchor> given{
-        {.body = soft, .point = {0.05, 0.02, 0.03}},      {.body = implicit, .point = {1.9, 0.01, -0.02}},
-        {.body = rigid, .point = {4.02, 0.01, 0.03}},     {.body = rigid, .point = {5, 1, 1}},
-        {.body = ball, .point = {6, 0.1, 0}},             {.body = soft, .point = {0.02, 0.01, 0.15}},
-        {.collider = box, .point = {8.4, 0.3, -0.1}},     {.point = {1, 2, 3}},
+        {.body = soft, .point = {0.05, 0.02, 0.03}},  {.body = implicit, .point = {1.9, 0.01, -0.02}},
+        {.body = rigid, .point = {4.02, 0.01, 0.03}}, {.body = rigid, .point = {5, 1, 1}},
+        {.body = ball, .point = {6, 0.1, 0}},         {.body = soft, .point = {0.02, 0.01, 0.15}},
+        {.collider = box, .point = {8.4, 0.3, -0.1}}, {.point = {1, 2, 3}},
     };
     for (const Anchor& anchor : given) anchors.add(anchor);
     const WorldState& state = WorldAccess::state_of(world);
@@ -94,8 +94,7 @@ TEST_CASE("an anchor is at the given point, and spreads a force without changing
 TEST_CASE("an anchor follows the rotation of a rigid body and the pose of a collider") {
     World world{Settings{.gravity = Vec3::Zero()}};
     const auto material = world.add_material({});
-    const BodyHandle ball =
-        world.add_body(Sphere{0.1}, {.material = material, .angular_velocity = {0, 0, 2}});
+    const BodyHandle ball = world.add_body(Sphere{0.1}, {.material = material, .angular_velocity = {0, 0, 2}});
     const ColliderHandle box =
         world.add_collider(Box{{1, 1, 1}}, {.position = {8, 0, 0}, .motion = {.velocity = {0, 1, 0}}});
     Anchors anchors(world);
@@ -113,10 +112,13 @@ TEST_CASE("an anchor follows the rotation of a rigid body and the pose of a coll
 TEST_CASE("an anchor that cannot be placed is refused with the reason") {
     World world{Settings{}};
     const auto material = world.add_material({});
-    const BodyHandle soft = world.add_body(mesh::box({0.2, 0.2, 0.2}, {2, 2, 2}), {.material = material, .name = "jelly"});
+    const BodyHandle soft =
+        world.add_body(mesh::box({0.2, 0.2, 0.2}, {2, 2, 2}), {.material = material, .name = "jelly"});
     const ColliderHandle floor = world.add_collider(Plane{});
     Anchors anchors(world);
-    CHECK_THAT(message_of([&] { anchors.add({.body = soft, .point = {0, 0, 0.5}}); }),
+    CHECK_THAT(message_of([&] {
+                   anchors.add({.body = soft, .point = {0, 0, 0.5}});
+               }),
                Catch::Contains("first.point") && Catch::Contains("0.4 m outside body 'jelly'") &&
                    Catch::Contains("mean edge length"));
     CHECK_THAT(message_of([&] { anchors.add({.body = soft, .collider = floor}); }),

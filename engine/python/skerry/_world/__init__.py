@@ -24,6 +24,7 @@ from .reports import (
 )
 from .surface import SurfaceSet
 from .tie import Tie, TieState
+from .spring import Spring, SpringState
 from .world import World
 
 __all__ = [
@@ -49,6 +50,8 @@ __all__ = [
     "PipeState",
     "RelaxReport",
     "SelfCrossing",
+    "Spring",
+    "SpringState",
     "StageReport",
     "StartMove",
     "StartOverlap",

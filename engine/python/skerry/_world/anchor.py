@@ -1,26 +1,54 @@
-"""Points that are fixed to bodies, to colliders or to the world."""
+"""Points on bodies and colliders."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from .._arrays import VectorLike
+from .. import _core
+from .._arrays import checked, vector
+from .._settings import VectorField, held
 
 if TYPE_CHECKING:
     from .body import Body
     from .collider import Collider
+    from .world import World
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Anchor:
-    """A point that is fixed to a body, to a collider, or to the world if neither is given.
+    """A point that is fixed to a body, to a collider, or to the world if neither is given. The point of a deformable
+    body must be inside the body, or at most one mean edge length of its surface outside.
 
-    body: the body.
-    collider: the collider.
-    point: present position in the world [m].
+    body: body that carries the point.
+    collider: collider that carries the point.
+    point: position in the world at the time when the anchor is used, shape (3,) [m].
     """
 
     body: Body | None = None
     collider: Collider | None = None
-    point: VectorLike = (0.0, 0.0, 0.0)
+    point: VectorField = held((0.0, 0.0, 0.0))
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "point", vector(getattr(self, "point"), "Anchor.point"))
+
+
+def core_anchor(world: World, anchor: Anchor, name: str) -> Any:
+    """The anchor for the extension module. Its objects must be objects of `world`."""
+    from .body import Body
+    from .collider import Collider
+
+    given = checked(anchor, name, Anchor)
+    body = None if given.body is None else world._own(given.body, f"{name}.body", Body)
+    collider = None if given.collider is None else world._own(given.collider, f"{name}.collider", Collider)
+    return _core.anchor(body, collider, given.point)
+
+
+def anchor_of(world: World, core: Any) -> Anchor:
+    """The Python object of an anchor of the extension module."""
+    body, collider, point = core.values
+    return Anchor(
+        body=None if body is None else world._body(body),
+        collider=None if collider is None else world._collider(collider),
+        point=point,
+    )

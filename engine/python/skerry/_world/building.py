@@ -21,6 +21,7 @@ from .._arrays import (
     name_text,
     read_only,
     real,
+    time_table,
     vector,
     whole,
 )
@@ -42,10 +43,12 @@ from .._settings import (
     Plane,
     Shape,
     Sphere,
+    SpringSide,
     SurfaceMesh,
     TieKind,
 )
 from .anchor import Anchor
+from .anchor import Anchor, core_anchor
 from .body import Attachment, Body, Indices
 from .cable import Cable, drive_tables
 from .cavity import CavityBuilding
@@ -57,6 +60,7 @@ from .material import MaterialHandle
 from .objects import Objects, PosedObject
 from .reports import StepReport
 from .tie import Tie
+from .spring import Spring
 
 if TYPE_CHECKING:
     from .._recorder import Follower
@@ -313,22 +317,41 @@ class Building(CavityBuilding):
         (time, value). tension: tension of the first segment [N]. length: greatest length [m]. rate: rate of the
         greatest length, which is the length now [m/s]. friction: friction coefficient mu at the points between the
         first and the last; tensions differ there by at most exp(mu theta) for a bend by the angle theta."""
-        given = [self._anchor(point, f"points[{number}]") for number, point in enumerate(points)]
+        given = [core_anchor(self._self, point, f"points[{number}]") for number, point in enumerate(points)]
         drive = drive_tables(tension, length, rate)
         return self._cable(self._core.add_cable(given, *drive, real(friction, "friction")))
 
-    def _anchor(self, anchor: Anchor, name: str) -> tuple[Any, Vector]:
-        """An anchor for the extension module."""
-        checked(anchor, name, Anchor)
-        if anchor.body is not None and anchor.collider is not None:
-            raise scene_error("cable", name, "a body and a collider", "a body, a collider, or neither for the world")
-        given = anchor.collider if anchor.body is None else anchor.body
-        return None if given is None else self._own(given, name, Body, Collider), vector(anchor.point, f"{name}.point")
+    def add_spring(
+        self,
+        first: Anchor,
+        second: Anchor,
+        *,
+        stiffness: float = 0.0,
+        damping: float = 0.0,
+        rest_length: TimeTableLike | None = None,
+        only: SpringSide = "both",
+        strength: float = math.inf,
+    ) -> Spring:
+        """Adds a spring, a damper, or both in parallel, between two anchors, and returns the spring.
 
-    def remove(self, removed: PosedObject | Joint | Tie | Cable | Load) -> None:
-        """Removes a body, a collider, an attachment, a joint, a tie, a cable or a load. BufferError: arrays of views() are
-        in use."""
-        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint, Tie, Cable, Load)
+        stiffness: [N/m]. damping: force per rate of the length [N s/m]. rest_length: a number, or pairs (time [s],
+        length); None: the present length [m]. only: "both", "tension" (acts only while longer than the rest length) or
+        "compression". strength: largest force [N]. SceneError: no anchor is on a body, or a value is out of range."""
+        given = Arguments(
+            of="spring",
+            stiffness=real(stiffness, "stiffness"),
+            damping=real(damping, "damping"),
+            rest_length=None if rest_length is None else time_table(rest_length, "rest_length"),
+            only=only,
+            strength=real(strength, "strength"),
+        )
+        one, other = core_anchor(self._self, first, "first"), core_anchor(self._self, second, "second")
+        return self._spring(self._core.add_spring(one, other, given))
+
+    def remove(self, removed: PosedObject | Joint | Tie | Cable | Spring | Load) -> None:
+        """Removes a body, a collider, an attachment, a joint, a tie, a cable, a spring or a load. BufferError: arrays
+        of views() are in use."""
+        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint, Tie, Cable, Spring, Load)
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)
 
@@ -356,6 +379,11 @@ class Building(CavityBuilding):
     def cables(self) -> list[Cable]:
         """The cables in the order added. They have no names."""
         return [self._cable(handle) for handle in self._core.cables()]
+
+    @property
+    def springs(self) -> list[Spring]:
+        """The springs in the order added. They have no names."""
+        return [self._spring(handle) for handle in self._core.springs()]
 
     @property
     def attachments(self) -> list[Attachment]:
@@ -390,6 +418,8 @@ class Building(CavityBuilding):
 
     def _tie(self, handle: Any) -> Tie:
         return Tie(self._self, handle, f"tie of body '{self._core.name(self._core.tie_state(handle)['body'])}'")
+    def _spring(self, handle: Any) -> Spring:
+        return Spring(self._self, handle, "spring")
 
     def _mesh_of(self, body: Any) -> tuple[Indices, Indices]:
         """Surface and tetrahedra of a body, which never change."""

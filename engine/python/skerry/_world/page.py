@@ -19,6 +19,7 @@ def world_table(world: World) -> str:
     ]
     rows += [(collider.name, "collider", type(collider.shape).__name__) for collider in world.colliders.values()]
     rows += [("", "joint", joint._label) for joint in world.joints]
+    rows += [("", "spring", f"{spring.state.length:.3g} m") for spring in world.springs]
     left = len(rows) - _MOST_ROWS
     lines = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows[:_MOST_ROWS]]
     if left > 0:

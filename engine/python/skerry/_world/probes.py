@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .collider import Collider
     from .joint import Joint
     from .objects import PosedObject
+    from .spring import Spring
     from .world import World
 
 
@@ -105,6 +106,13 @@ class CavityProbe:
     """
 
     cavity: Cavity
+class SpringProbe:
+    """Length, rate, force and energy of a spring.
+
+    spring: the spring.
+    """
+
+    spring: Spring
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,6 +182,7 @@ Probe: TypeAlias = (
     | ReactionProbe
     | JointProbe
     | CableProbe
+    | SpringProbe
     | EnergyProbe
     | StressProbe
     | VolumeProbe
@@ -198,6 +207,7 @@ def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
     from .cavity import Cavity
     from .collider import Collider
     from .joint import Joint
+    from .spring import Spring
 
     def handle_of(field: str, *kinds: type) -> Any:
         given, place = getattr(probe, field), f"probe '{name}': {field}"
@@ -221,6 +231,8 @@ def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
             return _core.cable_probe(name, handle_of("cable", Cable))
         case CavityProbe():
             return _core.cavity_probe(name, handle_of("cavity", Cavity))
+        case SpringProbe():
+            return _core.spring_probe(name, handle_of("spring", Spring))
         case EnergyProbe():
             return _core.energy_probe(name)
         case StressProbe():
@@ -259,6 +271,8 @@ def _object_of(world: World, value: Any) -> Any:
         return world._cable(value)
     if isinstance(value, _core.CavityHandle):
         return world._cavity(value)
+    if isinstance(value, _core.SpringHandle):
+        return world._spring(value)
     return world._attachment(value) if isinstance(value, _core.AttachmentHandle) else value
 
 

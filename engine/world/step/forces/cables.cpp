@@ -27,9 +27,29 @@ void add_cable_rate(const Model& model, std::span<Real> of_body) {
                     of_body);
 }
 
+void list_driven_cables(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(w.model.any_asleep));
+    g.stage("forces/mark_driven_cables", mark_driven_cables,
+            inputs<CableInputs>(m.cables, m.bodies, m.nodes, m.colliders, m.any_asleep), value(w.clock.time),
+            value(w.scratch.parameters.h), write(w.scratch.pressed), if_any_asleep);
+}
+
+bool a_cable_is_driven(const Model& model, Real t, Real h) {
+    const CableInputs cables =
+        CableInputs::bind({}, model.cables, model.bodies, model.nodes, model.colliders, model.any_asleep);
+    for (std::size_t c = 0; c < cables.size(); ++c)
+        if (cables.is_driven(c, t, h)) return true;
+    return false;
+}
+
 }  // namespace
 
-constinit const ForceElement cable_forces{
-    .any = any_cable, .add_forces = list_cables, .add_rate = add_cable_rate, .rate_moves = true};
+constinit const ForceElement cable_forces{.any = any_cable,
+                                          .add_forces = list_cables,
+                                          .add_rate = add_cable_rate,
+                                          .rate_moves = true,
+                                          .mark_driven = list_driven_cables,
+                                          .is_driven = a_cable_is_driven};
 
 }  // namespace skerry

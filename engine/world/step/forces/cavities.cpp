@@ -88,9 +88,36 @@ void add_cavity_rate(const Model& model, std::span<Real> of_body) {
     }
 }
 
+void list_filled_cavities(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(w.model.any_asleep));
+    g.stage("forces/mark_filled", mark_filled, inputs<CavityInputs>(m.cavities, m.bodies, m.nodes),
+            inputs<PipeInputs>(m.pipes), value(m.cavity_map), value(w.clock.time), value(w.scratch.parameters.h),
+            write(w.scratch.pressed), if_any_asleep);
+}
+
+bool a_cavity_fills(const Model& model, Real t, Real h) {
+    return mark_filled(CavityInputs::bind({}, model.cavities, model.bodies, model.nodes),
+                       PipeInputs::bind({}, model.pipes), model.cavity_map, t, h, {});
+}
+
+void list_cavity_memory(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    CavityTable& c = m.cavities;
+    const auto if_forced = only_if([](bool forced) { return forced; }, value(m.forced));
+    g.stage("forces/store_cavities", store_cavities, inputs<CavityInputs>(c, m.bodies, m.nodes),
+            inputs<PipeInputs>(m.pipes), value(m.cavity_map), read(c.volume_now), value(w.clock.time),
+            value(w.scratch.parameters.h), outputs<CavityMemory>(c, m.pipes), if_taken(w), if_forced);
+}
+
 }  // namespace
 
-constinit const ForceElement cavity_pressures{
-    .any = any_cavity, .add_forces = list_cavity_forces, .add_rate = add_cavity_rate, .rate_moves = true};
+constinit const ForceElement cavity_pressures{.any = any_cavity,
+                                              .add_forces = list_cavity_forces,
+                                              .add_rate = add_cavity_rate,
+                                              .rate_moves = true,
+                                              .mark_driven = list_filled_cavities,
+                                              .is_driven = a_cavity_fills,
+                                              .remember = list_cavity_memory};
 
 }  // namespace skerry

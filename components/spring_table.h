@@ -1,0 +1,82 @@
+// One row per spring: a spring and a damper between two anchors (docs/methods/springs.md).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "components/anchor.h"
+#include "components/column.h"
+#include "components/column_role.h"
+#include "components/key_lists.h"
+#include "components/spring_side.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// Response of an anchor to forces: the change of its velocity per unit impulse.
+struct AnchorMass {
+    Real inverse = 0;  // part of the nodes of deformable bodies, as lumped masses [1/kg]
+    // This part if every node divides its mass among the dampers that act on it [1/kg].
+    Real divided = 0;
+    // Number of dampers that act on the frame of the rigid or implicit body; 0 for other anchors.
+    Index dampers = 0;
+};
+
+/// Force of a spring in the present step.
+struct SpringForce {
+    Vec3 force = Vec3::Zero();    // on the first anchor [N]
+    Vec3 damping = Vec3::Zero();  // part of `force` that the damper exerts [N]
+    Real tension = 0;             // force that pulls the anchors together; negative if it pushes them apart [N]
+    Real elastic = 0;             // part of `tension` that the spring exerts [N]
+    Real rest_rate = 0;           // rate of the rest length [m/s]
+};
+
+struct SpringTable {
+    Column<std::uint32_t> slot;
+    Column<SpringSide> side;
+    AnchorColumns first, second;
+    Column<Real> stiffness;     // [N/m]
+    Column<Real> damping;       // [N s/m]
+    Column<Real> strength;      // largest force [N]
+    Column<Range> rest_length;  // range of rows in the column `key`
+    // The next four columns describe the last step. They affect reports and the energy balance, but no later step.
+    Column<Vec3> force;                            // on the first anchor [N]
+    Column<Real> tension, elastic;                 // all of the tension, and the part of the spring [N]
+    Column<Real> rest_rate;                        // rate of the rest length [m/s]
+    Column<AnchorMass> first_mass, second_mass;    // written by weigh_springs
+    Column<Mat3> first_response, second_response;  // written by respond_at_anchors [1/kg]
+    Column<SpringForce> next;                      // written by add_spring_forces
+    Column<TimeKey> key;                           // rest lengths of all springs [m]
+
+    std::size_t size() const { return slot.size(); }
+
+    std::span<const TimeKey> keys_of(std::size_t spring) const { return rows_of(key.span(), rest_length[spring]); }
+    void erase_keys_of(std::size_t spring) { erase_keys(rest_length, key, spring); }
+
+    /// Visits the columns with one row per spring. The column `key` is visited by for_each_column only.
+    void for_each_row_column(auto&& visit) {
+        visit("slot", slot, ColumnRole::state);
+        visit("side", side, ColumnRole::state);
+        first.for_each_column({"first_body", "first_collider", "first_point"}, visit);
+        second.for_each_column({"second_body", "second_collider", "second_point"}, visit);
+        visit("stiffness", stiffness, ColumnRole::state);
+        visit("damping", damping, ColumnRole::state);
+        visit("strength", strength, ColumnRole::state);
+        visit("rest_length", rest_length, ColumnRole::link);
+        visit("force", force, ColumnRole::memory);
+        visit("tension", tension, ColumnRole::memory);
+        visit("elastic", elastic, ColumnRole::memory);
+        visit("rest_rate", rest_rate, ColumnRole::memory);
+        visit("first_mass", first_mass, ColumnRole::derived);
+        visit("second_mass", second_mass, ColumnRole::derived);
+        visit("first_response", first_response, ColumnRole::scratch);
+        visit("second_response", second_response, ColumnRole::scratch);
+        visit("next", next, ColumnRole::scratch);
+    }
+    void for_each_column(auto&& visit) {
+        for_each_row_column(visit);
+        visit("key", key, ColumnRole::state);
+    }
+};
+
+}  // namespace skerry

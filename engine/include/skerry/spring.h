@@ -1,0 +1,65 @@
+// Springs and dampers between points of bodies, colliders and the world (docs/methods/springs.md).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "components/spring_side.h"
+#include "components/types.h"
+#include "skerry/anchor.h"
+#include "skerry/time_table.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+class World;
+
+/// A spring, a damper, or both in parallel, between two anchors. At least one anchor must be on a body.
+struct SpringSettings {
+    Anchor first{}, second{};
+    Real stiffness = 0;                      // >= 0 [N/m]
+    Real damping = 0;                        // force per rate of the length, >= 0 [N s/m]
+    std::optional<TimeTable> rest_length{};  // each value >= 0; default: the present length [m]
+    SpringSide only = SpringSide::both;      // side on which the spring and its damper act
+    Real strength = infinity;                // largest force, > 0; a longer spring keeps this force [N]
+};
+
+/// Present state of a spring. Before the first step `force` is zero.
+struct SpringState {
+    Anchor first{}, second{};  // at their present positions
+    Real length = 0;           // [m]
+    Real rate = 0;             // rate of the length [m/s]
+    Real rest_length = 0;      // [m]
+    Real force = 0;            // force in the last step; positive if it pulls the anchors together [N]
+    Real energy = 0;           // elastic energy [J]
+};
+
+/// A view of the springs of a world. It is valid until the world is moved or destroyed. Like the functions of World,
+/// functions that change springs may only be called between calls of advance. They throw SceneError and change nothing
+/// if a handle is stale or a value is out of range. Springs belong to the state of the world: they are saved, cloned
+/// and hashed. Each change wakes the bodies of the spring, unless the new value equals the old one.
+class Springs {
+public:
+    explicit Springs(World& world) : world_(&world) {}
+
+    /// Adds a spring. The spring is removed when a body or a collider of its anchors is removed. Stiff springs on light
+    /// bodies shorten the step of the world.
+    SpringHandle add(const SpringSettings& spring);
+    void remove(SpringHandle spring);
+    bool alive(SpringHandle spring) const;
+    std::vector<SpringHandle> all() const;  // all springs, in the order added
+    SpringState state(SpringHandle spring) const;
+
+    /// Moves the second anchor of a spring. The rest length does not change. With `strength`, this drags a body to a
+    /// point that moves, for example with a mouse.
+    void set_second(SpringHandle spring, const Anchor& anchor);
+    void set_rest_length(SpringHandle spring, const TimeTable& rest_length);
+    void set_stiffness(SpringHandle spring, Real stiffness);
+    void set_damping(SpringHandle spring, Real damping);
+
+private:
+    World* world_;
+};
+
+}  // namespace skerry
+#pragma GCC visibility pop

@@ -1,0 +1,206 @@
+// Functions that add, remove and change springs between steps (docs/methods/springs.md).
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/world/complaint.h"
+#include "engine/world/control/control.h"
+#include "engine/world/edit/joining_rows.h"
+#include "engine/world/query/place_anchor.h"
+#include "engine/world/step/step.h"
+#include "engine/world/validate.h"
+#include "skerry/spring.h"
+
+namespace skerry {
+
+namespace {
+
+[[noreturn]] void refuse_spring(const char* field, const std::string& found, const std::string& expected) {
+    refuse("spring", field, found, expected);
+}
+
+void require_not_negative(const char* field, Real found, const char* unit) {
+    if (!(std::isfinite(found) && found >= 0))
+        refuse_spring(field, short_text(found), std::string("a number >= 0 (") + unit + ")");
+}
+
+void validate_rest_length(const TimeTable& rest_length) {
+    require_table("spring", "rest_length", rest_length);
+    for (std::size_t k = 0; k < rest_length.keys.size(); ++k)
+        if (!(rest_length.keys[k].value >= 0))
+            refuse_spring(rest_length.keys.size() == 1 ? "rest_length" : "rest_length.keys",
+                          short_text(rest_length.keys[k].value), "a length >= 0 (m)");
+}
+
+/// Checks an anchor of a spring. At theta < 1 a force that follows the deformation of an implicit body would add energy
+/// to the body.
+void require_stable(const Model& model, const PlacedAnchor& anchor, const char* field) {
+    if (anchor.body == no_index || model.settings.theta == 1) return;
+    const auto body = static_cast<std::size_t>(anchor.body);
+    if (model.dynamics_of(body) == BodyDynamics::implicit_elastic)
+        refuse_spring(field,
+                      "implicit body '" + model.body_records[body].name + "' in a world with theta " +
+                          short_text(model.settings.theta),
+                      "theta 1 in the settings, or another body");
+}
+
+void require_body(const PlacedAnchor& first, const PlacedAnchor& second) {
+    if (first.body == no_index && second.body == no_index)
+        refuse_spring("first, second", "no body", "a body in at least one of the two anchors");
+}
+
+void wake_bodies_of(Model& model, std::size_t row) {
+    for (const Index body : {model.springs.first.body[row], model.springs.second.body[row]})
+        if (body != no_index) model.wake(static_cast<std::size_t>(body));
+}
+
+/// Must be called after each change of a spring.
+void note_change(WorldState& world, std::size_t row) {
+    wake_bodies_of(world.model, row);
+    note_forces(world.model);
+    world.record.balance.close();
+}
+
+Real length_of(const WorldState& world, std::size_t row) {
+    const AnchorsBetweenSteps anchors(world);
+    return (anchors.of(world.model.springs.first).at(row) - anchors.of(world.model.springs.second).at(row)).norm();
+}
+
+/// The state of a world between steps, and the row of a spring, for a function that changes the spring.
+struct Changed {
+    WorldState& world;
+    SpringTable& springs;
+    std::size_t row;
+
+    Changed(World& of, SpringHandle spring, const char* call)
+        : world(WorldAccess::state_of(of)), springs(world.model.springs), row(0) {
+        world.require_between_steps(call);
+        row = static_cast<std::size_t>(world.model.row(spring, call));
+    }
+    void set(Column<Real>& column, Real value) const {
+        if (column[row] == value) return;
+        column[row] = value;
+        note_change(world, row);
+    }
+};
+
+}  // namespace
+
+SpringHandle Springs::add(const SpringSettings& spring) {
+    WorldState& world = WorldAccess::state_of(*world_);
+    world.require_between_steps("add_spring");
+    require_not_negative("stiffness", spring.stiffness, "N/m");
+    require_not_negative("damping", spring.damping, "N s/m");
+    if (!(spring.strength > 0)) refuse_spring("strength", short_text(spring.strength), "a force > 0 (N)");
+    if (spring.rest_length) validate_rest_length(*spring.rest_length);
+    const PlacedAnchor first = place_anchor(world, spring.first, "spring", "first"),
+                       second = place_anchor(world, spring.second, "spring", "second");
+    require_body(first, second);
+    require_stable(world.model, first, "first");
+    require_stable(world.model, second, "second");
+    Model& model = world.model;
+    SpringTable& table = model.springs;
+    const std::size_t row = table.size();
+    AnyTable(table).resize(row + 1);
+    const SpringHandle handle = model.spring_map.insert(static_cast<Index>(row));
+    table.slot[row] = handle.slot;
+    table.side[row] = spring.only;
+    first.store(table.first, row);
+    second.store(table.second, row);
+    table.stiffness[row] = spring.stiffness;
+    table.damping[row] = spring.damping;
+    table.strength[row] = spring.strength;
+    const TimeTable rest = spring.rest_length.value_or(TimeTable(length_of(world, row)));
+    table.rest_length[row] = {};
+    set_keys(table.rest_length, table.key, row, rest.keys);
+    model.links_open = true;
+    note_change(world, row);
+    return handle;
+}
+
+void Springs::remove(SpringHandle spring) {
+    const Changed change(*world_, spring, "remove");
+    Model& model = change.world.model;
+    wake_bodies_of(model, change.row);
+    std::vector<bool> gone(model.springs.size(), false);
+    gone[change.row] = true;
+    erase_joining_rows(gone, model.springs, model.spring_map);
+    model.links_open = true;
+    note_forces(model);
+    change.world.record.balance.close();
+}
+
+bool Springs::alive(SpringHandle spring) const {
+    return WorldAccess::state_of(*world_).model.spring_map.row(spring) != no_index;
+}
+
+std::vector<SpringHandle> Springs::all() const {
+    std::vector<SpringHandle> handles;
+    const Model& model = WorldAccess::state_of(*world_).model;
+    for (const std::uint32_t slot : model.springs.slot) handles.push_back(model.spring_map.handle_of_slot(slot));
+    return handles;
+}
+
+SpringState Springs::state(SpringHandle spring) const {
+    return spring_state(WorldAccess::state_of(*world_), spring);
+}
+
+SpringState spring_state(const WorldState& world, SpringHandle spring) {
+    const Model& model = world.model;
+    const auto row = static_cast<std::size_t>(model.row(spring, "spring"));
+    const AnchorsBetweenSteps anchors(world);
+    SpringInputs inputs =
+        SpringInputs::bind({}, model.springs, model.bodies, model.nodes, model.colliders, model.any_asleep);
+    inputs.first = anchors.of(model.springs.first);
+    inputs.second = anchors.of(model.springs.second);
+    SpringState state;
+    state.first = present_anchor(world, model.springs.first, row);
+    state.second = present_anchor(world, model.springs.second, row);
+    const Vec3 apart = state.first.point - state.second.point;
+    state.length = apart.norm();
+    if (state.length > 0)
+        state.rate = apart.dot(inputs.first.velocity(row) - inputs.second.velocity(row)) / state.length;
+    state.rest_length = inputs.rest(row, world.clock.time);
+    state.force = model.springs.tension[row];
+    state.energy = inputs.law(row).energy(state.length - state.rest_length);
+    return state;
+}
+
+void Springs::set_second(SpringHandle spring, const Anchor& anchor) {
+    const Changed change(*world_, spring, "set_second");
+    const PlacedAnchor placed = place_anchor(change.world, anchor, "spring", "second");
+    AnchorColumns& columns = change.springs.second;
+    PlacedAnchor first;
+    first.body = change.springs.first.body[change.row];
+    require_body(first, placed);
+    require_stable(change.world.model, placed, "second");
+    if (columns.body[change.row] == placed.body && columns.collider[change.row] == placed.collider &&
+        columns.point[change.row] == placed.point)
+        return;
+    wake_bodies_of(change.world.model, change.row);
+    change.world.model.links_open |= columns.body[change.row] != placed.body;
+    placed.store(columns, change.row);
+    note_change(change.world, change.row);
+}
+
+void Springs::set_rest_length(SpringHandle spring, const TimeTable& rest_length) {
+    const Changed change(*world_, spring, "set_rest_length");
+    validate_rest_length(rest_length);
+    if (std::ranges::equal(change.springs.keys_of(change.row), rest_length.keys)) return;
+    set_keys(change.springs.rest_length, change.springs.key, change.row, rest_length.keys);
+    note_change(change.world, change.row);
+}
+
+void Springs::set_stiffness(SpringHandle spring, Real stiffness) {
+    require_not_negative("stiffness", stiffness, "N/m");
+    const Changed change(*world_, spring, "set_stiffness");
+    change.set(change.springs.stiffness, stiffness);
+}
+
+void Springs::set_damping(SpringHandle spring, Real damping) {
+    require_not_negative("damping", damping, "N s/m");
+    const Changed change(*world_, spring, "set_damping");
+    change.set(change.springs.damping, damping);
+}
+
+}  // namespace skerry

@@ -1,0 +1,92 @@
+#include "engine/world/step/weigh_springs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace skerry {
+
+SpringInputs springs_of(const Model& model) {
+    return SpringInputs::bind({}, model.springs, model.bodies, model.nodes, model.colliders, model.any_asleep);
+}
+
+void weigh_springs(Model& model) {
+    SpringTable& springs = model.springs;
+    const SpringInputs inputs = springs_of(model);
+    std::vector<Index> of_node(model.nodes.position.size(), 0), of_body(model.bodies.slot.size(), 0);
+    const auto count = [&](const AnchorInputs& anchors, std::size_t s) {
+        if (anchors.body[s] == no_index || !(springs.damping[s] > 0)) return;
+        ++of_body[static_cast<std::size_t>(anchors.body[s])];
+        anchors.for_each_node(s, [&](std::size_t node, Real) { ++of_node[node]; });
+    };
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+        count(inputs.first, s);
+        count(inputs.second, s);
+    }
+    const auto weigh = [&](const AnchorInputs& anchors, std::size_t s) {
+        AnchorMass mass;
+        if (anchors.body[s] == no_index) return mass;
+        const auto body = static_cast<std::size_t>(anchors.body[s]);
+        if (model.has_frame(body)) mass.dampers = of_body[body];
+        if (model.is_rigid(body)) return mass;
+        anchors.for_each_node(s, [&](std::size_t node, Real weight) {
+            const Real inverse = weight * weight * model.nodes.inverse_mass[node];
+            mass.inverse += inverse;
+            mass.divided += of_node[node] * inverse;
+        });
+        return mass;
+    };
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+        springs.first_mass[s] = weigh(inputs.first, s);
+        springs.second_mass[s] = weigh(inputs.second, s);
+    }
+}
+
+namespace {
+
+/// Upper bound, for all directions, of the inverse mass of the frame of a rigid or implicit body at an anchor [1/kg].
+Real inverse_mass_of_frame(const Model& model, const AnchorInputs& anchors, std::size_t s) {
+    if (anchors.body[s] == no_index) return 0;
+    const auto body = static_cast<std::size_t>(anchors.body[s]);
+    if (!model.has_frame(body) || model.is_held(body)) return 0;
+    const RigidBodyTable& rigid = model.rigid_bodies;
+    const auto r = static_cast<std::size_t>(model.bodies.rigid[body].begin);
+    const Real arm = (anchors.at(s) - rigid.center[r]).squaredNorm();
+    return 1 / rigid.mass[r] + (arm > 0 ? arm / rigid.moments[r].minCoeff() : Real(0));
+}
+
+}  // namespace
+
+// A spring of stiffness k between anchors with the inverse masses u and v, on two bodies, adds a matrix to the squared
+// frequencies whose blocks have the norms k u, k sqrt(u v) and k v. By the block form of Gershgorin's theorem the
+// largest squared frequency grows by at most the largest sum of norms in a row.
+void add_spring_rates(const Model& model, std::span<Real> of_body) {
+    const SpringInputs springs = springs_of(model);
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+        const Real first = model.springs.first_mass[s].inverse + inverse_mass_of_frame(model, springs.first, s),
+                   second = model.springs.second_mass[s].inverse + inverse_mass_of_frame(model, springs.second, s);
+        const Real joined = std::sqrt(first * second);
+        if (springs.first.body[s] != no_index)
+            of_body[static_cast<std::size_t>(springs.first.body[s])] += springs.stiffness[s] * (first + joined);
+        if (springs.second.body[s] != no_index)
+            of_body[static_cast<std::size_t>(springs.second.body[s])] += springs.stiffness[s] * (second + joined);
+    }
+}
+
+// If each mass is divided among the dampers that act on it, a damper reduces a velocity at most by its own factor.
+void bound_spring_damping(const Model& model, std::span<Real> of_body) {
+    const SpringInputs springs = springs_of(model);
+    const auto divided = [&](const AnchorMass& mass, const AnchorInputs& anchors, std::size_t s) {
+        return mass.dampers == 0 ? mass.divided
+                                 : mass.dampers * (mass.inverse + inverse_mass_of_frame(model, anchors, s));
+    };
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+        const Real rate = springs.damping[s] * (divided(model.springs.first_mass[s], springs.first, s) +
+                                                divided(model.springs.second_mass[s], springs.second, s));
+        for (const Index body : {springs.first.body[s], springs.second.body[s]})
+            if (body != no_index)
+                of_body[static_cast<std::size_t>(body)] = std::max(of_body[static_cast<std::size_t>(body)], rate);
+    }
+}
+
+}  // namespace skerry
