@@ -22,9 +22,9 @@ from .reports import (
     StepReport,
     WorldReport,
 )
+from .spring import Spring, SpringState
 from .surface import SurfaceSet
 from .tie import Tie, TieState
-from .spring import Spring, SpringState
 from .world import World
 
 __all__ = [

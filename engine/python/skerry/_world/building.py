@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 from .._arrays import (
     RotationLike,
     TimeTableLike,
-    Vector,
     VectorLike,
     checked,
     flag,
@@ -47,7 +46,6 @@ from .._settings import (
     SurfaceMesh,
     TieKind,
 )
-from .anchor import Anchor
 from .anchor import Anchor, core_anchor
 from .body import Attachment, Body, Indices
 from .cable import Cable, drive_tables
@@ -59,8 +57,8 @@ from .load import Load
 from .material import MaterialHandle
 from .objects import Objects, PosedObject
 from .reports import StepReport
-from .tie import Tie
 from .spring import Spring
+from .tie import Tie
 
 if TYPE_CHECKING:
     from .._recorder import Follower
@@ -256,7 +254,8 @@ class Building(CavityBuilding):
 
         kind: "ball", "hinge", "slider" or "fixed". point: position of the joint (3,) [m]. axis: axis of a hinge or a
         slider (3,). lower, upper: limits of its coordinate, which is 0 now [rad or m]. motor: motor on the axis.
-        passive: spring, damper and dry friction on the axis. bodies_touch: True: the two bodies may collide. SceneError: a body is not rigid, or a value is out of range."""
+        passive: spring, damper and dry friction on the axis. bodies_touch: True: the two bodies may collide.
+        SceneError: a body is not rigid, or a value is out of range."""
         given = Arguments(
             of="joint",
             kind=kind,
@@ -418,6 +417,7 @@ class Building(CavityBuilding):
 
     def _tie(self, handle: Any) -> Tie:
         return Tie(self._self, handle, f"tie of body '{self._core.name(self._core.tie_state(handle)['body'])}'")
+
     def _spring(self, handle: Any) -> Spring:
         return Spring(self._self, handle, "spring")
 

@@ -99,6 +99,9 @@ class CableProbe:
     """
 
     cable: Cable
+
+
+@dataclass(frozen=True, slots=True)
 class CavityProbe:
     """Pressure, volume, gas mass and energy of a cavity, and its force on the body.
 
@@ -106,6 +109,9 @@ class CavityProbe:
     """
 
     cavity: Cavity
+
+
+@dataclass(frozen=True, slots=True)
 class SpringProbe:
     """Length, rate, force and energy of a spring.
 

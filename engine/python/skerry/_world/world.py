@@ -53,8 +53,7 @@ _MOST_CALLS = 2**53
 """Number of calls of advance() in a run up to which a number of type float counts them exactly."""
 
 
-class World(SurfaceRules, WorldResults, WorldOutput):
-class World(Building, WorldLoads, WorldResults, WorldOutput):
+class World(SurfaceRules, WorldLoads, WorldResults, WorldOutput):
     """A simulation of deformable and rigid bodies in frictional contact. All units are SI units.
 
     World() has the default settings, World(settings) the given ones; keywords change single settings:
