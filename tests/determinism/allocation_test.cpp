@@ -4,10 +4,13 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
+#include <vector>
 
 #include "engine/world/tuning.h"
 #include "jobs/executor.h"
 #include "skerry/rollout.h"
+#include "skerry/surface.h"
 #include "tests/support/worlds.h"
 
 extern "C" void* __libc_malloc(std::size_t);
@@ -141,6 +144,26 @@ TEST_CASE("leapfrog allocates nothing, either", "[determinism]") {
     const auto stiff = world.add_material({.young_modulus = 3e6, .friction = 0.5, .damping = 20});
     world.add_body(mesh::ball(0.05, 4), {.material = stiff, .position = {0.5, 0, 0.06}});
     REQUIRE(world.advance(1.5).ok());
+    CHECK(allocations_of_a_fifth_second(world) == 0);
+}
+
+TEST_CASE("surface sets and pairs of materials allocate nothing, either", "[determinism]") {
+    Settings settings;
+    settings.sleep = false;
+    World world = resting_balls(Backend::serial, 1, settings);
+    const MaterialHandle material = world.materials().front();
+    SurfacePairs(world).set(material, material, {.restitution = 0});
+    for (const BodyHandle body : world.bodies()) {
+        std::vector<Index> nodes(world.positions(body).size());
+        std::iota(nodes.begin(), nodes.end(), 0);
+        SurfaceSets(world).add({.body = body,
+                                .nodes = nodes,
+                                .surface = {.friction = 0.4},
+                                .friction_across = 0.2,
+                                .direction = Vec3(1, 0, 0)});
+    }
+    REQUIRE(world.advance(1.5).ok());
+    REQUIRE(world.contacts().front().friction_across < world.contacts().front().dynamic_friction);
     CHECK(allocations_of_a_fifth_second(world) == 0);
 }
 
