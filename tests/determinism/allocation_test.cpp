@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
+#include <vector>
 
 #include "engine/world/tuning.h"
 #include "jobs/executor.h"
@@ -12,6 +14,7 @@
 #include "skerry/load.h"
 #include "skerry/rollout.h"
 #include "skerry/spring.h"
+#include "skerry/surface.h"
 #include "tests/support/worlds.h"
 
 extern "C" void* __libc_malloc(std::size_t);
@@ -190,6 +193,26 @@ TEST_CASE("cables allocate nothing, either", "[determinism]") {
     cables.add({.points = points, .drive = {.tension = 1}, .friction = 0.2});
     cables.add({.points = points, .drive = {.rate = -1e-4}});
     REQUIRE(world.advance(1).ok());
+    CHECK(allocations_of_a_fifth_second(world) == 0);
+}
+
+TEST_CASE("surface sets and pairs of materials allocate nothing, either", "[determinism]") {
+    Settings settings;
+    settings.sleep = false;
+    World world = resting_balls(Backend::serial, 1, settings);
+    const MaterialHandle material = world.materials().front();
+    SurfacePairs(world).set(material, material, {.restitution = 0});
+    for (const BodyHandle body : world.bodies()) {
+        std::vector<Index> nodes(world.positions(body).size());
+        std::iota(nodes.begin(), nodes.end(), 0);
+        SurfaceSets(world).add({.body = body,
+                                .nodes = nodes,
+                                .surface = {.friction = 0.4},
+                                .friction_across = 0.2,
+                                .direction = Vec3(1, 0, 0)});
+    }
+    REQUIRE(world.advance(1.5).ok());
+    REQUIRE(world.contacts().front().friction_across < world.contacts().front().dynamic_friction);
     CHECK(allocations_of_a_fifth_second(world) == 0);
 }
 
