@@ -1,5 +1,6 @@
 #include "systems/forces/prepare_cables.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

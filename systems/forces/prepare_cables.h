@@ -7,7 +7,6 @@
 #include "components/cable_table.h"
 #include "components/collider_table.h"
 #include "components/node_table.h"
-#include "components/resting_nodes.h"
 #include "jobs/access.h"
 #include "systems/forces/anchors.h"
 

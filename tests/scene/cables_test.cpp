@@ -1,9 +1,8 @@
 // Cables in whole steps, against closed forms (docs/methods/cables.md).
-#include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "skerry/cable.h"
 #include "tests/support/same_bits.h"

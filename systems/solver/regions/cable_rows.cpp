@@ -1,5 +1,7 @@
 #include "systems/solver/regions/cable_rows.h"
 
+#include <algorithm>
+
 #include "systems/solver/local/rigid_part.h"
 
 namespace skerry {
