@@ -92,7 +92,7 @@ class Building:
             raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'{reason}")
 
     def _hold(self, core: Any) -> None:
-        self._core = core
+        self._core: Any = core
         self._advancing = False
         self._collecting = False  # True within contact_problems()
         self._watch: Callable[[StepReport], object] | None = None
