@@ -6,6 +6,7 @@
 #include "skerry/joint.h"
 #include "skerry/load.h"
 #include "skerry/report.h"
+#include "skerry/spring.h"
 
 namespace skerry::python {
 
