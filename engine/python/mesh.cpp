@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "engine/mesh/sets.h"
 #include "engine/python/mesh_sets.h"
 
 namespace skerry::python {
@@ -25,17 +24,12 @@ Mesh same_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::
     return mesh;
 }
 
-/// A mesh whose inverted tetrahedra are turned, and notes about this. Faces of sets get the orientation of the surface.
+/// A mesh whose inverted tetrahedra are turned, and notes about this.
 nb::tuple new_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels,
                    const nb::dict& sets) {
     Mesh mesh = same_mesh(nodes, tetrahedra, labels, {}, sets);
     Notes notes;
     mesh::turn_inverted(mesh, "mesh", &notes);
-    for (auto& [name, set] : mesh.sets) {
-        mesh::require_set("mesh", name, set, mesh.nodes.size(), mesh.tetrahedra);
-        mesh::tidy(set);
-    }
-    mesh::match_faces(mesh.tetrahedra, mesh.sets);
     return nb::make_tuple(std::move(mesh), notes);
 }
 

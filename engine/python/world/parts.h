@@ -4,6 +4,7 @@
 #include "engine/python/world_object.h"
 #include "skerry/joint.h"
 #include "skerry/report.h"
+#include "skerry/tie.h"
 
 namespace skerry::python {
 
