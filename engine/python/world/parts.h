@@ -7,6 +7,7 @@
 #include "skerry/load.h"
 #include "skerry/report.h"
 #include "skerry/spring.h"
+#include "skerry/tie.h"
 
 namespace skerry::python {
 
