@@ -15,7 +15,6 @@
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
-#include "systems/forces/add_loads.h"
 #include "systems/forces/add_nodal_loads.h"
 
 namespace skerry {
@@ -121,8 +120,6 @@ void separate(WorldState& w, TaskGraph& g) {
             make(w.scratch.pressed), if_any_asleep);
     g.stage("dynamics/mark_driven", mark_driven, inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep),
             value(w.clock.time), value(p.h), write(w.scratch.pressed), if_any_asleep);
-    g.stage("forces/mark_loaded", mark_loaded, inputs<LoadedBodies>(m.loads, m.bodies), value(w.clock.time), value(p.h),
-            write(w.scratch.pressed), if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
@@ -187,8 +184,8 @@ void wake(WorldState& w, TaskGraph& g) {
     AttachmentTable& a = w.model.attachments;
     BodyTable& b = w.model.bodies;
     g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(w.scratch.contacts, w.model.links),
-            read(w.scratch.pressed), read(a.body), read(a.motion), write(b.asleep), write(b.still_time), if_taken(w),
-            if_sleepy(w));
+            read(w.scratch.pressed), read(w.scratch.driven), read(a.body), read(a.motion), write(b.asleep),
+            write(b.still_time), if_taken(w), if_sleepy(w));
 }
 
 /// Lists the stage that measures the travel of bodies since the last search for contact candidates.
