@@ -90,28 +90,19 @@ bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& f
     return true;
 }
 
-bool mark_loaded(const LoadedBodies& loads, Real t, Real h, std::span<std::uint8_t> marked) {
-    bool any = false;
+bool find_driven(const LoadedBodies& loads, Real t, Real h, Column<std::uint8_t>& driven) {
+    driven.clear();
     for (std::size_t load = 0; load < loads.load_body.size(); ++load) {
         if (!changes(rows_of(loads.key, loads.scale_keys[load]), t, h)) continue;
-        any = true;
+        if (driven.empty()) driven.assign(loads.body_kind.size(), 0);
         if (loads.load_body[load] != no_index) {
-            marked[static_cast<std::size_t>(loads.load_body[load])] = 1;
+            driven[static_cast<std::size_t>(loads.load_body[load])] = 1;
             continue;
         }
         for (std::size_t body = 0; body < loads.body_kind.size(); ++body)
-            marked[body] |= loads.body_kind[body] == BodyKind::deformable;
+            driven[body] |= loads.body_kind[body] == BodyKind::deformable;
     }
-    return any;
-}
-
-bool find_driven(const LoadedBodies& loads, Real t, Real h, Column<std::uint8_t>& driven) {
-    driven.clear();
-    if (loads.load_body.empty()) return false;
-    driven.assign(loads.body_kind.size(), 0);
-    if (mark_loaded(loads, t, h, driven)) return true;
-    driven.clear();
-    return false;
+    return !driven.empty();
 }
 
 }  // namespace skerry

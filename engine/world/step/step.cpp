@@ -193,8 +193,8 @@ void wake(WorldState& w, TaskGraph& g) {
     AttachmentTable& a = w.model.attachments;
     BodyTable& b = w.model.bodies;
     g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(w.scratch.contacts, w.model.links),
-            read(w.scratch.pressed), read(a.body), read(a.motion), write(b.asleep), write(b.still_time), if_taken(w),
-            if_sleepy(w));
+            read(w.scratch.pressed), read(w.scratch.driven), read(a.body), read(a.motion), write(b.asleep),
+            write(b.still_time), if_taken(w), if_sleepy(w));
 }
 
 /// Lists the stage that measures the travel of bodies since the last search for contact candidates.

@@ -86,8 +86,9 @@ void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed) {
 }
 
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
-                 std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
-                 std::span<std::uint8_t> asleep, std::span<Real> still_time) {
+                 std::span<const std::uint8_t> driven, std::span<const Index> attached_body,
+                 std::span<const RigidMotion> attached_motion, std::span<std::uint8_t> asleep,
+                 std::span<Real> still_time) {
     // The usual case returns early, because the update of positions waits for this function.
     if (std::ranges::all_of(asleep, [](std::uint8_t each) { return each == 0; })) return false;
     bool any = false;
@@ -102,8 +103,9 @@ bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> press
         wake(touches.first_body[c]);
         wake(touches.second_body[c]);
     }
-    for (std::size_t b = 0; b < pressed.size(); ++b)
-        if (pressed[b]) wake(static_cast<Index>(b));
+    for (const std::span<const std::uint8_t> marked : {pressed, driven})
+        for (std::size_t b = 0; b < marked.size(); ++b)
+            if (marked[b]) wake(static_cast<Index>(b));
     for (std::size_t a = 0; a < attached_body.size(); ++a)
         if (!attached_motion[a].stands_still()) wake(attached_body[a]);
     for (std::size_t link = 0; link < touches.linked_first.size(); ++link) {

@@ -70,12 +70,13 @@ struct PressInputs {
 /// impulses are stored, every contact counts.
 void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed);
 
-/// Wakes a body if it is marked in `pressed`, if a contact of this step has an impulse or an overlap, if a joint
-/// connects it to an awake body, or if an attachment moves it. Contacts between sleeping bodies are not searched, so
-/// each contact has an awake body or a moving collider. Returns false if no body was woken.
+/// Wakes a body if it is marked in `pressed` or `driven`, if a contact of this step has an impulse or an overlap, if a
+/// joint connects it to an awake body, or if an attachment moves it. Contacts between sleeping bodies are not searched,
+/// so each contact has an awake body or a moving collider. Returns false if no body was woken.
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
-                 std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
-                 std::span<std::uint8_t> asleep, std::span<Real> still_time);
+                 std::span<const std::uint8_t> driven, std::span<const Index> attached_body,
+                 std::span<const RigidMotion> attached_motion, std::span<std::uint8_t> asleep,
+                 std::span<Real> still_time);
 
 struct RestInputs {
     std::span<const Index> attached_body;  // by attachment
