@@ -29,12 +29,6 @@ void add_drag_rates(const Model& model, std::span<Real> of_body) {
             if (loads.acts_on(load, body)) of_body[body] += loads.rate[load];
 }
 
-void list_loaded_bodies(WorldState& w, TaskGraph& g) {
-    const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(w.model.any_asleep));
-    g.stage("forces/mark_loaded", mark_loaded, inputs<LoadedBodies>(w.model.loads, w.model.bodies), value(w.clock.time),
-            value(w.scratch.parameters.h), write(w.scratch.pressed), if_any_asleep);
-}
-
 bool a_load_changes(const Model& model, Real t, Real h) {
     for (std::size_t row = 0; row < model.loads.size(); ++row)
         if (changes(model.loads.keys_of(row), t, h)) return true;
@@ -46,7 +40,6 @@ bool a_load_changes(const Model& model, Real t, Real h) {
 constinit const ForceElement loads_and_fields{.any = any_of_loads,
                                               .add_forces = add_load_stages,
                                               .add_drag = add_drag_rates,
-                                              .mark_driven = list_loaded_bodies,
                                               .is_driven = a_load_changes};
 
 }  // namespace skerry
