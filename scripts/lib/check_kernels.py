@@ -17,10 +17,10 @@ import sources
 # KINDS; each limit is for the function with the highest count. The limits are the counts of the present code with GCC
 # 12 in the preset dev, which this script prints. After a change that lowers a count, write the lower number here. An
 # unrolled loop has more accesses to the stack in its code, not in its run. The copies in compute_run are arguments of
-# the rare viscous stress.
+# the rare viscous stress. Its calls are those of the law of Ogden, which is not inlined.
 KINDS = ("copies", "other calls", "stack accesses", "scalar comparisons")
 LIMITS = {
-    "compute_run": {"x86-64": (2, 2, 3513, 144), "x86-64-v3": (2, 2, 814, 11), "x86-64-v4": (0, 2, 225, 8)},
+    "compute_run": {"x86-64": (2, 7, 3434, 121), "x86-64-v3": (2, 7, 817, 12), "x86-64-v4": (0, 4, 226, 8)},
     "skerry::distances(": {"x86-64": (0, 0, 468, 100), "x86-64-v3": (0, 0, 79, 0), "x86-64-v4": (0, 0, 2, 0)},
     "sort_by_counting(": {"x86-64": (1, 0, 11, 4), "x86-64-v3": (1, 0, 3, 0), "x86-64-v4": (1, 0, 3, 0)},
     "BodySearch::compare_": {"x86-64": (0, 4, 118, 57), "x86-64-v3": (0, 5, 24, 0), "x86-64-v4": (0, 5, 10, 0)},

@@ -137,14 +137,16 @@ struct Run {
 
     /// True if the block has implicit elements, none of them is viscous, and none is nearly as stiff as assumed. This
     /// holds for most blocks in most steps.
-    [[gnu::always_inline]] bool rests_easy(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
+    template <class Law>
+    [[gnu::always_inline]] bool rests_easy(const Law& law, std::size_t block,
+                                           const Parts<LaneMat3<KernelReal>>& F) const {
         bool any_implicit = false, easy = true;
 #pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal square = inner_product(F[part], F[part]), J = determinant(F[part]),
                              taken = load_lanes<KernelReal>(elements.implicit_modulus, block, part);
             const auto near_rest =
-                is_calm(square, J) & (quick_stiffness(material, square, J) <= near_stiffness * taken);
+                is_calm(square, J) & (quick_stiffness(law, material, square, J) <= near_stiffness * taken);
             easy &= all((taken <= 0.0) | near_rest);
             any_implicit |= !all(taken <= 0.0);
         }
@@ -249,7 +251,7 @@ struct Run {
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
             // The copies are needed because a variable whose address is taken is stored in memory, even if the call is
             // not made.
-            if (rests_easy(block, F))
+            if (rests_easy(law, block, F))
                 note(block, false, false);
             else
                 Q = copy_of_parts(with_viscous_stress(*this, block, copy_of_parts(F), scale, copy_of_parts(Q)));

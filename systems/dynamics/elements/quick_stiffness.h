@@ -9,14 +9,17 @@ namespace skerry {
 
 /// Cheap upper bound on the stiffness of a material law in each lane; 0 if the stiffness of the law is constant [Pa].
 /// `square`: |F|^2, `J`: det F.
+template <class Law, class T>
+[[gnu::always_inline]] inline T quick_stiffness(const Law& law, const MaterialConstants& material, const T& square,
+                                                const T& J) {
+    if constexpr (Law::stiffness_varies)
+        return law.rough_stiffness_bound(material, square, J);
+    else
+        return T{};
+}
 template <class T>
 [[gnu::always_inline]] inline T quick_stiffness(const MaterialConstants& material, const T& square, const T& J) {
-    return with_law(material.model, [&](auto law) {
-        if constexpr (law.stiffness_varies)
-            return law.rough_stiffness_bound(material, square, J);
-        else
-            return T{};
-    });
+    return with_law(material.model, [&](auto law) { return quick_stiffness(law, material, square, J); });
 }
 
 }  // namespace skerry
