@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "engine/world/save/checks.h"
-#include "systems/geometry/rotation.h"
 
 namespace skerry {
 

@@ -18,9 +18,9 @@ namespace skerry {
 
 /// Checks sizes, links, ranges and handles of the model. Must be called before any data are derived from the tables.
 void check_model(const SavedFile& file, Model& model);
-/// Checks pairs of materials, surface sets, and materials of colliders.
 /// Checks the tables whose rows join bodies or act on them, such as joints. Bodies must have been checked.
 void check_joining_tables(const SavedFile& file, Model& model);
+/// Checks pairs of materials, surface sets, and materials of colliders.
 void check_surface_rules(const SavedFile& file, const Model& model);
 /// Checks pairs, warm-start impulses and data of the contact search. Surfaces must have been built.
 void check_cache(const SavedFile& file, const Model& model, ContactCache& cache);
