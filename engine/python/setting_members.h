@@ -217,11 +217,9 @@ void for_each_setting(Is<SurfaceMesh> auto& s, auto&& visit) {
 template <class Struct, std::size_t numbers, class... Parts>
 inline constexpr bool has_size = sizeof(Struct) == numbers * sizeof(Real) + (sizeof(Parts) + ... + 0);
 static_assert(has_size<Settings, 17>);
-static_assert(has_size<MaterialSettings, 14>);
 static_assert(
     has_size<BodySettings, 18, std::map<int, MaterialHandle>, std::map<std::string, MaterialHandle>, std::string>);
 static_assert(has_size<MaterialSettings, 20>);
-static_assert(has_size<BodySettings, 18, std::map<int, MaterialHandle>, std::string>);
 static_assert(has_size<ColliderSettings, 16, Motion, std::string>);
 static_assert(has_size<LoadSettings, 2>);
 static_assert(has_size<SurfaceSettings, 8>);

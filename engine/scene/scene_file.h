@@ -269,8 +269,7 @@ struct EnumNames<ProbeQuantity> {
 struct ProbeEntry {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::contacts;
-    std::optional<std::string> body, collider, by, joint, set, cable, cavity;
-    std::optional<std::string> body, collider, by, joint, spring;
+    std::optional<std::string> body, collider, by, joint, set, cable, cavity, spring;
     std::optional<RestBox> box;
     std::optional<Vec3> point;  // position in the mesh's own frame [m]
     std::optional<int> pin;

@@ -85,6 +85,7 @@ template <>
 const Rule<PipeEntry>& rule_of<PipeEntry>();
 template <>
 const Rule<LoadEntry>& rule_of<LoadEntry>();
+template <>
 const Rule<SpringEntry>& rule_of<SpringEntry>();
 template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();

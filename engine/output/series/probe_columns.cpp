@@ -251,7 +251,7 @@ void require_objects(const World& world, const RecordedProbe& probe) {
                           [&](const JointProbe& joint) { require(joint.joint); },
                           [&](const CableProbe& cable) { require(cable.cable); }, [](const EnergyProbe&) {},
                           [&](const CavityProbe& cavity) { require(cavity.cavity); },
-                          [&](const SpringProbe& spring) { require(spring.spring); }, [](const EnergyProbe&) {},
+                          [&](const SpringProbe& spring) { require(spring.spring); },
                           [&](const BodyProbe& body) { require(body.body); },
                           [&](const VolumeProbe& volume) { require(volume.body); },
                           [&](const NodesProbe& nodes) { require(nodes.body); },

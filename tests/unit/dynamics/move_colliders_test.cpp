@@ -95,7 +95,8 @@ TEST_CASE("driven nodes arrive where the motion ends", "[unit]") {
         position{Vec3(7, 7, 7), Vec3(8, 8, 8), Vec3(9, 9, 9)};
     std::vector<Vec3> velocity(3, Vec3(-1, -1, -1));
     const Real h = 0.1;
-    drive_nodes({motions, ranges, node, anchor}, h, position, velocity);
+    const std::vector<Mat3> held{Mat3::Identity()};
+    drive_nodes({motions, ranges, node, anchor, held}, h, position, velocity);
     const Mat3 end = rotation_matrix(Vec3(0, 0, 0.5));
     CHECK((position[2] + h * velocity[2] - (Vec3(1, 0.1, 0) + end * anchor[0])).norm() <= 1e-14);
     CHECK((position[0] + h * velocity[0] - (Vec3(1, 0.1, 0) + end * anchor[1])).norm() <= 1e-14);
