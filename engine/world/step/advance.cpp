@@ -27,9 +27,6 @@ std::uint64_t steps_per_round(const WorldState& world) {
 bool keep_watch(WorldState& world) {
     StepWatch& watch = world.model.watch;
     ++watch.steps;
-    // Number of steps after which the bounds of the frequencies of force elements are computed again.
-    constexpr std::uint64_t steps_per_rate = 16;
-    if (!world.model.force_rate.empty() && watch.steps % steps_per_rate == 0) note_forces(world.model);
     if (watch.steps < steps_per_round(world)) return false;
     // The clusters must be updated first, because stable steps depend on them.
     world.record.balance.work += follow_stiffening(world.model);

@@ -118,7 +118,7 @@ SCENES = [
     ("a probe with a slash", "probes", [{"name": "a/b", "quantity": "energy"}], ['"a/b"', "without /"]),
     ("two probes of one name", "probes", probe(quantity="energy") * 2,
      ['"p", which is already the name of a probe', "a different name for every probe"]),
-    ("contacts without a box", "probes", probe(body="block"), ['no key "box"', '"contacts"']),
+    ("contacts without a box", "probes", probe(body="block"), ['neither "box" nor "set"', "contacts"]),
     ("motion of nobody", "probes", probe(quantity="motion"), ['no key "body"', '"motion"']),
     ("motion of a body that there is not", "probes", probe(quantity="motion", body="blok"), ['"blok"', '"block"']),
     ("motion of a point outside", "probes", probe(quantity="motion", body="block", point=[0, 0, 9]),

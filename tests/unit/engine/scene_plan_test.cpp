@@ -283,7 +283,7 @@ TEST_CASE("motors of a scene have keys, and probes name joints", "[unit]") {
     CHECK(headings == std::vector<std::string>{"time [s]", "door.force_x [N]", "door.force_y [N]", "door.force_z [N]",
                                                "door.moment_x [N m]", "door.moment_y [N m]", "door.moment_z [N m]",
                                                "door.angle [rad]", "door.speed [rad/s]", "door.motor_moment [N m]",
-                                               "door.limit_moment [N m]"});
+                                               "door.passive_moment [N m]", "door.limit_moment [N m]"});
     REQUIRE(scene.world.advance(0.1).ok());
     recorder.sample(scene.world);
     const JointState state = Joints(scene.world).state(Joints(scene.world).all()[0]);
@@ -294,7 +294,8 @@ TEST_CASE("motors of a scene have keys, and probes name joints", "[unit]") {
     CHECK(row[7] == state.coordinate);
     CHECK(row[8] == state.speed);
     CHECK(row[9] == state.motor);
-    CHECK(row[10] == state.limit);
+    CHECK(row[10] == state.passive);
+    CHECK(row[11] == state.limit);
     CHECK_THROWS_WITH(load_scene(file(R"("joint": "hige")")),
                       Catch::Contains("probes[0].joint: found \"hige\"") && Catch::Contains("hinge"));
     CHECK_THROWS_WITH(load_scene(file(R"("joint": 3)")), Catch::Contains("probes[0].joint"));
