@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._arrays import TimeTableLike, Vector, checked, index_array, real, time_table
+from .._errors import scene_error
 from .._settings import CavityLaw, Gas, Liquid
 from .body import Body
 from .objects import WorldObject
@@ -78,7 +79,7 @@ class Cavity(WorldObject):
 
     def remove(self) -> None:
         """Removes the cavity and its pipes."""
-        self._core.remove(self._handle)
+        self._world.remove(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,7 +122,7 @@ class Pipe(WorldObject):
 
     def remove(self) -> None:
         """Removes the pipe."""
-        self._core.remove(self._handle)
+        self._world.remove(self)
 
 
 class CavityBuilding:
@@ -153,9 +154,20 @@ class CavityBuilding:
         given = [pressure, gas, liquid]
         if given.count(None) != 2:
             raise TypeError("add_cavity: expected exactly one of pressure, gas and liquid")
+        owner = self._own(body, "body", Body)
+        if faces is not None:
+            faces = index_array(faces, "faces", ("n", 3))
+            if len(faces) == 0:
+                raise scene_error(
+                    f"cavity of {body._label}",
+                    "faces",
+                    "no faces",
+                    "at least one row of Body.surface",
+                    "without `faces` the cavity takes the walls of all hollows, or the whole surface",
+                )
         handle = self._core.add_cavity(
-            self._own(body, "body", Body),
-            index_array(np.empty((0, 3), np.int32) if faces is None else faces, "faces", ("n", 3)),
+            owner,
+            np.empty((0, 3), np.int32) if faces is None else faces,
             None if pressure is None else time_table(pressure, "pressure"),
             None if gas is None else checked(gas, "gas", Gas),
             None if liquid is None else checked(liquid, "liquid", Liquid),
