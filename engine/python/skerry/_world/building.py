@@ -409,7 +409,9 @@ class Building(CavityBuilding):
         return Collider(self._self, handle, self._core.name(handle) if name is None else name)
 
     def _cable(self, handle: Any) -> Cable:
-        return Cable(self._self, handle, "cable")
+        points = self._core.cable_state(handle)["points"]
+        objects = list(dict.fromkeys(anchor_label(self._self, point) for point in points))
+        return Cable(self._self, handle, f"cable of {', '.join(objects[:-1])} and {objects[-1]}")
 
     def _joint(self, handle: Any) -> Joint:
         state = self._core.joint_state(handle)

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from .._arrays import TimeTableLike, Vector, checked, index_array, real, time_table
-from .._errors import scene_error
 from .._settings import CavityLaw, Gas, Liquid
 from .body import Body
 from .objects import WorldObject
@@ -154,20 +152,9 @@ class CavityBuilding:
         given = [pressure, gas, liquid]
         if given.count(None) != 2:
             raise TypeError("add_cavity: expected exactly one of pressure, gas and liquid")
-        owner = self._own(body, "body", Body)
-        if faces is not None:
-            faces = index_array(faces, "faces", ("n", 3))
-            if len(faces) == 0:
-                raise scene_error(
-                    f"cavity of {body._label}",
-                    "faces",
-                    "no faces",
-                    "at least one row of Body.surface",
-                    "without `faces` the cavity takes the walls of all hollows, or the whole surface",
-                )
         handle = self._core.add_cavity(
-            owner,
-            np.empty((0, 3), np.int32) if faces is None else faces,
+            self._own(body, "body", Body),
+            None if faces is None else index_array(faces, "faces", ("n", 3)),
             None if pressure is None else time_table(pressure, "pressure"),
             None if gas is None else checked(gas, "gas", Gas),
             None if liquid is None else checked(liquid, "liquid", Liquid),
