@@ -40,12 +40,28 @@ nb::dict sources(const std::string& name) {
     return sources;
 }
 
+/// Values of all pairs of known_frictions(), by the fields of the class KnownFriction.
+nb::list frictions() {
+    nb::list pairs;
+    for (const KnownFriction& pair : known_frictions()) {
+        nb::dict values;
+        values["first"] = text_of(pair.first);
+        values["second"] = text_of(pair.second);
+        values["static_friction"] = pair.static_friction;
+        values["dynamic_friction"] = pair.dynamic_friction;
+        values["source"] = text_of(pair.source);
+        pairs.append(values);
+    }
+    return pairs;
+}
+
 }  // namespace
 
 void bind_materials(nb::module_& module) {
     module.def("material_names", names);
     module.def("named_material", [](const std::string& name) { return values_of(named_material(name)); });
     module.def("material_sources", sources);
+    module.def("known_frictions", frictions);
     module.def("ogden", [](const std::vector<std::array<Real, 2>>& pairs, Real bulk_modulus, nb::handle base) {
         std::vector<OgdenTerm> terms;
         for (const auto& [modulus, exponent] : pairs) terms.push_back({modulus, exponent});

@@ -21,6 +21,8 @@ def test_a_cable_of_given_length_carries_a_cube() -> None:
     assert state.tension[0] == pytest.approx(9.81, rel=1e-6)
     assert state.length == pytest.approx(1.0, abs=1e-6)
     assert state.released == 1.0
+    assert [point.body for point in state.points] == [None, cube]
+    np.testing.assert_allclose(state.points[1].point, (0, 0, -1), atol=1e-6)
     cable.set_drive(rate=[(0.1, -0.1), (1.0, -0.1)])
     world.advance(0.5)
     assert cable.length == pytest.approx(0.95, abs=1e-3)

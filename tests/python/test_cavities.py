@@ -74,6 +74,10 @@ def test_what_cannot_be_is_refused() -> None:
         world.add_cavity(body, faces=faces, gas=sk.Gas(exponent=0.5), volume=1)
     with pytest.raises(TypeError, match="faces"):
         world.add_cavity(body, faces=[1, 2], pressure=1)
+    for empty in ([], faces[:0]):
+        with pytest.raises(sk.SceneError, match="cavity of body 'piston': faces: found no faces"):
+            world.add_cavity(body, faces=empty, pressure=1)
+    assert world.cavities == []
     cavity = world.add_cavity(body, faces=faces, pressure=1)
     with pytest.raises(sk.SceneError, match="law pressure"):
         cavity.set_inflow(1)

@@ -68,10 +68,10 @@ WRONG: dict[str, Callable[[sk.World, sk.Body, sk.Collider], object]] = {
         floor,
         "off",  # type: ignore[arg-type]
     ),
-    "label: found numbers of the type <U1": lambda world, ball, floor: world.add_body(
+    "label: found numbers of the type float64": lambda world, ball, floor: world.add_body(
         sk.Mesh.ball(0.05, 4),
         RUBBER,
-        materials={"a": RUBBER},  # type: ignore[dict-item]
+        materials={1.5: RUBBER},  # type: ignore[dict-item]
     ),
 }
 

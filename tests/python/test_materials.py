@@ -19,6 +19,27 @@ def test_named_materials_are_records_with_sources():
     assert sk.materials["steel"].friction == 0.57
 
 
+def test_frictions_of_pairs_have_sources_and_make_pairs_of_a_world():
+    pairs = sk.materials.frictions()
+    assert all(pair.first in sk.materials and pair.second in sk.materials and pair.source for pair in pairs)
+    assert any(pair.first == pair.second == "steel" and pair.dynamic_friction == 0.57 for pair in pairs)
+    pair = next(pair for pair in pairs if pair.first != pair.second)
+    world = sk.World()
+    first, second = world.add_material(sk.materials[pair.first]), world.add_material(sk.materials[pair.second])
+    surface = sk.Surface(static_friction=pair.static_friction, dynamic_friction=pair.dynamic_friction)
+    world.set_pair(first, second, surface)
+    assert world.pair(second, first) == surface
+
+
+def test_a_named_material_makes_a_collider():
+    world = sk.World()
+    plane = world.add_collider(sk.Plane(), material=sk.materials["steel"])
+    body = world.add_body(sk.Mesh.box((0.1, 0.1, 0.1), (1, 1, 1)), sk.materials["steel"])
+    assert plane.material == body.material and len(world.materials) == 1
+    with pytest.raises(TypeError, match="material: found 'steel', expected a Material or a MaterialHandle"):
+        world.add_collider(sk.Plane(), material="steel")
+
+
 def test_a_named_material_makes_a_body():
     world = sk.World()
     slippery = dataclasses.replace(sk.materials["ice"], friction=0.01)

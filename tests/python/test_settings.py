@@ -17,6 +17,7 @@ CLASSES = [
     _settings.Pose,
     _settings.MotionKey,
     _settings.Motion,
+    _settings.JointPassive,
     _settings.MotorKey,
     _settings.Motor,
     _settings.Gas,

@@ -60,7 +60,7 @@ def test_a_set_has_its_own_friction_in_two_directions() -> None:
     bottom = np.flatnonzero(BLOCK.nodes[:, 2] < 0)
     ski = world.add_surface_set(body, sk.Surface(friction=0.1), nodes=bottom, friction_across=0.4, direction=(1, 1, 0))
     assert world.surface_sets == [ski] and ski.body == body and ski.alive
-    assert ski.nodes == bottom.tolist() and ski.faces == []
+    assert ski.nodes.tolist() == bottom.tolist() and ski.faces.shape == (0, 3)
     assert ski.surface_values == sk.Surface(friction=0.1)
     assert ski.friction_across == pytest.approx(0.4)
     assert ski.direction == pytest.approx((math.sqrt(0.5), math.sqrt(0.5), 0))
@@ -74,12 +74,24 @@ def test_a_set_has_its_own_friction_in_two_directions() -> None:
     twin.advance(0.05)
     world.advance(0.05)
     assert twin.state_hash == world.state_hash
-    ski.set_surface(friction=0.3)
-    assert ski.friction_across is None
+    ski.set_surface(restitution=0.2)
+    assert ski.surface_values == sk.Surface(friction=0.1, restitution=0.2)
+    assert ski.friction_across == pytest.approx(0.4)
+    ski.set_surface(friction_across=0.5)
+    assert ski.surface_values.friction == 0.1 and ski.friction_across == pytest.approx(0.5)
+    ski.set_surface(friction=0.3, friction_across=None)
+    assert ski.surface_values.friction == 0.3 and ski.friction_across is None
     world.advance(0.01)
     assert np.allclose(world.contacts["dynamic_friction"], 0.3)
     ski.remove()
     assert not ski.alive and world.surface_sets == []
+
+
+def test_the_faces_of_a_set_are_an_array() -> None:
+    world, body, _, _ = slope_world()
+    part = world.add_surface_set(body, faces=body.surface[2:4], friction=0.1)
+    assert part.faces.tolist() == body.surface[2:4].tolist() and part.faces.dtype == np.int32
+    assert part.nodes.shape == (0,)
 
 
 def test_errors_name_the_set_and_the_value() -> None:

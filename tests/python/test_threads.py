@@ -7,7 +7,6 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ import pytest
 
 import skerry as sk
 from skerry import _core
-from worlds import RUBBER, ball_world, run_program
+from worlds import RUBBER, ball_world, busy, run_program
 
 READS = {
     "time": lambda world, ball: world.time,
@@ -34,27 +33,6 @@ READS = {
     "joints": lambda world, ball: world.joints,
     "watch_steps": lambda world, ball: world.watch_steps(None),
 }
-
-
-@contextlib.contextmanager
-def busy(world: sk.World) -> Iterator[None]:
-    """Another thread advances the world until the end of the scope."""
-    inside, done = threading.Event(), threading.Event()
-
-    def wait(report: sk.StepReport) -> None:
-        inside.set()
-        assert done.wait(60)
-
-    world.watch_steps(wait)
-    with concurrent.futures.ThreadPoolExecutor(1) as pool:
-        advance = pool.submit(world.advance, 1e-9)
-        assert inside.wait(60)
-        try:
-            yield
-        finally:
-            done.set()
-            assert advance.result().ok
-    world.watch_steps(None)
 
 
 @pytest.mark.parametrize("read", READS)

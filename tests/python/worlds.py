@@ -1,11 +1,15 @@
-"""Small worlds for the tests, and a way to run a program in a process of its own."""
+"""Small worlds for the tests, a busy world, and a way to run a program in a process of its own."""
 
 from __future__ import annotations
 
+import concurrent.futures
+import contextlib
 import os
 import subprocess
 import sys
 import textwrap
+import threading
+from collections.abc import Iterator
 from typing import Any
 
 import skerry as sk
@@ -19,6 +23,27 @@ def ball_world(**settings: Any) -> tuple[sk.World, sk.Body, sk.Collider]:
     floor = world.add_collider(sk.Plane(), name="floor")
     ball = world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(0, 0, 0.06), name="ball")
     return world, ball, floor
+
+
+@contextlib.contextmanager
+def busy(world: sk.World) -> Iterator[None]:
+    """Another thread advances the world until the end of the scope."""
+    inside, done = threading.Event(), threading.Event()
+
+    def wait(report: sk.StepReport) -> None:
+        inside.set()
+        assert done.wait(60)
+
+    world.watch_steps(wait)
+    with concurrent.futures.ThreadPoolExecutor(1) as pool:
+        advance = pool.submit(world.advance, 1e-9)
+        assert inside.wait(60)
+        try:
+            yield
+        finally:
+            done.set()
+            assert advance.result().ok
+    world.watch_steps(None)
 
 
 def run_program(program: str, *, check: bool = True, **options: Any) -> subprocess.CompletedProcess[str]:

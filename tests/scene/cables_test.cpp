@@ -326,7 +326,7 @@ TEST_CASE("a cable presses a cube onto a plane, and contact and cable are solved
     world.advance(1e-3);
     for (const Contact& contact : world.contacts()) support += contact.force();
     const CableState state = Cables(world).state(cable);
-    const Vec3 pull = state.tension[0] * (state.points[0] - state.points[1]).normalized();
+    const Vec3 pull = state.tension[0] * (state.points[0].point - state.points[1].point).normalized();
     CHECK((support + pull + Vec3(0, 0, -9.81)).norm() < 1e-6);
 }
 

@@ -417,11 +417,12 @@ TEST_CASE("a cavity that cannot be is refused by the field at fault", "[scene][c
         CHECK(cavities.all().empty());
     };
     const auto surface = world.surface(block);
-    refused({.body = block, .faces = {surface[0], surface[1]}, .filling = GasFilling{}},
+    refused({.body = block, .faces = std::vector{surface[0], surface[1]}, .filling = GasFilling{}},
             "an open edge between the nodes");
     refused({.body = block, .filling = GasFilling{}}, "point into a hollow");
-    refused({.body = block, .faces = {{0, 1, 99}}}, "the nodes 0, 1 and 99");
-    refused({.body = block, .faces = {surface[1], surface[1]}}, "each face once");
+    refused({.body = block, .faces = std::vector{std::array<Index, 3>{0, 1, 99}}}, "the nodes 0, 1 and 99");
+    refused({.body = block, .faces = std::vector{surface[1], surface[1]}}, "each face once");
+    refused({.body = block, .faces = std::vector<std::array<Index, 3>>{}}, "faces: found no faces");
     refused({.body = ball}, "no faces");
     refused({.body = shell, .filling = GasFilling{}, .volume = 1}, "volume");
     refused({.body = shell, .filling = GasFilling{.pressure = -2e5}}, "vacuum");

@@ -33,7 +33,7 @@ struct CableSettings {
 };
 
 struct CableState {
-    std::vector<Vec3> points;        // present positions of the points [m]
+    std::vector<Anchor> points;      // the points of the settings, at their present positions [m]
     std::vector<Real> tension;       // tension of each segment in the last step [N]
     Real length = 0;                 // present length [m]
     Real rate = 0;                   // present rate of the length [m/s]

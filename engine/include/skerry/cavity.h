@@ -44,7 +44,7 @@ struct CavitySettings {
     BodyHandle body{};
     // Faces of World::surface, each given by its three nodes. Default: the walls of all hollows inside of the body, or
     // the whole surface of a body without hollows.
-    std::vector<std::array<Index, 3>> faces{};
+    std::optional<std::vector<std::array<Index, 3>>> faces{};
     std::variant<TimeTable, GasFilling, LiquidFilling> filling{};
     // Volume of the gas or liquid at the start. Required if the faces do not enclose a volume, as those of a piston:
     // the volume then changes by the volume that the faces sweep. Not allowed for faces that enclose a volume [m^3].

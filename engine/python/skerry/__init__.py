@@ -2,7 +2,7 @@
 
 from ._core import version as __version__
 from ._errors import BusyError, Doubt, SceneError, StepError
-from ._materials import NamedMaterials, materials, mooney_rivlin, ogden
+from ._materials import KnownFriction, NamedMaterials, materials, mooney_rivlin, ogden
 from ._mesh import Mesh, MeshReport, read_surface
 from ._problem import Problem, ProblemError, Solution, StepProblem, problem_error, solve
 from ._recorder import Film, Page, Recorder
@@ -152,6 +152,7 @@ __all__ = [
     "JointPassive",
     "JointProbe",
     "JointState",
+    "KnownFriction",
     "Liquid",
     "Load",
     "LoadKind",

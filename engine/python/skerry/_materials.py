@@ -3,14 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from . import _core
 from ._settings import Material
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownFriction:
+    """Friction coefficients of two clean, dry surfaces.
+
+    first: name of the first material.
+    second: name of the second material.
+    static_friction: coefficient of sticking contacts.
+    dynamic_friction: coefficient of sliding contacts.
+    source: citation.
+    """
+
+    first: str
+    second: str
+    static_friction: float
+    dynamic_friction: float
+    source: str
+
+
 class NamedMaterials(Mapping[str, Material]):
-    """Materials by name: materials["steel"] is a Material. list(materials) lists the names, and sources() names the
-    source of each value. A change: dataclasses.replace(materials["steel"], friction=0.2).
+    """Materials by name: materials["steel"] is a Material. list(materials) lists the names, sources() names the
+    source of each value, and frictions() lists pairs of materials. A change:
+    dataclasses.replace(materials["steel"], friction=0.2).
     """
 
     def __getitem__(self, name: str) -> Material:
@@ -29,6 +49,11 @@ class NamedMaterials(Mapping[str, Material]):
         KeyError: no material has this name."""
         self[name]
         return dict(_core.material_sources(name))
+
+    @staticmethod
+    def frictions() -> list[KnownFriction]:
+        """Friction coefficients of pairs of materials, for World.set_pair()."""
+        return [KnownFriction(**values) for values in _core.known_frictions()]
 
     @staticmethod
     def _names() -> list[str]:

@@ -273,8 +273,9 @@ class Mesh:
                 continue
             for of_set, members in sets_of_numbers(name, np.asarray(grid.cell_data[name])).items():
                 for kind, cells in cells_of.items():
-                    of_kind = _KINDS.get(_VTK_NAMES.get(int(kind), ""), "node")
-                    parts.add_block(of_kind, np.asarray(cells), 0, {of_set: members[kinds == kind]})
+                    name_of_kind = _VTK_NAMES.get(int(kind), "")
+                    members_of_kind = {of_set: members[kinds == kind]}
+                    parts.add_block(_KINDS.get(name_of_kind, "node"), np.asarray(cells), 0, members_of_kind)
         return _mesh_of_used_nodes("PyVista grid", grid.points, rows, labels, parts.arrays())
 
     def to_pyvista(self) -> Any:

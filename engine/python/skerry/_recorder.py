@@ -55,12 +55,13 @@ class Recorder:
         given = recorded_probes(probes, world)
         self._world = world
         self._core = _core.Recorder(world._core, given, seconds(every, "recorder", "every"))
-        kinds = (_core.BodyHandle, _core.ColliderHandle, _core.AttachmentHandle, _core.JointHandle, _core.CableHandle)
         kinds = (
             _core.BodyHandle,
             _core.ColliderHandle,
             _core.AttachmentHandle,
             _core.JointHandle,
+            _core.CableHandle,
+            _core.CavityHandle,
             _core.SpringHandle,
         )
         self._handles = [

@@ -24,9 +24,7 @@ CableDrive drive_of(const GivenTable& tension, const GivenTable& length, const G
 
 nb::dict values_of(const CableState& state) {
     nb::dict values;
-    nb::list points;
-    for (const Vec3& point : state.points) points.append(tuple_of(point));
-    values["points"] = nb::tuple(points);
+    values["points"] = nb::tuple(nb::cast(state.points));
     values["tension"] = nb::tuple(nb::cast(state.tension));
     values["length"] = state.length;
     values["rate"] = state.rate;

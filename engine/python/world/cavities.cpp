@@ -10,11 +10,12 @@ namespace {
 
 using Pairs = std::vector<std::array<Real, 2>>;
 
-CavityHandle add_cavity(WorldObject& object, const BodyHandle& body, const IndexRows<3>& faces,
+CavityHandle add_cavity(WorldObject& object, const BodyHandle& body, const std::optional<IndexRows<3>>& faces,
                         const std::optional<Pairs>& pressure, nb::handle gas, nb::handle liquid,
                         std::optional<Real> volume) {
     Use use(object);
-    CavitySettings settings{.body = body, .faces = {span_of(faces).begin(), span_of(faces).end()}, .volume = volume};
+    CavitySettings settings{.body = body, .volume = volume};
+    if (faces) settings.faces.emplace(span_of(*faces).begin(), span_of(*faces).end());
     if (pressure)
         settings.filling = table_of(*pressure);
     else if (!gas.is_none())
@@ -57,7 +58,7 @@ auto setter() {
 }  // namespace
 
 void bind_cavities(WorldClass& type) {
-    type.def("add_cavity", &add_cavity, nb::arg("body"), nb::arg("faces"), nb::arg("pressure").none(),
+    type.def("add_cavity", &add_cavity, nb::arg("body"), nb::arg("faces").none(), nb::arg("pressure").none(),
              nb::arg("gas").none(), nb::arg("liquid").none(), nb::arg("volume").none())
         .def("add_pipe",
              guarded([](World& world, const CavityHandle& first, std::optional<CavityHandle> second, Real conductance,

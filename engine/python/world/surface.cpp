@@ -63,8 +63,8 @@ nb::dict surface_set(WorldObject& object, const SurfaceSetHandle& set) {
     const SurfaceSetSettings settings = SurfaceSets(object.world).settings(set);
     nb::dict values;
     values["body"] = nb::cast(settings.body);
-    values["nodes"] = settings.nodes;
-    values["faces"] = settings.faces;
+    values["nodes"] = array_of<Index>(std::span<const Index>(settings.nodes));
+    values["faces"] = array_of<Index>(std::span<const std::array<Index, 3>>(settings.faces), {3});
     values["surface"] = object_of(settings.surface);
     values["friction_across"] = settings.friction_across;
     values["direction"] = settings.direction ? nb::object(tuple_of(*settings.direction)) : nb::none();

@@ -177,7 +177,7 @@ CableState cable_state(const WorldState& state, CableHandle cable) {
     CableState now;
     const std::vector<Real> lengths = lengths_of(cables, row);
     for (auto p = static_cast<std::size_t>(points.begin); p < static_cast<std::size_t>(points.end); ++p) {
-        now.points.push_back(cables.anchor.at(p));
+        now.points.push_back(anchors.at(table.anchor, p));
         if (p + 1 == static_cast<std::size_t>(points.end)) continue;
         now.tension.push_back(table.step[row] > 0 ? table.tension[p] / table.step[row] : 0);
         const Vec3 along = cables.anchor.at(p + 1) - cables.anchor.at(p);

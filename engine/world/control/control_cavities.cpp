@@ -75,15 +75,16 @@ Face sorted(Face face) {
 
 /// Faces of a cavity, in the orientation of the surface.
 std::vector<Face> chosen_faces(const Model& model, std::size_t body, const std::string& object,
-                               const std::vector<Face>& wanted) {
+                               const std::optional<std::vector<Face>>& wanted) {
     if (model.bodies.core_nodes[body] > 0)
         refuse(object, "body", std::string("a ") + model.round_name(body) + ", which has no faces",
                "a body with a mesh");
-    if (wanted.empty()) return faces_of_hollows(model, body);
+    if (!wanted) return faces_of_hollows(model, body);
+    if (wanted->empty()) refuse(object, "faces", "no faces", "at least one face of the surface");
     std::map<Face, Face> surface;  // faces by their sorted nodes
     for (const Face& face : model.body_records[body].surface) surface.emplace(sorted(face), face);
     std::vector<Face> faces;
-    for (const Face& face : wanted) {
+    for (const Face& face : *wanted) {
         const auto found = surface.extract(sorted(face));
         if (found.empty())
             refuse(object, "faces",

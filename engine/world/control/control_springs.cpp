@@ -154,8 +154,8 @@ SpringState spring_state(const WorldState& world, SpringHandle spring) {
     inputs.first = anchors.of(model.springs.first);
     inputs.second = anchors.of(model.springs.second);
     SpringState state;
-    state.first = present_anchor(world, model.springs.first, row);
-    state.second = present_anchor(world, model.springs.second, row);
+    state.first = anchors.at(model.springs.first, row);
+    state.second = anchors.at(model.springs.second, row);
     const Vec3 apart = state.first.point - state.second.point;
     state.length = apart.norm();
     if (state.length > 0)

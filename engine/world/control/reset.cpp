@@ -1,6 +1,7 @@
 // Resets bodies to their rest shapes, and a world to a saved state.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -156,13 +157,11 @@ void World::reset(const World& saved) {
     now.model.body_map.differ_from(before.model.body_map);
     now.model.collider_map.differ_from(before.model.collider_map);
     now.model.attachment_map.differ_from(before.model.attachment_map);
-    now.model.joint_map.differ_from(before.model.joint_map);
-    now.model.tie_map.differ_from(before.model.tie_map);
-    now.model.cable_map.differ_from(before.model.cable_map);
-    now.model.cavity_map.differ_from(before.model.cavity_map);
-    now.model.pipe_map.differ_from(before.model.pipe_map);
-    now.model.load_map.differ_from(before.model.load_map);
-    now.model.spring_map.differ_from(before.model.spring_map);
+    now.model.for_each_joining([&](const char*, auto&, auto& map) {
+        before.model.for_each_joining([&](const char*, auto&, auto& other) {
+            if constexpr (std::is_same_v<decltype(map), decltype(other)>) map.differ_from(other);
+        });
+    });
     std::swap(now.executor, before.executor);
     now.record.tracing = before.record.tracing;
     std::swap(now.record.problem_watch, before.record.problem_watch);

@@ -86,17 +86,6 @@ PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::st
     return placed;
 }
 
-Anchor present_anchor(const WorldState& world, const AnchorColumns& columns, std::size_t row) {
-    const Model& model = world.model;
-    Anchor anchor;
-    if (const Index body = columns.body[row]; body != no_index)
-        anchor.body = model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(body)]);
-    if (const Index collider = columns.collider[row]; collider != no_index)
-        anchor.collider = model.collider_map.handle_of_slot(model.colliders.slot[static_cast<std::size_t>(collider)]);
-    anchor.point = AnchorsBetweenSteps(world).of(columns).at(row);
-    return anchor;
-}
-
 AnchorsBetweenSteps::AnchorsBetweenSteps(const WorldState& world) : model_(world.model) {
     const ColliderTable& table = model_.colliders;
     const Real now = world.clock.time, before = world.clock.step_before;
@@ -115,6 +104,16 @@ AnchorInputs AnchorsBetweenSteps::of(const AnchorColumns& columns) const {
     AnchorInputs inputs = AnchorInputs::bind({}, columns, model_.bodies, model_.nodes, model_.colliders);
     inputs.motion = motion_;
     return inputs;
+}
+
+Anchor AnchorsBetweenSteps::at(const AnchorColumns& columns, std::size_t row) const {
+    Anchor anchor;
+    if (const Index body = columns.body[row]; body != no_index)
+        anchor.body = model_.body_map.handle_of_slot(model_.bodies.slot[static_cast<std::size_t>(body)]);
+    if (const Index collider = columns.collider[row]; collider != no_index)
+        anchor.collider = model_.collider_map.handle_of_slot(model_.colliders.slot[static_cast<std::size_t>(collider)]);
+    anchor.point = of(columns).at(row);
+    return anchor;
 }
 
 }  // namespace skerry

@@ -23,15 +23,14 @@ struct PlacedAnchor {
 /// `object` if a handle is stale, the point is not finite, or the point is too far from a deformable body.
 PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::string& object, const std::string& field);
 
-/// Returns an anchor as users give it: with handles, at its present position in the world.
-Anchor present_anchor(const WorldState& world, const AnchorColumns& columns, std::size_t row);
-
 /// Inputs of anchors between steps. They stay valid until the world changes. Velocities of colliders are mean
 /// velocities of the last step, because the velocities of nodes also are.
 class AnchorsBetweenSteps {
 public:
     explicit AnchorsBetweenSteps(const WorldState& world);
     AnchorInputs of(const AnchorColumns& columns) const;
+    /// Returns an anchor as users give it: with handles, at its present position in the world.
+    Anchor at(const AnchorColumns& columns, std::size_t row) const;
 
 private:
     const Model& model_;

@@ -26,7 +26,7 @@ struct Anchors {
         place_anchor(WorldAccess::state_of(world), anchor, "spring", "first").store(columns, row);
         return row;
     }
-    Vec3 at(std::size_t row) const { return present_anchor(WorldAccess::state_of(world), columns, row).point; }
+    Vec3 at(std::size_t row) const { return AnchorsBetweenSteps(WorldAccess::state_of(world)).at(columns, row).point; }
 };
 
 /// Force and moment about the origin of nodal forces.

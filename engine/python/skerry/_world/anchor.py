@@ -44,6 +44,14 @@ def core_anchor(world: World, anchor: Anchor, name: str) -> Any:
     return _core.anchor(body, collider, given.point)
 
 
+def anchor_label(world: World, core: Any) -> str:
+    """Text that names the object of an anchor of the extension module."""
+    body, collider, _ = core.values
+    if body is not None:
+        return f"body '{world._core.name(body)}'"
+    return "the world" if collider is None else f"collider '{world._core.name(collider)}'"
+
+
 def anchor_of(world: World, core: Any) -> Anchor:
     """The Python object of an anchor of the extension module."""
     body, collider, point = core.values

@@ -46,10 +46,10 @@ from .._settings import (
     SurfaceMesh,
     TieKind,
 )
-from .anchor import Anchor, core_anchor
+from .anchor import Anchor, anchor_label, core_anchor
 from .body import Attachment, Body, Indices
 from .cable import Cable, drive_tables
-from .cavity import CavityBuilding
+from .cavity import Cavity, CavityBuilding, Pipe
 from .changes import MaterialChanges
 from .collider import Collider
 from .joint import Joint, joint_label
@@ -62,6 +62,7 @@ from .tie import Tie
 
 if TYPE_CHECKING:
     from .._recorder import Follower
+    from .surface import SurfaceSet
     from .world import World
 
 
@@ -196,7 +197,7 @@ class Building(CavityBuilding):
         position: VectorLike = (0.0, 0.0, 0.0),
         rotation: RotationLike = (0.0, 0.0, 0.0),
         motion: Motion | None = None,
-        material: MaterialHandle | None = None,
+        material: Material | MaterialHandle | None = None,
         friction: float | None = None,
         static_friction: float | None = None,
         dynamic_friction: float | None = None,
@@ -209,11 +210,11 @@ class Building(CavityBuilding):
         """Adds a collider and returns it.
 
         shape: a Plane, Sphere, Box, Capsule, Cylinder, Bucket or SurfaceMesh. position, rotation: pose (3,) [m, rad].
-        motion: velocities, or keys, which are poses at absolute times. material: see Collider.material. friction,
-        static_friction, dynamic_friction: a contact uses the geometric mean of this value and that of the body, or that
-        of the material or the body if not given. restitution: a contact uses the larger value. contact_distance:
-        thickness of the contact shell of a SurfaceMesh [m]. collision_group, collision_mask: see
-        Collider.set_collision_groups(). name: unique in the world, default "collider N".
+        motion: velocities, or keys, which are poses at absolute times. material: a handle or a record, see
+        Collider.material. friction, static_friction, dynamic_friction: a contact uses the geometric mean of this value
+        and that of the body, or that of the material or the body if not given. restitution: a contact uses the larger
+        value. contact_distance: thickness of the contact shell of a SurfaceMesh [m]. collision_group, collision_mask:
+        see Collider.set_collision_groups(). name: unique in the world, default "collider N".
 
         SceneError: a value is out of range, or a collider has this name. BufferError: arrays of views() are in use."""
         name = self._new_name(name, "collider", self.colliders)
@@ -231,8 +232,9 @@ class Building(CavityBuilding):
             collision_mask=whole(collision_mask, "collision_mask"),
             name=name,
         )
-        of_surface = None if material is None else self._own(material, "material", MaterialHandle)
-        handle = self._core.add_collider(checked(shape, "shape", *_SHAPES), given)
+        given_shape = checked(shape, "shape", *_SHAPES)
+        of_surface = None if material is None else self._material(material)
+        handle = self._core.add_collider(given_shape, given)
         self._core.set_material_of_collider(handle, of_surface)
         return Collider(self._self, handle, name)
 
@@ -285,10 +287,10 @@ class Building(CavityBuilding):
         """Ties nodes of a deformable body in their present places to the nearest points of another body or a collider,
         or to the world, and returns the tie.
 
-        kind: "weld", or "slide" for nodes that may move in the plane of the surface. break_force: force at which a node
-        breaks off [N]. close_gap: True: the nodes move to the surface. bodies_touch: True: the two objects may collide
-        while nodes are tied. SceneError: the body is rigid, or a value is out of range. BufferError: arrays of views()
-        are in use."""
+        nodes: numbers within the body (j,), or a truth value for each node (n,). kind: "weld", or "slide" for nodes
+        that may move in the plane of the surface. break_force: force at which a node breaks off [N]. close_gap: True:
+        the nodes move to the surface. bodies_touch: True: the two objects may collide while nodes are tied. SceneError:
+        the body is rigid, or a value is out of range. BufferError: arrays of views() are in use."""
         given = Arguments(
             of="tie",
             kind=kind,
@@ -299,7 +301,7 @@ class Building(CavityBuilding):
         tied = self._own(body, "body", Body)
         other = None if to is None else self._own(to, "to", Body, Collider)
         to_body, to_collider = (None, other) if isinstance(to, Collider) else (other, None)
-        return self._tie(self._core.add_tie(tied, index_array(nodes, "nodes", ("n",)), to_body, to_collider, given))
+        return self._tie(self._core.add_tie(tied, body._node_numbers(nodes), to_body, to_collider, given))
 
     def add_cable(
         self,
@@ -347,10 +349,12 @@ class Building(CavityBuilding):
         one, other = core_anchor(self._self, first, "first"), core_anchor(self._self, second, "second")
         return self._spring(self._core.add_spring(one, other, given))
 
-    def remove(self, removed: PosedObject | Joint | Tie | Cable | Spring | Load) -> None:
-        """Removes a body, a collider, an attachment, a joint, a tie, a cable, a spring or a load. BufferError: arrays
-        of views() are in use."""
-        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint, Tie, Cable, Spring, Load)
+    def remove(self, removed: PosedObject | Joint | Tie | Cable | Spring | Load | Cavity | Pipe | SurfaceSet) -> None:
+        """Removes an object of any kind except a material. BufferError: arrays of views() are in use."""
+        from .surface import SurfaceSet
+
+        kinds = (Body, Collider, Attachment, Joint, Tie, Cable, Spring, Load, Cavity, Pipe, SurfaceSet)
+        handle = self._own(removed, "removed", *kinds)
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)
 
@@ -405,7 +409,9 @@ class Building(CavityBuilding):
         return Collider(self._self, handle, self._core.name(handle) if name is None else name)
 
     def _cable(self, handle: Any) -> Cable:
-        return Cable(self._self, handle, "cable")
+        points = self._core.cable_state(handle)["points"]
+        objects = list(dict.fromkeys(anchor_label(self._self, point) for point in points))
+        return Cable(self._self, handle, f"cable of {', '.join(objects[:-1])} and {objects[-1]}")
 
     def _joint(self, handle: Any) -> Joint:
         state = self._core.joint_state(handle)
@@ -419,7 +425,9 @@ class Building(CavityBuilding):
         return Tie(self._self, handle, f"tie of body '{self._core.name(self._core.tie_state(handle)['body'])}'")
 
     def _spring(self, handle: Any) -> Spring:
-        return Spring(self._self, handle, "spring")
+        state = self._core.spring_state(handle)
+        first, second = (anchor_label(self._self, state[name]) for name in ("first", "second"))
+        return Spring(self._self, handle, f"spring of {first} and {second}")
 
     def _mesh_of(self, body: Any) -> tuple[Indices, Indices]:
         """Surface and tetrahedra of a body, which never change."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .._arrays import TimeTable, TimeTableLike, Vector, time_table
+from .._arrays import TimeTable, TimeTableLike, time_table
+from .anchor import Anchor, anchor_of
 from .objects import WorldObject
 
 
@@ -12,7 +13,7 @@ from .objects import WorldObject
 class CableState:
     """Present shape and motion of a cable, and its tensions in the last step.
 
-    points: present positions of the points [m].
+    points: the points, at their present positions.
     tension: tension of each segment [N].
     length: present length [m].
     rate: rate of `length` [m/s].
@@ -21,7 +22,7 @@ class CableState:
     dissipated: energy dissipated by friction at the points since the cable was added [J].
     """
 
-    points: tuple[Vector, ...]
+    points: tuple[Anchor, ...]
     tension: tuple[float, ...]
     length: float
     rate: float
@@ -38,7 +39,9 @@ class Cable(WorldObject):
     @property
     def state(self) -> CableState:
         """Present shape, motion and tensions."""
-        return CableState(**self._core.cable_state(self._handle))
+        values = self._core.cable_state(self._handle)
+        values["points"] = tuple(anchor_of(self._world, point) for point in values["points"])
+        return CableState(**values)
 
     @property
     def length(self) -> float:

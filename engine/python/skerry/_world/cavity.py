@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from .._arrays import TimeTableLike, Vector, checked, index_array, real, time_table
@@ -78,7 +77,7 @@ class Cavity(WorldObject):
 
     def remove(self) -> None:
         """Removes the cavity and its pipes."""
-        self._core.remove(self._handle)
+        self._world.remove(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,7 +120,7 @@ class Pipe(WorldObject):
 
     def remove(self) -> None:
         """Removes the pipe."""
-        self._core.remove(self._handle)
+        self._world.remove(self)
 
 
 class CavityBuilding:
@@ -155,7 +154,7 @@ class CavityBuilding:
             raise TypeError("add_cavity: expected exactly one of pressure, gas and liquid")
         handle = self._core.add_cavity(
             self._own(body, "body", Body),
-            index_array(np.empty((0, 3), np.int32) if faces is None else faces, "faces", ("n", 3)),
+            None if faces is None else index_array(faces, "faces", ("n", 3)),
             None if pressure is None else time_table(pressure, "pressure"),
             None if gas is None else checked(gas, "gas", Gas),
             None if liquid is None else checked(liquid, "liquid", Liquid),

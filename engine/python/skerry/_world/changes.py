@@ -53,3 +53,9 @@ class SurfaceChanges(TypedDict, total=False):
     static_friction: float | None
     dynamic_friction: float | None
     restitution: float | None
+
+
+class SurfaceSetChanges(SurfaceChanges, total=False):
+    """Values of a surface set."""
+
+    friction_across: float | None

@@ -75,11 +75,12 @@ class WorldLoads:
         _own: Any
 
     def add_force(self, body: Body, nodes: ArrayLike, force: VectorLike, *, scale: TimeTableLike = 1.0) -> Load:
-        """Adds a total force (3,) [N] on some nodes of a body, which share it in proportion to their masses."""
+        """Adds a total force (3,) [N] on some nodes of a body, which share it in proportion to their masses. nodes:
+        numbers within the body (j,), or a truth value for each node (n,)."""
         return self._new_load(
             self._core.add_force(
                 self._loaded(body),
-                index_array(nodes, "nodes", ("n",)),
+                body._node_numbers(nodes),
                 real_array(force, "force", (3,)),
                 time_table(scale, "scale"),
             )

@@ -167,14 +167,7 @@ class TouchingObject(PosedObject):
     def set_surface(self, surface: Surface | None = None, /, **values: Unpack[SurfaceChanges]) -> None:
         """Replaces `surface_values`, or some of them: set_surface(friction=0.3). A new `friction` replaces the static
         and the dynamic friction."""
-        given = self.surface_values if surface is None else checked(surface, "surface", Surface)
-        if "friction" in values:
-            given = dataclasses.replace(given, static_friction=None, dynamic_friction=None)
-        elif "static_friction" in values or "dynamic_friction" in values:
-            both = {"static_friction": given.friction, "dynamic_friction": given.friction}
-            kept = {name: value for name, value in both.items() if getattr(given, name) is None}
-            given = dataclasses.replace(given, friction=None, **kept)
-        self._core.set_surface_properties(self._handle, dataclasses.replace(given, **values))
+        self._core.set_surface_properties(self._handle, changed_surface(self.surface_values, surface, values))
 
     @property
     def collision_groups(self) -> tuple[int, int]:
@@ -189,6 +182,18 @@ class TouchingObject(PosedObject):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (type(self), (self._world, self._given_handle, self._name))
+
+
+def changed_surface(present: Surface, surface: Surface | None, values: SurfaceChanges) -> Surface:
+    """`surface`, or the present one if it is None, with some new values."""
+    given = present if surface is None else checked(surface, "surface", Surface)
+    if "friction" in values:
+        given = dataclasses.replace(given, static_friction=None, dynamic_friction=None)
+    elif "static_friction" in values or "dynamic_friction" in values:
+        both = {"static_friction": given.friction, "dynamic_friction": given.friction}
+        kept = {name: value for name, value in both.items() if getattr(given, name) is None}
+        given = dataclasses.replace(given, friction=None, **kept)
+    return dataclasses.replace(given, **values)
 
 
 Item = TypeVar("Item", bound=TouchingObject)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from .objects import WorldObject
     from .world import World
 
 _MOST_ROWS = 50
@@ -18,8 +20,18 @@ def world_table(world: World) -> str:
         for body in world.bodies.values()
     ]
     rows += [(collider.name, "collider", type(collider.shape).__name__) for collider in world.colliders.values()]
-    rows += [("", "joint", joint._label) for joint in world.joints]
-    rows += [("", "spring", f"{spring.state.length:.3g} m") for spring in world.springs]
+    unnamed: dict[str, Sequence[WorldObject]] = {
+        "attachment": world.attachments,
+        "joint": world.joints,
+        "tie": world.ties,
+        "cable": world.cables,
+        "spring": world.springs,
+        "cavity": world.cavities,
+        "pipe": world.pipes,
+        "load": world.loads,
+        "surface set": world.surface_sets,
+    }
+    rows += [("", kind, item._label) for kind, items in unnamed.items() for item in items]
     left = len(rows) - _MOST_ROWS
     lines = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows[:_MOST_ROWS]]
     if left > 0:

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import Any, Unpack
 
 from numpy.typing import ArrayLike
 
 from .._arrays import Vector, VectorLike, checked, index_array, real, vector
 from .._settings import Surface
-from .body import Body
+from .body import Body, Indices
 from .building import Building
-from .changes import SurfaceChanges
+from .changes import SurfaceChanges, SurfaceSetChanges
 from .material import MaterialHandle
-from .objects import WorldObject
-
-if TYPE_CHECKING:
-    from .world import World
+from .objects import WorldObject, changed_surface
 
 
 class SurfaceSet(WorldObject):
@@ -25,24 +22,22 @@ class SurfaceSet(WorldObject):
 
     __slots__ = ()
 
-    def __init__(self, world: World, handle: Any, label: str = "surface set") -> None:
-        super().__init__(world, handle, label)
-
     @property
     def body(self) -> Body:
         """Body of the set."""
         return self._world._body(self._values["body"])
 
     @property
-    def nodes(self) -> list[int]:
-        """Numbers of the given nodes."""
-        nodes: list[int] = self._values["nodes"]
+    def nodes(self) -> Indices:
+        """Numbers of the given nodes, shape (j,)."""
+        nodes: Indices = self._values["nodes"]
         return nodes
 
     @property
-    def faces(self) -> list[tuple[int, int, int]]:
-        """The given faces by their nodes."""
-        return [tuple(face) for face in self._values["faces"]]
+    def faces(self) -> Indices:
+        """Nodes of the given faces, shape (k, 3)."""
+        faces: Indices = self._values["faces"]
+        return faces
 
     @property
     def surface_values(self) -> Surface:
@@ -63,23 +58,16 @@ class SurfaceSet(WorldObject):
         direction: Vector | None = self._values["direction"]
         return direction
 
-    def set_surface(
-        self,
-        surface: Surface | None = None,
-        /,
-        *,
-        friction_across: float | None = None,
-        **values: Unpack[SurfaceChanges],
-    ) -> None:
-        """Sets the properties and wakes the body: set_surface(friction=0.3). Properties that are not given become those
-        of the body."""
-        given = dataclasses.replace(checked(surface or Surface(), "surface", Surface), **values)
-        across = None if friction_across is None else real(friction_across, "friction_across")
-        self._core.set_set_surface(self._handle, given, across)
+    def set_surface(self, surface: Surface | None = None, /, **values: Unpack[SurfaceSetChanges]) -> None:
+        """Replaces `surface_values` or some of them, and `friction_across` if it is given, and wakes the body:
+        set_surface(friction=0.3). A new `friction` replaces the static and the dynamic friction."""
+        across = values.pop("friction_across", self.friction_across)
+        given = changed_surface(self.surface_values, surface, values)
+        self._core.set_set_surface(self._handle, given, None if across is None else real(across, "friction_across"))
 
     def remove(self) -> None:
         """Removes the set."""
-        self._core.remove(self._handle)
+        self._world.remove(self)
 
     @property
     def _values(self) -> dict[str, Any]:
@@ -141,22 +129,26 @@ class SurfaceRules(Building):
     ) -> SurfaceSet:
         """Gives a part of the surface of a body its own friction and restitution, and returns the part.
 
-        nodes: numbers (n,) of nodes. faces: nodes (f, 3) of faces of the surface. friction_across: friction coefficient
-        of sliding contacts across the direction; the friction in `surface` then applies along it. direction: direction
-        (3,) in the frame of the mesh. Where sets overlap, the last one applies. SceneError: a face is not on the
-        surface, or a value is out of range."""
+        nodes: numbers within the body (j,), or a truth value for each node (n,). faces: nodes (k, 3) of faces of the
+        surface. friction_across: friction coefficient of sliding contacts across the direction; the friction in
+        `surface` then applies along it. direction: direction (3,) in the frame of the mesh. Where sets overlap, the
+        last one applies. SceneError: a face is not on the surface, or a value is out of range."""
         given = dataclasses.replace(checked(surface or Surface(), "surface", Surface), **values)
         handle = self._core.add_surface_set(
             self._own(body, "body", Body),
-            index_array(nodes, "nodes", ("n",)).tolist(),
-            index_array(faces, "faces", ("f", 3)).tolist(),
+            body._node_numbers(nodes).tolist(),
+            index_array(faces, "faces", ("k", 3)).tolist(),
             given,
             None if friction_across is None else real(friction_across, "friction_across"),
             None if direction is None else vector(direction, "direction"),
         )
-        return SurfaceSet(self._self, handle)
+        return self._surface_set(handle)
 
     @property
     def surface_sets(self) -> list[SurfaceSet]:
         """The surface sets in the order added. They have no names."""
-        return [SurfaceSet(self._self, handle) for handle in self._core.surface_sets()]
+        return [self._surface_set(handle) for handle in self._core.surface_sets()]
+
+    def _surface_set(self, handle: Any) -> SurfaceSet:
+        body = self._core.name(self._core.surface_set(handle)["body"])
+        return SurfaceSet(self._self, handle, f"surface set of body '{body}'")
