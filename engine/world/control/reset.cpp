@@ -156,13 +156,11 @@ void World::reset(const World& saved) {
     now.model.body_map.differ_from(before.model.body_map);
     now.model.collider_map.differ_from(before.model.collider_map);
     now.model.attachment_map.differ_from(before.model.attachment_map);
-    now.model.joint_map.differ_from(before.model.joint_map);
-    now.model.tie_map.differ_from(before.model.tie_map);
-    now.model.cable_map.differ_from(before.model.cable_map);
-    now.model.cavity_map.differ_from(before.model.cavity_map);
-    now.model.pipe_map.differ_from(before.model.pipe_map);
-    now.model.load_map.differ_from(before.model.load_map);
-    now.model.spring_map.differ_from(before.model.spring_map);
+    now.model.for_each_joining([&](const char*, auto&, auto& map) {
+        before.model.for_each_joining([&](const char*, auto&, const auto& map_before) {
+            if constexpr (requires { map.differ_from(map_before); }) map.differ_from(map_before);
+        });
+    });
     std::swap(now.executor, before.executor);
     now.record.tracing = before.record.tracing;
     std::swap(now.record.problem_watch, before.record.problem_watch);
