@@ -100,7 +100,7 @@ TEST_CASE("a body on a spring and a damper has the frequency and the decay of th
     for (const BodyDynamics dynamics : {BodyDynamics::rigid, BodyDynamics::implicit_elastic}) {
         CAPTURE(static_cast<int>(dynamics));
         constexpr Real h = 2e-4, omega = 10, ratio = 0.05;
-        Oscillator oscillator(with_step(h), {.second = {.point = {-1, 0, 0}}}, dynamics);
+        Oscillator oscillator(with_step(h), {.second = {.point = {-1, 0, 0}}, .stiffness = 1}, dynamics);
         Springs springs(oscillator.world);
         springs.set_stiffness(oscillator.spring, omega * omega * oscillator.mass);
         oscillator.world.set_velocity(oscillator.body, {1, 0, 0}, Vec3::Zero());
