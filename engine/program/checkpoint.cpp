@@ -88,8 +88,8 @@ std::string counted(std::size_t count, const char* what) {
     return std::to_string(count) + " " + what;
 }
 
-/// Sets the world number in all handles of a probe. The handles then refer to the same bodies, colliders and
-/// attachments of the world with this number.
+/// Sets the world number in all handles of a probe. The handles then refer to the same objects of the world with this
+/// number.
 void rename_world(RecordedProbe& probe, std::uint32_t number) {
     const auto rename = [number](auto& handle) { handle.world = number; };
     std::visit(
@@ -99,6 +99,8 @@ void rename_world(RecordedProbe& probe, std::uint32_t number) {
             if constexpr (requires { what.attachment; }) rename(what.attachment);
             if constexpr (requires { what.joint; }) rename(what.joint);
             if constexpr (requires { what.cable; }) rename(what.cable);
+            if constexpr (requires { what.cavity; }) rename(what.cavity);
+            if constexpr (requires { what.spring; }) rename(what.spring);
             if constexpr (requires { what.object; }) std::visit(rename, what.object);
             if constexpr (std::is_same_v<std::remove_cvref_t<decltype(what)>, BodyForceProbe>) {
                 if (what.by) std::visit(rename, *what.by);

@@ -156,6 +156,14 @@ void require_nodes(const std::string& object, std::span<const Index> nodes, Inde
                    "node indices of the body, 0 to " + std::to_string(count - 1));
 }
 
+void require_different_nodes(const std::string& object, std::span<const Index> nodes, Index count) {
+    require_nodes(object, nodes, count);
+    std::vector<Index> sorted(nodes.begin(), nodes.end());
+    std::ranges::sort(sorted);
+    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
+        refuse(object, "nodes", "node " + std::to_string(*twice) + " twice", "each node at most once");
+}
+
 void require_finite(const std::string& object, const char* field, const Vec3& found) {
     if (!found.allFinite()) refuse(object, field, shown(found), "three finite numbers");
 }

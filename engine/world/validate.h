@@ -36,6 +36,8 @@ void require_finite(const std::string& object, const char* field, const Vec3& fo
 void require_table(const std::string& object, const std::string& field, const TimeTable& table);
 /// Checks that the given local node numbers exist in `object`, which is a body with `count` nodes.
 void require_nodes(const std::string& object, std::span<const Index> nodes, Index count);
+/// Checks in addition to require_nodes that no node is repeated.
+void require_different_nodes(const std::string& object, std::span<const Index> nodes, Index count);
 void validate(const Pose& pose, const std::string& object);
 
 }  // namespace skerry

@@ -238,6 +238,9 @@ TEST_CASE("a pressure on faces of a rigid body exerts its force and its moment",
          .filling = TimeTable(p)});
     const Real force = p * side * side / 2;
     CHECK((cavities.state(pressed).force - Vec3(-force, 0, 0)).norm() < 1e-14 * force);
+    const CavityState around = cavities.state(cavities.add({.body = block, .filling = TimeTable(p)}));
+    CHECK(around.closed);
+    CHECK(around.volume == 0);  // the whole surface of a solid body encloses no hollow
     REQUIRE(world.advance(step).ok());
     CHECK((world.report().momentum - Vec3(-force * step, 0, 0)).norm() < 1e-14 * force * step);
     CHECK((world.report().angular_momentum - Vec3(0, 0, force * side / 4 * step)).norm() < 1e-14 * force * side * step);

@@ -203,6 +203,8 @@ TEST_CASE("a body that became implicit by itself becomes explicit when it is att
     CHECK_THROWS_AS(world.attach(told, corner), SceneError);  // one node does not hold a frame
     const std::vector<Index> face{0, 1, 2, 3, 4};
     CHECK_THROWS_AS(world.attach(chosen, corner, {.velocity = Vec3::Constant(infinity)}), SceneError);
+    CHECK_THROWS_WITH(world.attach(chosen, corner, {.angular_velocity = Vec3::UnitZ()}, Vec3::Zero(), {Vec3::UnitX()}),
+                      Catch::Contains("a motion with a rotation"));
     CHECK(world.dynamics(chosen) == BodyDynamics::implicit_elastic);  // a refused call changes nothing
     world.attach(chosen, corner);
     world.attach(told, face);

@@ -1,9 +1,14 @@
 // Static equilibria by dynamic relaxation, against closed forms and dynamic runs (docs/methods/loads.md 3).
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "skerry/cable.h"
+#include "skerry/cavity.h"
 #include "skerry/load.h"
 #include "skerry/relax.h"
+#include "skerry/tie.h"
+#include "tests/support/hollow_sphere.h"
 #include "tests/support/worlds.h"
 
 namespace skerry::test::relax_test {
@@ -131,6 +136,81 @@ TEST_CASE("values over time and motions stay at the present time", "[scene]") {
     CHECK(changing.pose(held).position.x() == Approx(place.x() + 0.1).epsilon(1e-6));
     Loads loads(changing);
     CHECK(loads.state(loads.all()[1]).scale == Approx(5).epsilon(1e-6));
+}
+
+TEST_CASE("gas and a cable driven by a rate stay at rest during a relaxation", "[scene]") {
+    World world(accurate());
+    const auto rubber = world.add_material({.young_modulus = 1e5, .damping = 10});
+    const auto bar = world.add_body(mesh::box({0.1, 0.1, 0.2}, {2, 2, 4}),
+                                    {.material = rubber, .dynamics = BodyDynamics::explicit_elastic});
+    world.attach(bar, nodes_above(world, bar, 0.0999));
+    Cables cables(world);
+    const CableHandle cable = cables.add(
+        {.points = {{.point = {0.3, 0, -0.1}}, {.body = bar, .point = {0, 0, -0.1}}}, .drive = {.rate = -0.05}});
+    Cavities cavities(world);
+    const auto tank = [&](Real x, const GasFilling& gas) {
+        const auto body = world.add_body(hollow_sphere(0.08, 0.1, 2, 1),
+                                         {.material = rubber, .position = {x, 0, 0}, .dynamics = BodyDynamics::rigid});
+        world.attach(body, std::vector<Index>{0, 1, 2, 3});
+        return cavities.add({.body = body, .filling = gas});
+    };
+    const CavityHandle pumped = tank(1, {.inflow = 1e-4}), vented = tank(2, {.pressure = 2e4});
+    const PipeHandle pipe = cavities.add({.first = vented, .conductance = 1e-9});
+    REQUIRE(world.advance(0.02).ok());
+    const CableState drawn = cables.state(cable);
+    const Real pumped_mass = cavities.state(pumped).mass, vented_mass = cavities.state(vented).mass;
+    const Real flow = cavities.state(pipe).flow;
+    REQUIRE(drawn.work != 0);
+    REQUIRE(flow > 0);
+    REQUIRE(relax(world, {.tolerance = 1e-4}).converged);
+    CHECK(cavities.state(pumped).mass == pumped_mass);
+    CHECK(cavities.state(vented).mass == vented_mass);
+    CHECK(cavities.state(pipe).flow == flow);
+    CHECK(cavities.state(pipe).conductance == 1e-9);
+    CHECK(cables.state(cable).released == drawn.released);
+    CHECK(cables.state(cable).work == Approx(drawn.work).epsilon(1e-12));
+    CHECK(cables.state(cable).dissipated == Approx(drawn.dissipated).margin(1e-12 * std::abs(drawn.work)));
+    REQUIRE(world.advance(0.02).ok());
+    CHECK(cavities.state(pumped).mass == Approx(pumped_mass + 2e-6).epsilon(1e-12));
+    CHECK(cavities.state(vented).mass < vented_mass);
+    CHECK(*cables.state(cable).released == Approx(*drawn.released - 1e-3).epsilon(1e-9));
+}
+
+TEST_CASE("a tie breaks after a relaxation, and only if it would break at rest", "[scene]") {
+    struct Hanging {
+        World world{accurate()};
+        TieHandle tie;
+        explicit Hanging(Real break_force) {
+            const auto cube = world.add_body(
+                mesh::box(Vec3::Constant(0.1), {2, 2, 2}),
+                {.material = world.add_material({.young_modulus = 1e5}), .dynamics = BodyDynamics::explicit_elastic});
+            tie =
+                Ties(world).add({.body = cube, .nodes = nodes_above(world, cube, 0.0499), .break_force = break_force});
+        }
+        /// Number of nodes that have broken off.
+        std::ptrdiff_t broken() {
+            const TieState state = Ties(world).state(tie);
+            return std::ranges::count_if(state.nodes, [](const TiedNode& node) { return node.broken.has_value(); });
+        }
+    };
+    Hanging firm(infinity);
+    REQUIRE(relax(firm.world, {.tolerance = 1e-4}).converged);
+    Real largest = 0;  // force at rest [N]
+    for (const TiedNode& node : Ties(firm.world).state(firm.tie).nodes) largest = std::max(largest, node.force.norm());
+
+    // The forces overshoot their values at rest by more than a tenth on the way.
+    Hanging strong(1.1 * largest), overloaded(1.1 * largest), weak(0.9 * largest);
+    REQUIRE(overloaded.world.advance(0.2).ok());
+    REQUIRE(overloaded.broken() > 0);
+    REQUIRE(relax(strong.world, {.tolerance = 1e-4}).converged);
+    CHECK(strong.broken() == 0);
+    CHECK(Ties(strong.world).state(strong.tie).break_force == 1.1 * largest);
+    REQUIRE(strong.world.advance(0.1).ok());
+    CHECK(strong.broken() == 0);
+    REQUIRE(relax(weak.world, {.tolerance = 1e-4}).converged);
+    CHECK(weak.broken() == 0);
+    REQUIRE(weak.world.advance(0.01).ok());
+    CHECK(weak.broken() > 0);
 }
 
 TEST_CASE("a relaxation that fails or is refused leaves the world whole", "[scene]") {

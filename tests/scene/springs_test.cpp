@@ -100,7 +100,7 @@ TEST_CASE("a body on a spring and a damper has the frequency and the decay of th
     for (const BodyDynamics dynamics : {BodyDynamics::rigid, BodyDynamics::implicit_elastic}) {
         CAPTURE(static_cast<int>(dynamics));
         constexpr Real h = 2e-4, omega = 10, ratio = 0.05;
-        Oscillator oscillator(with_step(h), {.second = {.point = {-1, 0, 0}}}, dynamics);
+        Oscillator oscillator(with_step(h), {.second = {.point = {-1, 0, 0}}, .stiffness = 1}, dynamics);
         Springs springs(oscillator.world);
         springs.set_stiffness(oscillator.spring, omega * omega * oscillator.mass);
         oscillator.world.set_velocity(oscillator.body, {1, 0, 0}, Vec3::Zero());
@@ -370,6 +370,7 @@ TEST_CASE("a spring in the wrong place is refused by field", "[scene][springs]")
         CHECK_THAT(message_of([&] { springs.add(settings); }), Catch::Contains("spring") && Catch::Contains(field));
     };
     refused({}, "first, second");
+    refused({.first = on_ball}, "stiffness, damping");
     refused({.first = on_ball, .stiffness = -1}, "stiffness");
     refused({.first = on_ball, .damping = infinity}, "damping");
     refused({.first = on_ball, .rest_length = -0.1}, "rest_length");
@@ -424,7 +425,7 @@ TEST_CASE("a spring on an implicit body acts in every step, whatever implicit_st
     constexpr Real h = 2e-4, omega = 10;
     Settings settings = with_step(h);
     settings.implicit_step = 0.05;
-    Oscillator oscillator(settings, {.second = {.point = {-1, 0, 0}}}, BodyDynamics::implicit_elastic);
+    Oscillator oscillator(settings, {.second = {.point = {-1, 0, 0}}, .stiffness = 1}, BodyDynamics::implicit_elastic);
     Springs(oscillator.world).set_stiffness(oscillator.spring, omega * omega * oscillator.mass);
     oscillator.world.set_velocity(oscillator.body, {1, 0, 0}, Vec3::Zero());
     CHECK(vibration_of(oscillator, 0.01, 5).frequency == Approx(omega).epsilon(1e-3));

@@ -414,6 +414,12 @@ TEST_CASE("surface rules refuse what cannot be", "[scene][surface]") {
     CHECK_THAT(refusal({.body = body}), Contains("sledge") && Contains("no node and no face"));
     CHECK_THAT(refusal({.body = ball, .nodes = node}), Contains("ball") && Contains("a sphere"));
     CHECK_THAT(refusal({.body = body, .nodes = {999}}), Contains("999"));
+    CHECK_THAT(refusal({.body = body, .nodes = {3, 0, 3}}), Contains("node 3 twice"));
+    std::array<Index, 3> face = world.surface(body)[0];
+    SurfaceSetSettings repeated{.body = body, .faces = {face}};
+    std::ranges::reverse(face);
+    repeated.faces.push_back(face);
+    CHECK_THAT(refusal(repeated), Contains("faces[1]") && Contains("each face at most once"));
     CHECK_THAT(refusal({.body = body, .faces = {{0, 1, 17}}}), Contains("faces[0]") && Contains("0, 1, 17"));
     CHECK_THAT(refusal({.body = body, .nodes = node, .surface = {.friction = -1}}), Contains("friction"));
     CHECK_THAT(refusal({.body = body, .nodes = node, .surface = {.friction = 1}, .friction_across = 0.5}),

@@ -155,6 +155,25 @@ TEST_CASE("a node breaks off at its greatest force", "[scene][ties]") {
     CHECK(world.center_of_mass(body).x() > 0);
 }
 
+TEST_CASE("a lower break force wakes a body and breaks it off", "[scene][ties]") {
+    Settings settings = accurate();
+    settings.sleep = true;
+    settings.sleep_time = 0.05;
+    World world(settings);
+    const BodyHandle body = world.add_body(
+        coarse, {.material = world.add_material({.young_modulus = 1e9}), .dynamics = BodyDynamics::implicit_elastic});
+    Ties ties(world);
+    const TieHandle tie = ties.add({.body = body, .nodes = nodes_at(coarse, -half / 2)});
+    REQUIRE(world.advance(2).ok());
+    REQUIRE(world.asleep(body));
+    ties.set_break_force(tie, infinity);
+    CHECK(world.asleep(body));  // an equal value changes nothing
+    ties.set_break_force(tie, 0.01);
+    CHECK_FALSE(world.asleep(body));
+    REQUIRE(world.advance(0.05).ok());
+    for (const TiedNode& node : ties.state(tie).nodes) CHECK(node.broken);
+}
+
 TEST_CASE("a tie follows a moving collider and keeps its bodies awake", "[scene][ties]") {
     Settings settings = accurate();
     settings.sleep = true;
@@ -391,6 +410,13 @@ TEST_CASE("ties refuse wrong settings by name", "[scene][ties]") {
     CHECK_THAT(message({.body = bar.left, .nodes = {0}, .to_body = bar.left}), Contains("itself"));
     CHECK_THAT(message({.kind = TieKind::slide, .body = bar.left, .nodes = {0}}), Contains("no surface"));
     CHECK_THAT(message({.body = bar.left, .nodes = {0}, .break_force = 0}), Contains("break_force"));
+    const ColliderHandle plane = bar.world.add_collider(Plane{}, {.position = {0, 0, -1}});
+    bar.world.settle_start();
+    const std::uint64_t before = bar.world.state_hash();
+    for (const bool close_gap : {false, true})
+        CHECK_THAT(message({.body = bar.left, .nodes = {0}, .to_collider = plane, .close_gap = close_gap}),
+                   Contains("node 0, which is 0.95 m") && Contains("mean edge length"));
+    CHECK(bar.world.state_hash() == before);
     CHECK(Ties(bar.world).all().size() == 1);
 }
 

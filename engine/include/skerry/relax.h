@@ -38,9 +38,10 @@ struct RelaxReport {
 /// The result may depend on the way, where friction or bistable shapes permit several equilibria.
 ///
 /// Time does not advance: values over time and prescribed motions stay at their present values, colliders and
-/// attachments do not move, and the report of the run does not count the steps. Viscous stress is fully relaxed at the
-/// end. If the residual stays above the tolerance, for example of a sliding body, or if a step cannot be completed, the
-/// world does not change. Throws the errors of World::settle_start(), and SceneError if a setting is out of range.
+/// attachments do not move, gas does not flow, cables driven by a rate keep their greatest length, ties do not break,
+/// and the report of the run does not count the steps. Viscous stress is fully relaxed at the end. If the residual
+/// stays above the tolerance, for example of a sliding body, or if a step cannot be completed, the world does not
+/// change. Throws the errors of World::settle_start(), and SceneError if a setting is out of range.
 ///
 /// Calls `go_on`, if given, with the report so far after each step; if it returns false, the relaxation ends and the
 /// world does not change.

@@ -14,7 +14,8 @@ namespace skerry {
 
 class World;
 
-/// A spring, a damper, or both in parallel, between two anchors. At least one anchor must be on a body.
+/// A spring, a damper, or both in parallel, between two anchors. At least one anchor must be on a body. Stiffness and
+/// damping must not both be 0.
 struct SpringSettings {
     Anchor first{}, second{};
     Real stiffness = 0;                      // >= 0 [N/m]

@@ -14,8 +14,8 @@ namespace skerry {
 class World;
 
 /// A tie between nodes of a deformable body and another object: a body of any kind, a collider, or the world if neither
-/// is given. Each node is tied in its present position to the nearest point of the other object. The tie of a single
-/// node acts like a ball joint.
+/// is given. Each node is tied in its present position to the nearest point of the other object, which must not be
+/// farther away than the mean edge length of the body. The tie of a single node acts like a ball joint.
 struct TieSettings {
     TieKind kind = TieKind::weld;
     BodyHandle body{};           // a deformable body

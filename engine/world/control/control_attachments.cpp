@@ -40,8 +40,7 @@ Mat3 held_directions(const std::vector<Vec3>& directions) {
 }
 
 /// Checks an attachment that holds nodes along single directions.
-void require_axes(const Model& model, std::size_t body, std::span<const Index> nodes, const Motion& motion,
-                  const Mat3& held) {
+void require_axes(const Model& model, std::size_t body, std::span<const Index> nodes, const Mat3& held) {
     const std::string& name = model.body_records[body].name;
     if (model.has_frame(body))
         Complaint{.file = {},
@@ -52,8 +51,6 @@ void require_axes(const Model& model, std::size_t body, std::span<const Index> n
                   .hint = model.is_rigid(body) ? "join a rigid body to the world by a slider or another joint"
                                                : "set the dynamics of the body to explicit"}
             .raise();
-    if (motion.turns() || !motion.angular_velocity.isZero(0))
-        refuse("attach", "directions", "a motion with a rotation", "a motion without rotation");
     const AttachmentTable& table = model.attachments;
     for (std::size_t a = 0; a < table.slot.size(); ++a) {
         if (table.body[a] != static_cast<Index>(body) || holds_completely(table.held[a])) continue;
@@ -90,11 +87,13 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
             .raise();
     const bool rigid = model.is_rigid(b), implicit = model.has_frame(b) && !rigid;
     const Mat3 held = held_directions(directions);
+    if (!holds_completely(held) && (motion.turns() || !motion.angular_velocity.isZero(0)))
+        refuse("attach", "directions", "a motion with a rotation", "a motion without rotation");
     if (implicit && model.body_records[b].choice.reason != DynamicsReason::given) {
         set_dynamics(body, BodyDynamics::explicit_elastic);
         return attach(body, nodes, motion, pivot, directions);
     }
-    if (!holds_completely(held)) require_axes(model, b, nodes, motion, held);
+    if (!holds_completely(held)) require_axes(model, b, nodes, held);
     if (model.has_frame(b) && !hold_whole(model, b, nodes))
         Complaint{.file = {},
                   .object = "attach",

@@ -260,7 +260,7 @@ CavityState cavity_state(const WorldState& world, CavityHandle cavity) {
     now.faces = table.faces[row].size();
     now.closed = table.closed[row] != 0;
     now.pressure = filling.pressure();
-    now.volume = filling.volume;
+    now.volume = std::max(filling.volume, Real(0));  // negative if the faces enclose the body and not a hollow
     now.mass = table.mass[row];
     now.energy = filling.energy();
     const CavityInputs cavities = cavities_of(model);

@@ -2,6 +2,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "engine/mesh/tetrahedron.h"
@@ -29,6 +30,14 @@ namespace {
         .raise();
 }
 
+/// "joints, ties and cables"
+std::string sequence_of(const std::vector<const char*>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + std::string(names[i]);
+    return text;
+}
+
 void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
     const auto row = static_cast<Index>(body);
     if (next == BodyDynamics::automatic)
@@ -48,10 +57,10 @@ void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
         refuse_change(model, body, "dynamics", "a change of dynamics for an attached body",
                       "a body without attachments",
                       "remove the attachments, change the dynamics, then attach the body again");
-    if (has_rows_joining(body, model))
-        refuse_change(model, body, "dynamics", "a change of dynamics for a body with joints or springs",
-                      "a body without joints and springs",
-                      "remove the joints and springs, change the dynamics, then add them again");
+    if (const std::vector<const char*> found = tables_joining(row, model); !found.empty())
+        refuse_change(model, body, "dynamics", "a change of dynamics for a body with " + sequence_of(found),
+                      "a body without " + sequence_of(tables_joining(no_index, model)),
+                      "remove the " + sequence_of(found) + ", change the dynamics, then add them again");
 }
 
 /// Centre of mass and momenta of a free body.

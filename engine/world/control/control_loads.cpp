@@ -71,16 +71,6 @@ Index body_of_field(const Model& model, const std::optional<BodyHandle>& body) {
     return body ? model.row(*body, "add_load") : no_index;
 }
 
-/// Throws SceneError if the list is empty, or if a node is out of range or appears twice.
-void require_different_nodes(std::span<const Index> nodes, Index count, const std::string& body) {
-    if (nodes.empty()) refuse("load", "nodes", "an empty list", "at least one node");
-    require_nodes("load on body '" + body + "'", nodes, count);
-    std::set<Index> listed;
-    for (const Index node : nodes)
-        if (!listed.insert(node).second)
-            refuse("load", "nodes", "node " + std::to_string(node) + " twice", "each node at most once");
-}
-
 std::array<Index, 3> sorted(std::array<Index, 3> face) {
     std::ranges::sort(face);
     return face;
@@ -143,7 +133,8 @@ LoadHandle Loads::add(const ForceLoad& load) {
     const Index body = model.row(load.body, "add_load");
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(body)];
     require_finite("load", "force", load.force);
-    require_different_nodes(load.nodes, nodes.size(), name_of_row(model, body));
+    if (load.nodes.empty()) refuse("load", "nodes", "an empty list", "at least one node");
+    require_different_nodes("load on body '" + name_of_row(model, body) + "'", load.nodes, nodes.size());
     LoadRow row{.kind = LoadKind::force, .body = body, .vector = load.force, .node = load.nodes};
     Real whole = 0;
     for (const Index node : load.nodes) whole += model.nodes.mass[nodes.begin + node];

@@ -98,6 +98,8 @@ SpringHandle Springs::add(const SpringSettings& spring) {
     require_body(first, second);
     require_stable(world.model, first, "first");
     require_stable(world.model, second, "second");
+    if (spring.stiffness == 0 && spring.damping == 0)
+        refuse_spring("stiffness, damping", "0 and 0, so that no force acts", "a number > 0 for at least one of them");
     Model& model = world.model;
     SpringTable& table = model.springs;
     const std::size_t row = table.size();

@@ -1,6 +1,7 @@
 // Friction and restitution by pair of materials and by place on a body (docs/methods/friction.md 4).
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -57,12 +58,13 @@ void require_faces(const Model& model, std::size_t body, std::span<const std::ar
                    const std::string& object) {
     for (std::size_t i = 0; i < faces.size(); ++i) require_nodes(object, faces[i], model.bodies.nodes[body].size());
     const std::vector<Index> found = model.triangles_of(body, faces);
+    std::set<Index> listed;
     for (std::size_t i = 0; i < faces.size(); ++i)
-        if (found[i] == no_index)
+        if (found[i] == no_index || !listed.insert(found[i]).second)
             refuse(object, ("faces[" + std::to_string(i) + "]").c_str(),
                    "nodes " + std::to_string(faces[i][0]) + ", " + std::to_string(faces[i][1]) + ", " +
                        std::to_string(faces[i][2]),
-                   "the three nodes of a face on the surface of the body");
+                   "the three nodes of a face on the surface of the body, each face at most once");
 }
 
 }  // namespace
@@ -157,7 +159,7 @@ SurfaceSetHandle SurfaceSets::add(const SurfaceSetSettings& set) {
         if (!(set.direction->norm() > 0))
             refuse(object, "direction", "a vector of length 0", "a vector that is not zero");
     }
-    require_nodes(object, set.nodes, model.bodies.nodes[b].size());
+    require_different_nodes(object, set.nodes, model.bodies.nodes[b].size());
     require_faces(model, b, set.faces, object);
     if (set.nodes.empty() && set.faces.empty()) refuse(object, "nodes", "no node and no face", "at least one of them");
     SurfaceSetTable& table = model.surface_sets;

@@ -34,11 +34,7 @@ void validate_break_force(Real force) {
 
 void validate_nodes(const Model& model, Index body, const std::vector<Index>& nodes) {
     if (nodes.empty()) refuse_tie("nodes", "no node", "at least one node of " + title_of_tied(model, body));
-    require_nodes("tie", nodes, model.bodies.nodes[static_cast<std::size_t>(body)].size());
-    std::vector<Index> sorted = nodes;
-    std::ranges::sort(sorted);
-    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
-        refuse_tie("nodes", "node " + std::to_string(*twice) + " twice", "each node once");
+    require_different_nodes("tie", nodes, model.bodies.nodes[static_cast<std::size_t>(body)].size());
 }
 
 /// Present poses of all colliders.
@@ -117,6 +113,25 @@ OnSurface nearest_place(WorldState& world, const TiedObjects& objects, std::span
     if (const Index mesh = model.colliders.body[c]; mesh != no_index)
         return on_triangles(world, static_cast<std::size_t>(mesh), point);
     return on_shape(model.colliders.geometry[c], pose[c], point);
+}
+
+/// Throws SceneError if a node is farther from the object to which it is tied than the mean edge length of its body, or
+/// if the object has no surface.
+void require_close(WorldState& world, const TiedObjects& objects, std::span<const RigidMotion> pose,
+                   const std::vector<Index>& nodes) {
+    const Model& model = world.model;
+    const auto first = static_cast<std::size_t>(objects.first);
+    const Real reach = model.bodies.mean_edge[first];
+    for (const Index node : nodes) {
+        const Vec3 point = model.nodes.position[static_cast<std::size_t>(model.bodies.nodes[first].begin + node)];
+        const Real distance = (point - nearest_place(world, objects, pose, point).point).norm();
+        if (!(distance <= reach))
+            refuse_tie("nodes",
+                       "node " + std::to_string(node) + ", which is " + short_text(distance) +
+                           " m from the surface to which it is tied",
+                       "nodes at most " + short_text(reach) + " m from it (the mean edge length of the surface of " +
+                           title_of_tied(model, objects.first) + ")");
+    }
 }
 
 /// Frame in which TieTable stores the place of a node.
@@ -211,11 +226,7 @@ TieHandle Ties::add(const TieSettings& tie) {
     validate_break_force(tie.break_force);
     const std::vector<RigidMotion> poses = present_poses(state);
     TieTable& table = model.ties;
-    // The search for the places comes first, because it refuses objects without a surface.
-    if (tie.nodes.size() > 0)
-        nearest_place(state, objects, poses,
-                      model.nodes.position[static_cast<std::size_t>(
-                          model.bodies.nodes[static_cast<std::size_t>(objects.first)].begin + tie.nodes.front())]);
+    require_close(state, objects, poses, tie.nodes);
     const std::size_t row = table.size();
     AnyTable(table).resize(row + 1);
     const TieHandle handle = model.tie_map.insert(static_cast<Index>(row));
@@ -318,9 +329,12 @@ TieState tie_state(const WorldState& world, TieHandle tie) {
 void Ties::set_break_force(TieHandle tie, Real force) {
     WorldState& state = WorldAccess::state_of(*world_);
     state.require_between_steps("set_break_force");
-    const Index row = state.model.row(tie, "set_break_force");
+    Model& model = state.model;
+    const auto row = static_cast<std::size_t>(model.row(tie, "set_break_force"));
     validate_break_force(force);
-    state.model.ties.break_force[static_cast<std::size_t>(row)] = force;
+    if (model.ties.break_force[row] == force) return;
+    model.ties.break_force[row] = force;
+    wake_tied(model, row);
 }
 
 }  // namespace skerry

@@ -24,18 +24,29 @@ namespace {
 // only.
 constexpr int calm_steps = 10;
 
-/// Sets the values of all tables to those at the time `t`.
+/// Sets all keys of a row to one value.
+void hold_keys(auto& table, std::size_t row, Real value) {
+    const std::span<const TimeKey> keys = table.keys_of(row);
+    const auto first = static_cast<std::size_t>(keys.data() - std::as_const(table.key).data());
+    for (std::size_t k = first; k < first + keys.size(); ++k) table.key[k].value = value;
+}
+
+/// Sets the values of all tables to those at the time `t`. Stops gas and the cables that are driven by a rate, and
+/// prevents ties from breaking.
 void hold_values(Model& model, Real t) {
     model.for_each_joining([&](const char*, auto& table, auto&) {
         if constexpr (requires { table.keys_of(0); })
             for (std::size_t row = 0; row < table.slot.size(); ++row) {
                 const std::span<const TimeKey> keys = table.keys_of(row);
-                if (keys.empty()) continue;
-                const Real value = value_at(keys, t);
-                const auto first = static_cast<std::size_t>(keys.data() - std::as_const(table.key).data());
-                for (std::size_t k = first; k < first + keys.size(); ++k) table.key[k].value = value;
+                if (!keys.empty()) hold_keys(table, row, value_at(keys, t));
             }
     });
+    for (std::size_t c = 0; c < model.cavities.size(); ++c)
+        if (model.cavities.law[c] == CavityLaw::gas) hold_keys(model.cavities, c, 0);
+    for (std::size_t c = 0; c < model.cables.size(); ++c)
+        if (model.cables.control[c] == CableControl::rate) hold_keys(model.cables, c, 0);
+    std::ranges::fill(model.pipes.conductance, 0);
+    std::ranges::fill(model.ties.break_force, infinity);
 }
 
 /// Stops colliders or attachments at their poses at the time `t`.
@@ -55,7 +66,15 @@ void take_motion(auto& to, const auto& from) {
     to.motion = from.motion;
 }
 
-/// Gives the tables the values over time that they have in `from`, which has the same rows.
+/// Gives a cable the work and the dissipated energy that it has in the world `from`.
+void take_work(WorldState& to, const WorldState& from, std::size_t cable) {
+    const CableHandle handle = to.model.cable_map.handle_of_slot(to.model.cables.slot[cable]);
+    const CableState before = cable_state(from, handle), now = cable_state(to, handle);
+    to.model.cables.work[cable] += before.work - now.work;
+    to.model.cables.dissipated[cable] += before.dissipated - now.dissipated;
+}
+
+/// Undoes hold_values, and restores the flows of pipes. `from`: the same tables before hold_values.
 void take_values(Model& to, Model& from) {
     std::vector<Column<TimeKey>*> columns;
     const auto visit_keys = [](Model& model, auto&& visit) {
@@ -66,6 +85,9 @@ void take_values(Model& to, Model& from) {
     visit_keys(to, [&](Column<TimeKey>& key) { columns.push_back(&key); });
     std::size_t table = 0;
     visit_keys(from, [&](Column<TimeKey>& key) { *columns[table++] = key; });
+    to.pipes.conductance = from.pipes.conductance;
+    to.pipes.flow = from.pipes.flow;
+    to.ties.break_force = from.ties.break_force;
 }
 
 /// Changes the settings that a relaxation needs.
@@ -265,6 +287,7 @@ RelaxReport relax(World& world, const RelaxSettings& settings, const std::functi
     now.model.settings.backend = given.backend;
     now.model.settings.threads = given.threads;
     now.clock = before.clock;
+    for (std::size_t c = 0; c < now.model.cables.size(); ++c) take_work(now, before, c);
     std::swap(now.executor, before.executor);
     keep_record(before.record, now.record);
     world = std::move(copy);

@@ -158,8 +158,8 @@ void World::reset(const World& saved) {
     now.model.collider_map.differ_from(before.model.collider_map);
     now.model.attachment_map.differ_from(before.model.attachment_map);
     now.model.for_each_joining([&](const char*, auto&, auto& map) {
-        before.model.for_each_joining([&](const char*, auto&, auto& other) {
-            if constexpr (std::is_same_v<decltype(map), decltype(other)>) map.differ_from(other);
+        before.model.for_each_joining([&](const char*, auto&, const auto& map_before) {
+            if constexpr (requires { map.differ_from(map_before); }) map.differ_from(map_before);
         });
     });
     std::swap(now.executor, before.executor);

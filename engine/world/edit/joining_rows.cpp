@@ -47,14 +47,15 @@ void erase_rows_joining(ColumnRole role, Index object, Model& model) {
     });
 }
 
-bool has_rows_joining(std::size_t body, Model& model) {
-    bool found = false;
-    model.for_each_joining([&](const char*, auto& table, auto&) {
+std::vector<const char*> tables_joining(Index body, Model& model) {
+    std::vector<const char*> names;
+    model.for_each_joining([&](const char* name, auto& table, auto&) {
         if (!joins_bodies(table)) return;
-        for_each_joined(table, ColumnRole::body,
-                        [&](std::size_t, Index joined) { found |= joined == static_cast<Index>(body); });
+        bool found = body == no_index;
+        for_each_joined(table, ColumnRole::body, [&](std::size_t, Index joined) { found |= joined == body; });
+        if (found) names.push_back(name);
     });
-    return found;
+    return names;
 }
 
 void hand_over_rows(std::size_t before, std::size_t after, Model& model) {

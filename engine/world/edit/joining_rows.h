@@ -44,9 +44,9 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
 /// ColliderTable.
 void erase_rows_joining(ColumnRole role, Index object, Model& model);
 
-/// True if a row of a table with several bodies in each row, such as a joint, joins the body to another body or to the
-/// world.
-bool has_rows_joining(std::size_t body, Model& model);
+/// Names of the tables whose rows can join several bodies, such as "joints". `body`: only tables with a row that joins
+/// this body to another object; no_index: all of these tables.
+std::vector<const char*> tables_joining(Index body, Model& model);
 
 /// Hands rows that act on one body only, such as loads, over from the body `before` to the body `after` with the same
 /// mesh.

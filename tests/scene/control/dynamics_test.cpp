@@ -4,7 +4,9 @@
 
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/world_state.h"
+#include "skerry/cable.h"
 #include "skerry/joint.h"
+#include "skerry/spring.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/worlds.h"
 
@@ -261,9 +263,17 @@ TEST_CASE("what a body cannot become is refused by name, and what it is already 
     world.set_dynamics(bar.body, rigid);
     const auto joint = Joints(world).add({.kind = JointKind::ball, .first = bar.body, .point = {1, 2, 3}});
     before = world.state_hash();
-    CHECK_THROWS_WITH(world.set_dynamics(bar.body, implicit), Contains("'bar'") && Contains("joint"));
+    CHECK_THROWS_WITH(world.set_dynamics(bar.body, implicit), Contains("'bar'") && Contains("a body with joints"));
     CHECK(world.state_hash() == before);
     Joints(world).remove(joint);
+    const Anchor on_bar{.body = bar.body, .point = world.center_of_mass(bar.body)};
+    const auto spring = Springs(world).add({.first = on_bar, .stiffness = 1});
+    const auto cable = Cables(world).add({.points = {{.point = {1, 2, 3}}, on_bar}, .drive = {.tension = 1}});
+    CHECK_THROWS_WITH(world.set_dynamics(bar.body, implicit), Contains("a body with cables and springs") &&
+                                                                  Contains("remove the cables and springs") &&
+                                                                  !Contains("joints or springs"));
+    Springs(world).remove(spring);
+    Cables(world).remove(cable);
     world.set_dynamics(bar.body, implicit);
     const auto curled = world.add_body(bar.mesh, {.material = bar.material[0], .self_contact = true, .name = "curled"});
     CHECK_THROWS_WITH(world.set_dynamics(curled, rigid), Contains("'curled'") && Contains("self_contact"));

@@ -4,7 +4,13 @@
 #include <numbers>
 
 #include "engine/world/world_state.h"
+#include "skerry/cable.h"
+#include "skerry/cavity.h"
 #include "skerry/joint.h"
+#include "skerry/load.h"
+#include "skerry/spring.h"
+#include "skerry/surface.h"
+#include "skerry/tie.h"
 #include "systems/geometry/rotation.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/sliver_box.h"
@@ -229,6 +235,36 @@ TEST_CASE("handles of objects that were added after a clone become stale when th
     CHECK_FALSE(cube.world.alive(later));
     CHECK_FALSE(cube.world.alive(plane));
     CHECK_FALSE(Joints(cube.world).alive(joint));
+
+    // The same for everything that acts on bodies.
+    World& world = cube.world;
+    const auto stays_stale = [&](auto&& view, auto&& add_one) {
+        const auto first = add_one();
+        REQUIRE(view.alive(first));
+        world.reset(saved);
+        const auto second = add_one();
+        CHECK(view.alive(second));
+        CHECK_FALSE(view.alive(first));
+        world.reset(saved);
+    };
+    const Anchor on_cube{.body = cube.body, .point = world.positions(cube.body)[0]};
+    Ties ties(world);
+    stays_stale(ties, [&] { return ties.add({.body = cube.body, .nodes = {0}}); });
+    Cables cables(world);
+    stays_stale(cables, [&] { return cables.add({.points = {{}, on_cube}, .drive = {.tension = 1}}); });
+    Springs springs(world);
+    stays_stale(springs, [&] { return springs.add({.second = on_cube, .stiffness = 1}); });
+    Loads loads(world);
+    stays_stale(loads, [&] { return loads.add(GravityScale{.scale = 1}); });
+    SurfaceSets sets(world);
+    stays_stale(sets, [&] { return sets.add({.body = cube.body, .nodes = {0}, .surface = {.friction = 0.1}}); });
+    Cavities cavities(world);
+    const auto add_gas = [&] {
+        const auto faces = world.surface(cube.body);
+        return cavities.add({.body = cube.body, .faces = {faces[0]}, .filling = GasFilling{}, .volume = 1e-3});
+    };
+    stays_stale(cavities, add_gas);
+    stays_stale(cavities, [&] { return cavities.add({.first = add_gas(), .conductance = 1e-9}); });
 
     // A slot that the clone uses has a new handle when it is reused after the reset, too.
     cube.world.remove(cube.body);

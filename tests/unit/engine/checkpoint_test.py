@@ -132,6 +132,23 @@ class CheckpointTest(ProgramCase):
         self.assertIn("tendon.tension_1 [N],tendon.length [m]", heading)
         self.assertGreater(float(last.split(",")[1]), 0)
 
+    def test_a_run_with_a_spring_and_a_cavity_goes_on_with_the_same_rows(self):
+        scene = self.write("pressed.json", dict(
+            SCENE,
+            springs=[{"first": {"body": "block", "point": [0, 0, 0]}, "second": {"point": [0, 0, 1]},
+                      "stiffness": 5}],
+            cavities=[{"body": "block", "pressure": [[0, 0], [0.2, 100]]}],
+            probes=[{"name": "cord", "quantity": "spring", "spring": "spring_0"},
+                    {"name": "skin", "quantity": "cavity", "cavity": "cavity_0"}]))
+        whole, parts, checkpoint = (self.folder / name for name in ("whole.csv", "parts.csv", "run.skerry"))
+        self.run_stats(scene, "--seconds", 0.2, "--probes", whole)
+        self.run_stats(scene, "--seconds", 0.1, "--probes", parts, "--checkpoint", checkpoint)
+        self.run_stats("--restart", checkpoint, "--seconds", 0.2, "--probes", parts)
+        self.assertEqual(parts.read_text(), whole.read_text())
+        heading = whole.read_text().splitlines()[0]
+        self.assertIn("cord.force [N]", heading)
+        self.assertIn("skin.pressure [Pa]", heading)
+
     def test_a_run_of_a_changed_scene_goes_on_with_it(self):
         checkpoint = self.folder / "run.skerry"
         change = ["--set", "bodies[0].name=brick", "--set", "probes[0].body=brick"]
