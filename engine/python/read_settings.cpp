@@ -300,9 +300,9 @@ nb::object object_of(const SurfaceSettings& surface) {
 }
 
 void bind_settings(nb::module_& module) {
-    module.def("defaults", &defaults_of<Settings, MaterialSettings, SurfaceSettings, Pose, MotionKey, Motion, JointPassive,
-                                        MotorKey, JointMotor, ProblemSettings, Plane, Sphere, Box, Capsule, Cylinder,
-                                        Bucket>);
+    module.def("defaults",
+               &defaults_of<Settings, MaterialSettings, SurfaceSettings, Pose, MotionKey, Motion, JointPassive,
+                            MotorKey, JointMotor, ProblemSettings, Plane, Sphere, Box, Capsule, Cylinder, Bucket>);
     module.def("defaults",
                &defaults_of<Settings, MaterialSettings, SurfaceSettings, Pose, MotionKey, Motion, MotorKey, JointMotor,
                             GasFilling, LiquidFilling, ProblemSettings, Plane, Sphere, Box, Capsule, Cylinder, Bucket>);

@@ -23,6 +23,11 @@ struct PlacedAnchor {
 /// `object` if a handle is stale, the point is not finite, or the point is too far from a deformable body.
 PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::string& object, const std::string& field);
 
+/// Names the object to which an anchor is fixed, for messages: "body 'NAME'", "collider 'NAME'" or "the world". `body`
+/// and `collider`: rows, or no_index.
+std::string title_of_end(const Model& model, Index body, Index collider);
+std::string title_of_end(const Model& model, const Anchor& anchor);
+
 /// Returns an anchor as users give it: with handles, at its present position in the world.
 Anchor present_anchor(const WorldState& world, const AnchorColumns& columns, std::size_t row);
 
