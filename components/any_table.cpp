@@ -21,8 +21,8 @@
 #include "components/region_table.h"
 #include "components/resting_contact_table.h"
 #include "components/rigid_body_table.h"
-#include "components/surface_rules.h"
 #include "components/spring_table.h"
+#include "components/surface_rules.h"
 #include "components/surface_table.h"
 #include "components/tie_table.h"
 

@@ -78,7 +78,7 @@ struct JointTable {
     // body [N s, N m s].
     Column<Vec3> impulse, moment;
     Column<AxisImpulses> axis_impulse;  // parts of the impulse along the axis in the last step
-    Column<Real> step;          // time for which the impulses acted in the last step; 0 before the first step [s]
+    Column<Real> step;    // time for which the impulses acted in the last step; 0 before the first step [s]
     Column<TimeKey> key;  // keys of all motors: target speeds [rad/s or m/s] or positions [rad or m]
 
     std::size_t size() const { return slot.size(); }
@@ -145,7 +145,7 @@ struct JointBlockTable {
     // Impulses of the three equations of each block; before the solve: the warm start [N s or N m s].
     Column<Vec3> impulse;
     Column<AxisImpulses> axis_impulse;  // by block: parts of the impulse along the axis
-    Column<Real> coordinate;     // by row of JointTable: joint coordinate at the start of the step
+    Column<Real> coordinate;            // by row of JointTable: joint coordinate at the start of the step
     // by row of JointTable: 1 if the bodies are asleep; the joint then stores its last impulse unchanged
     Column<std::uint8_t> resting;
 

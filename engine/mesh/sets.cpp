@@ -105,22 +105,20 @@ std::vector<Index> nodes_of(const MeshSet& set, std::span<const std::array<Index
 
 std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, std::span<const std::array<Index, 4>> tetrahedra,
                                            std::span<const std::array<Index, 3>> surface) {
-    if (!set.faces.empty()) return set.faces;
-    std::vector<std::array<Index, 3>> faces;
-    if (set.tetrahedra.empty()) {
-        for (const std::array<Index, 3>& face : surface)
-            if (has_all(set.nodes, face)) faces.push_back(face);
-        return faces;
-    }
-    std::set<std::array<Index, 3>> of_tetrahedra;
+    std::vector<std::array<Index, 3>> faces = set.faces;
+    std::set<std::array<Index, 3>> listed, of_tetrahedra;
+    for (const std::array<Index, 3>& face : set.faces) listed.insert(sorted(face));
     for (const Index t : set.tetrahedra) {
         const auto& [a, b, c, d] = tetrahedra[static_cast<std::size_t>(t)];
         for (const std::array<Index, 3>& face :
              {std::array{b, c, d}, std::array{a, c, d}, std::array{a, b, d}, std::array{a, b, c}})
             of_tetrahedra.insert(sorted(face));
     }
-    for (const std::array<Index, 3>& face : surface)
-        if (of_tetrahedra.contains(sorted(face))) faces.push_back(face);
+    for (const std::array<Index, 3>& face : surface) {
+        const std::array<Index, 3> nodes = sorted(face);
+        if (!listed.contains(nodes) && (of_tetrahedra.contains(nodes) || has_all(set.nodes, face)))
+            faces.push_back(face);
+    }
     return faces;
 }
 

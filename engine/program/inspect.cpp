@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <initializer_list>
 #include <iostream>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "engine/program/cluster_text.h"
 #include "engine/program/commands.h"
@@ -236,6 +238,8 @@ int inspect_scene(const InspectOptions& options) {
     progress.begin("timing the first steps");
     const SceneCost cost = try_run(scene.world, plan_run(scene, run), overlap);
     const Problems problems = problems_of(plan, kinds, start, cost);
+    std::size_t surfaces = 0;
+    for (const BodyPlan& body : plan.bodies) surfaces += body.surfaces.size();
     if (options.json) {
         Json bodies = Json::array();
         for (const BodyKindReport& kind : kinds) {
@@ -267,8 +271,11 @@ int inspect_scene(const InspectOptions& options) {
                            {"ties", plan.ties.size()},
                            {"cables", plan.cables.size()},
                            {"cavities", plan.cavities.size()},
+                           {"pipes", plan.pipes.size()},
                            {"loads", plan.loads.size()},
                            {"springs", plan.springs.size()},
+                           {"pairs", plan.pairs.size()},
+                           {"surfaces", surfaces},
                            {"nodes", report.nodes},
                            {"elements", report.elements},
                            {"stable_dt", stable_step},
@@ -292,15 +299,22 @@ int inspect_scene(const InspectOptions& options) {
         std::cout << json.dump(1) << std::endl;
         return exit_ok;
     }
+    std::string joined;
+    for (const auto& [count, name] :
+         std::initializer_list<std::pair<std::size_t, const char*>>{{plan.joints.size(), "joints"},
+                                                                    {plan.ties.size(), "ties"},
+                                                                    {plan.cables.size(), "cables"},
+                                                                    {plan.cavities.size(), "cavities"},
+                                                                    {plan.pipes.size(), "pipes"},
+                                                                    {plan.loads.size(), "loads"},
+                                                                    {plan.springs.size(), "springs"},
+                                                                    {plan.pairs.size(), "pairs of materials"},
+                                                                    {surfaces, "surface sets"}})
+        if (count > 0) joined += ", " + grouped(count) + " " + name;
     std::cout << scene.name << ": " << scene.description << "\n"
               << "  bodies        " << grouped(report.bodies) << ", " << grouped(report.nodes) << " nodes, "
-              << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders"
-              << (plan.joints.empty() ? "" : ", " + grouped(plan.joints.size()) + " joints")
-              << (plan.ties.empty() ? "" : ", " + grouped(plan.ties.size()) + " ties")
-              << (plan.cables.empty() ? "" : ", " + grouped(plan.cables.size()) + " cables")
-              << (plan.cavities.empty() ? "" : ", " + grouped(plan.cavities.size()) + " cavities") << "\n"
-              << (plan.loads.empty() ? "" : ", " + grouped(plan.loads.size()) + " loads") << "\n"
-              << (plan.springs.empty() ? "" : ", " + grouped(plan.springs.size()) + " springs") << "\n"
+              << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders" << joined
+              << "\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
               << (report.stable_step_body.empty() ? "no body limits the step" : "limited by " + report.stable_step_body)

@@ -5,8 +5,8 @@
 #include "skerry/cavity.h"
 #include "skerry/joint.h"
 #include "skerry/problem.h"
-#include "skerry/tie.h"
 #include "skerry/spring.h"
+#include "skerry/tie.h"
 #include "skerry/time_table.h"
 #include "skerry/world.h"
 

@@ -51,6 +51,9 @@ nb::tuple values_of(const RecordedProbe& probe) {
             } else if constexpr (std::is_same_v<Kind, JointProbe>) {
                 values["joint"] = what.joint;
                 return "JointProbe";
+            } else if constexpr (std::is_same_v<Kind, TieProbe>) {
+                values["tie"] = what.tie;
+                return "TieProbe";
             } else if constexpr (std::is_same_v<Kind, CableProbe>) {
                 values["cable"] = what.cable;
                 return "CableProbe";
@@ -121,6 +124,9 @@ void bind_probes(nb::module_& module) {
     });
     module.def("joint_probe", [](const std::string& name, const JointHandle& joint) {
         return RecordedProbe{name, JointProbe{joint}};
+    });
+    module.def("tie_probe", [](const std::string& name, const TieHandle& tie) {
+        return RecordedProbe{name, TieProbe{tie}};
     });
     module.def("cable_probe", [](const std::string& name, const CableHandle& cable) {
         return RecordedProbe{name, CableProbe{cable}};

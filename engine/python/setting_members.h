@@ -13,8 +13,8 @@
 #include "skerry/joint.h"
 #include "skerry/problem.h"
 #include "skerry/settings.h"
-#include "skerry/tie.h"
 #include "skerry/spring.h"
+#include "skerry/tie.h"
 #include "skerry/world.h"
 
 namespace skerry::python {

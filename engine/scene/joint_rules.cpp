@@ -70,8 +70,7 @@ const Rule<JointEntry>& rule_of<JointEntry>() {
             .key("upper", &Entry::upper,
                  {.meaning = "upper limit of the rotation or translation; default: none", .unit = "rad or m"})
             .key("motor", &Entry::motor, {.meaning = "motor on the axis; default: none"})
-            .key("passive", &Entry::passive,
-                 {.meaning = "spring, damper and dry friction on the axis; default: none"})
+            .key("passive", &Entry::passive, {.meaning = "spring, damper and dry friction on the axis; default: none"})
             .key("bodies_touch", &Entry::bodies_touch,
                  {.meaning = "whether the two bodies can touch each other; default: false"});
     return rule;

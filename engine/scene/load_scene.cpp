@@ -16,6 +16,7 @@ struct Built {
     const std::vector<ColliderHandle>& colliders;
     const std::vector<std::vector<AttachmentHandle>>& pins;  // indexed by body
     const std::vector<JointHandle>& joints;
+    const std::vector<TieHandle>& ties;
     const std::vector<CableHandle>& cables;
     const std::vector<CavityHandle>& cavities;
     const std::vector<SpringHandle>& springs;
@@ -49,6 +50,8 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
             return ReactionProbe{built.pins[*series.body][series.pin]};
         case ProbeQuantity::joint:
             return JointProbe{built.joints[series.joint]};
+        case ProbeQuantity::tie:
+            return TieProbe{built.ties[series.tie]};
         case ProbeQuantity::cable:
             return CableProbe{built.cables[series.cable]};
         case ProbeQuantity::cavity:
@@ -147,12 +150,13 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         if (joint.second) settings.second = bodies[*joint.second];
         joints.push_back(called_at(joint.place, [&] { return Joints(world).add(settings); }));
     }
+    std::vector<TieHandle> ties;
     for (const TiePlan& tie : plan.ties) {
         TieSettings settings = tie.settings;
         settings.body = bodies[tie.body];
         if (tie.to_body) settings.to_body = bodies[*tie.to_body];
         if (tie.to_collider) settings.to_collider = colliders[*tie.to_collider];
-        called_at(tie.place, [&] { return Ties(world).add(settings); });
+        ties.push_back(called_at(tie.place, [&] { return Ties(world).add(settings); }));
     }
     std::vector<CableHandle> cables;
     for (const CablePlan& cable : plan.cables)
@@ -173,8 +177,8 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
     }
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
-    for (const SeriesPlan& series : plan.series)
-        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints, cables, cavities, springs})});
+    const Built built{world, bodies, colliders, pins, joints, ties, cables, cavities, springs};
+    for (const SeriesPlan& series : plan.series) scene.recorded.push_back({series.name, recorded(series, built)});
     return scene;
 }
 

@@ -14,12 +14,7 @@ CavityPlan plan_cavity(const CavityEntry& entry, std::size_t number, const Scene
     if (std::ranges::find(plan.cavities, cavity.name, &CavityPlan::name) != plan.cavities.end())
         entry.place.key("name").refuse(in_quotes(cavity.name) + ", which is already the name of a cavity",
                                        "a different name for every cavity");
-    std::vector<std::string> names;
-    for (const BodyPlan& body : plan.bodies) names.push_back(body.settings.name);
-    const auto found = std::ranges::find(names, entry.body);
-    if (found == names.end())
-        entry.place.key("body").refuse(in_quotes(entry.body), "the name of a body", nearest_hint(entry.body, names));
-    cavity.body = static_cast<std::size_t>(found - names.begin());
+    cavity.body = find_body(plan, entry.body, entry.place.key("body"));
     if (entry.set || entry.box || !entry.nodes.empty())
         cavity.settings.faces = faces_of(entry, plan.bodies[cavity.body], plan);
     if (entry.pressure) cavity.settings.filling = *entry.pressure;

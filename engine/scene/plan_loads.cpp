@@ -1,25 +1,11 @@
 // Resolves the names of bodies and the parts of bodies that loads use.
-#include <algorithm>
-
 #include "engine/scene/scene_plan.h"
 
 namespace skerry {
 
-namespace {
-
-std::size_t find_loaded_body(const ScenePlan& plan, const std::string& wanted, const Place& place) {
-    std::vector<std::string> names;
-    for (const BodyPlan& body : plan.bodies) names.push_back(body.settings.name);
-    const auto found = std::ranges::find(names, wanted);
-    if (found == names.end()) place.refuse(in_quotes(wanted), "the name of a body", nearest_hint(wanted, names));
-    return static_cast<std::size_t>(found - names.begin());
-}
-
-}  // namespace
-
 LoadPlan plan_load(const LoadEntry& entry, const ScenePlan& plan) {
     LoadPlan load{.place = entry.place};
-    if (entry.body) load.body = find_loaded_body(plan, *entry.body, entry.place.key("body"));
+    if (entry.body) load.body = find_body(plan, *entry.body, entry.place.key("body"));
     const TimeTable scale = entry.scale.value_or(TimeTable(1));
     switch (entry.kind) {
         case LoadKind::force:

@@ -106,6 +106,7 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
     if (entry.body) series.body = find_body(plan, *entry.body, entry.place.key("body"));
     if (entry.collider) series.collider = find_collider(plan, *entry.collider, entry.place.key("collider"));
     if (entry.joint) series.joint = find_joint(plan, *entry.joint, entry.place.key("joint"));
+    if (entry.tie) series.tie = find_tie(plan, *entry.tie, entry.place.key("tie"));
     if (entry.cable) series.cable = find_cable(plan, *entry.cable, entry.place.key("cable"));
     if (entry.cavity) series.cavity = find_cavity(plan, *entry.cavity, entry.place.key("cavity"));
     if (entry.spring) series.spring = find_spring(plan, *entry.spring, entry.place.key("spring"));

@@ -92,8 +92,14 @@ SurfacePlan plan_surface(const SurfaceEntry& entry, const Mesh& mesh, const std:
                                      .friction_across = entry.friction_across,
                                      .direction = entry.direction},
                         .place = entry.place};
-    if (entry.set) surface.settings.faces = find_set(*entry.set, mesh, sets, entry.place.key("set")).faces;
-    if (surface.settings.faces.empty()) surface.settings.nodes = nodes_of(entry, mesh, sets);
+    if (entry.set) {
+        // Listed nodes also count where they do not make a whole face.
+        const MeshSet& set = find_set(*entry.set, mesh, sets, entry.place.key("set"));
+        surface.settings.nodes = set.nodes;
+        surface.settings.faces = faces_of(set, mesh);
+    } else {
+        surface.settings.nodes = nodes_of(entry, mesh, sets);
+    }
     return surface;
 }
 
@@ -239,6 +245,19 @@ PairPlan plan_pair(const PairEntry& entry, const ScenePlan& plan) {
             .place = entry.place};
 }
 
+/// Adds a pair to a plan that contains all materials.
+void plan_pair_once(const PairEntry& entry, ScenePlan& plan) {
+    const PairPlan pair = plan_pair(entry, plan);
+    const auto is_same = [&](const PairPlan& other) {
+        return std::minmax(other.first, other.second) == std::minmax(pair.first, pair.second);
+    };
+    if (std::ranges::any_of(plan.pairs, is_same))
+        entry.place.key("materials")
+            .refuse("a second pair of " + in_quotes(entry.materials[0]) + " and " + in_quotes(entry.materials[1]),
+                    "every pair of materials at most once", "delete one of the two entries");
+    plan.pairs.push_back(pair);
+}
+
 JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePlan& plan) {
     JointPlan joint;
     joint.name = entry.name.empty() ? "joint_" + std::to_string(number) : entry.name;
@@ -294,7 +313,7 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     plan.settings = scene.settings;
     apply(overrides, plan.settings);
     plan.materials = scene.materials.items;
-    for (const PairEntry& pair : scene.pairs) plan.pairs.push_back(plan_pair(pair, plan));
+    for (const PairEntry& pair : scene.pairs) plan_pair_once(pair, plan);
     PlannedBodies so_far;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, so_far, plan);
     if (overrides.element)
@@ -302,7 +321,7 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
         plan.colliders.push_back(plan_collider(scene.colliders[i], i, plan));
     for (std::size_t i = 0; i < scene.joints.size(); ++i) plan.joints.push_back(plan_joint(scene.joints[i], i, plan));
-    for (const TieEntry& tie : scene.ties) plan.ties.push_back(plan_tie(tie, plan));
+    for (std::size_t i = 0; i < scene.ties.size(); ++i) plan.ties.push_back(plan_tie(scene.ties[i], i, plan));
     for (std::size_t i = 0; i < scene.cables.size(); ++i) plan.cables.push_back(plan_cable(scene.cables[i], i, plan));
     plan_cavities(scene, plan);
     for (const LoadEntry& load : scene.loads) plan.loads.push_back(plan_load(load, plan));

@@ -1,5 +1,6 @@
 // Resolves the sets of bodies, and the parts of bodies that entries of a scene file name.
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "engine/mesh/labels.h"
@@ -57,6 +58,11 @@ std::vector<std::array<Index, 3>> surface_of(const Mesh& mesh) {
     return surface;
 }
 
+std::array<Index, 3> sorted(std::array<Index, 3> face) {
+    std::ranges::sort(face);
+    return face;
+}
+
 /// Set with which the conditions of an entry begin: the union of other sets, the tetrahedra of a label, or all nodes.
 MeshSet first_set(const SetEntry& entry, const Mesh& mesh, const NamedSets& known) {
     MeshSet set;
@@ -81,8 +87,13 @@ MeshSet first_set(const SetEntry& entry, const Mesh& mesh, const NamedSets& know
 
 MeshSet plan_set(const SetEntry& entry, const Mesh& mesh, const NamedSets& known) {
     MeshSet set = first_set(entry, mesh, known);
-    if (entry.surface)
-        set = {.nodes = {}, .faces = mesh::faces_of(set, mesh.tetrahedra, surface_of(mesh)), .tetrahedra = {}};
+    if (entry.surface) {
+        const std::vector<std::array<Index, 3>> surface = surface_of(mesh);
+        set = {.nodes = {}, .faces = mesh::faces_of(set, mesh.tetrahedra, surface), .tetrahedra = {}};
+        std::set<std::array<Index, 3>> outside;
+        for (const std::array<Index, 3>& face : surface) outside.insert(sorted(face));
+        std::erase_if(set.faces, [&](const auto& face) { return !outside.contains(sorted(face)); });
+    }
     std::vector<Index> wanted;
     if (!entry.nodes.empty()) wanted = nodes_listed(mesh, entry.nodes, entry.place.key("nodes"));
     const auto meets = [&](Index n) {
@@ -151,6 +162,10 @@ std::vector<Index> nodes_of(const PartEntry& part, const BodyPlan& body, const S
     return nodes_of(part, plan.meshes[body.mesh], body.sets);
 }
 
+std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, const Mesh& mesh) {
+    return mesh::faces_of(set, mesh.tetrahedra, surface_of(mesh));
+}
+
 std::vector<std::array<Index, 3>> faces_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan) {
     const Mesh& mesh = plan.meshes[body.mesh];
     MeshSet set;
@@ -159,7 +174,7 @@ std::vector<std::array<Index, 3>> faces_of(const PartEntry& part, const BodyPlan
     else
         set.nodes = nodes_of(part, body, plan);
     mesh::tidy(set);
-    std::vector<std::array<Index, 3>> faces = mesh::faces_of(set, mesh.tetrahedra, surface_of(mesh));
+    std::vector<std::array<Index, 3>> faces = faces_of(set, mesh);
     if (faces.empty())
         part.place.key(part.set   ? "set"
                        : part.box ? "box"

@@ -23,6 +23,8 @@ KeysOf keys_of(ProbeQuantity quantity) {
             return {{"body"}, {"pin"}};
         case ProbeQuantity::joint:
             return {{"joint"}, {}};
+        case ProbeQuantity::tie:
+            return {{"tie"}, {}};
         case ProbeQuantity::cable:
             return {{"cable"}, {}};
         case ProbeQuantity::spring:
@@ -43,12 +45,12 @@ void check_keys(const Place& place, const ProbeEntry& probe) {
     const KeysOf keys = keys_of(probe.quantity);
     const std::string of = "the quantity " + in_quotes(name_of(probe.quantity));
     const std::vector<std::pair<std::string, bool>> given{
-        {"body", probe.body.has_value()},   {"collider", probe.collider.has_value()},
-        {"by", probe.by.has_value()},       {"box", probe.box.has_value()},
-        {"point", probe.point.has_value()}, {"pin", probe.pin.has_value()},
-        {"joint", probe.joint.has_value()}, {"set", probe.set.has_value()},
+        {"body", probe.body.has_value()},     {"collider", probe.collider.has_value()},
+        {"by", probe.by.has_value()},         {"box", probe.box.has_value()},
+        {"point", probe.point.has_value()},   {"pin", probe.pin.has_value()},
+        {"joint", probe.joint.has_value()},   {"set", probe.set.has_value()},
         {"cable", probe.cable.has_value()},   {"cavity", probe.cavity.has_value()},
-        {"spring", probe.spring.has_value()}};
+        {"spring", probe.spring.has_value()}, {"tie", probe.tie.has_value()}};
     for (const auto& [key, is_given] : given) {
         const bool required = std::ranges::find(keys.required, key) != keys.required.end();
         if (required && !is_given)
@@ -85,7 +87,8 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
             .key("quantity", &P::quantity,
                  {.meaning = "recorded quantity: contacts (default); motion of a point or of the centre of mass; force "
                              "of contacts on a body or a collider; reaction of a pin; coordinate and forces of a "
-                             "joint; tensions and length of a cable; energy of the world; largest "
+                             "joint; force, moment and error of a tie; tensions and length of a cable; energy of the "
+                             "world; largest "
                              "stress; smallest ratio of current volume to rest volume; pressure, volume, gas mass, "
                              "energy and force of a cavity; length, force and energy of a spring"})
             .key("body", &P::body, {.meaning = "name of a body"})
@@ -94,6 +97,7 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
                  {.meaning = "for a force: name of the body or collider that exerts the force; default: all bodies and "
                              "colliders"})
             .key("joint", &P::joint, {.meaning = "for a joint: name of the joint"})
+            .key("tie", &P::tie, {.meaning = "for a tie: name of the tie"})
             .key("cable", &P::cable, {.meaning = "for a cable: name of the cable"})
             .key("cavity", &P::cavity, {.meaning = "for a cavity: name of the cavity"})
             .key("spring", &P::spring, {.meaning = "for a spring: name of the spring"})

@@ -15,9 +15,9 @@
 #include "skerry/cavity.h"
 #include "skerry/joint.h"
 #include "skerry/settings.h"
+#include "skerry/spring.h"
 #include "skerry/tie.h"
 #include "skerry/time_table.h"
-#include "skerry/spring.h"
 
 namespace skerry {
 
@@ -210,6 +210,7 @@ struct JointEntry {
     Place place;
 };
 struct TieEntry : PartEntry {
+    std::string name;
     TieKind kind = TieKind::weld;
     std::string body;
     std::optional<std::string> to_body, to_collider;
@@ -241,6 +242,7 @@ struct PipeEntry {
 };
 /// A load or a force field. `kind` determines which of the members are used.
 struct LoadEntry : PartEntry {
+    std::string name;
     LoadKind kind = LoadKind::force;
     std::optional<std::string> body;
     std::optional<Vec3> force, traction, acceleration, wind;  // [N, Pa, m/s^2, m/s]
@@ -249,10 +251,23 @@ struct LoadEntry : PartEntry {
 };
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
-enum class ProbeQuantity { contacts, motion, force, reaction, joint, cable, energy, stress, volume, cavity, spring };
+enum class ProbeQuantity {
+    contacts,
+    motion,
+    force,
+    reaction,
+    joint,
+    cable,
+    energy,
+    stress,
+    volume,
+    cavity,
+    spring,
+    tie
+};
 template <>
 struct EnumNames<ProbeQuantity> {
-    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 11> table{{
+    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 12> table{{
         {ProbeQuantity::contacts, "contacts"},
         {ProbeQuantity::motion, "motion"},
         {ProbeQuantity::force, "force"},
@@ -264,12 +279,13 @@ struct EnumNames<ProbeQuantity> {
         {ProbeQuantity::volume, "volume"},
         {ProbeQuantity::cavity, "cavity"},
         {ProbeQuantity::spring, "spring"},
+        {ProbeQuantity::tie, "tie"},
     }};
 };
 struct ProbeEntry {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::contacts;
-    std::optional<std::string> body, collider, by, joint, set, cable, cavity, spring;
+    std::optional<std::string> body, collider, by, joint, set, cable, cavity, spring, tie;
     std::optional<RestBox> box;
     std::optional<Vec3> point;  // position in the mesh's own frame [m]
     std::optional<int> pin;

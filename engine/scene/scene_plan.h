@@ -17,8 +17,8 @@
 #include "skerry/anchor.h"
 #include "skerry/load.h"
 #include "skerry/scene.h"
-#include "skerry/surface.h"
 #include "skerry/spring.h"
+#include "skerry/surface.h"
 
 namespace skerry {
 
@@ -70,6 +70,7 @@ struct JointPlan {
     Place place;
 };
 struct TiePlan {
+    std::string name;
     std::size_t body = 0;                                 // index in ScenePlan::bodies
     std::optional<std::size_t> to_body{}, to_collider{};  // indices in ScenePlan::bodies and ScenePlan::colliders
     TieSettings settings;  // settings without handles, because handles exist only in a built world
@@ -117,6 +118,7 @@ struct SeriesPlan {
     std::optional<std::size_t> body{}, by_body{};          // indices in ScenePlan::bodies
     std::optional<std::size_t> collider{}, by_collider{};  // indices in ScenePlan::colliders
     std::size_t joint = 0;                                 // index in ScenePlan::joints
+    std::size_t tie = 0;                                   // index in ScenePlan::ties
     std::size_t cable = 0;                                 // index in ScenePlan::cables
     std::size_t cavity = 0;                                // index in ScenePlan::cavities
     std::size_t spring = 0;                                // index in ScenePlan::springs
@@ -163,6 +165,8 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
 /// unknown set, or a part without nodes or faces. Such errors list the sets that exist.
 std::vector<Index> nodes_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
 std::vector<std::array<Index, 3>> faces_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan);
+/// Faces of a set of a mesh, as mesh::faces_of finds them.
+std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, const Mesh& mesh);
 /// Resolves a part of a body that is not complete yet. `sets`: BodyPlan::sets.
 std::vector<Index> nodes_of(const PartEntry& part, const Mesh& mesh, const std::map<std::string, MeshSet>& sets);
 
@@ -189,8 +193,11 @@ struct PlannedHandles {
 /// Returns a planned anchor in the form that a world takes.
 Anchor anchor_of(const AnchorPlan& anchor, const ScenePlan& plan, const World& world, const PlannedHandles& handles);
 
-/// Resolves the names and nodes of a tie. The plan must already contain all bodies and colliders.
-TiePlan plan_tie(const TieEntry& entry, const ScenePlan& plan);
+/// Resolves the names and nodes of a tie. The plan must already contain all bodies and colliders. `number`: index of
+/// the tie.
+TiePlan plan_tie(const TieEntry& entry, std::size_t number, const ScenePlan& plan);
+/// Returns the index of a tie in a plan. Throws SceneError if the plan has none of this name.
+std::size_t find_tie(const ScenePlan& plan, const std::string& name, const Place& place);
 
 /// Resolves the names of a cable. The plan must already contain all bodies and colliders. `number`: index of the cable.
 CablePlan plan_cable(const CableEntry& entry, std::size_t number, const ScenePlan& plan);
@@ -213,7 +220,7 @@ void plan_spring(const SpringEntry& entry, std::size_t number, ScenePlan& plan);
 /// Returns the index of a spring in a plan. Throws SceneError if the plan has none of this name.
 std::size_t find_spring(const ScenePlan& plan, const std::string& name, const Place& place);
 
-/// Adds a probe to a plan that already contains all bodies, colliders, joints and springs.
+/// Adds a probe to a plan that already contains all bodies, colliders and joining objects.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 
 /// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.

@@ -384,11 +384,12 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("$schema", &SceneFile::schema, {.meaning = "path or address of this schema, for editors"})
             .key("name", &SceneFile::name, {.meaning = "name of the scene; default: the name of the file"})
             .key("description", &SceneFile::description, {.meaning = "description of the scene"})
-            .key("include", &SceneFile::include,
-                 {.meaning =
-                      "scene files to read before this file. Their bodies, colliders, joints, loads and materials are "
-                      "added "
-                      "to those of this file; where both files set the same single value, this file takes precedence"})
+            .key(
+                "include", &SceneFile::include,
+                {.meaning =
+                     "scene files to read before this file. Their materials and the entries of their lists, such as "
+                     "bodies, springs or probes, are added to those of this file; where both files set the same single "
+                     "value, this file takes precedence"})
             .key("seconds", &SceneFile::seconds,
                  {.meaning = "simulated time of a run; default: 2", .unit = "s", .limits = above(0)})
             .key("frame_step", &SceneFile::frame_step,

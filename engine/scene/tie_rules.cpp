@@ -10,6 +10,7 @@ const Rule<TieEntry>& rule_of<TieEntry>() {
         Rule<Entry>("tie",
                     "A tie between nodes of a deformable body and another body, a collider or the world. Each node is "
                     "tied in its position at the start to the nearest point of the other object.")
+            .key("name", &Entry::name, {.meaning = "name in messages and for probes; default: tie_NUMBER"})
             .key("kind", &Entry::kind,
                  {.meaning = "motion of a node relative to its point. weld (default): none; slide: in the plane of the "
                              "surface"})

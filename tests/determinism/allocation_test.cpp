@@ -9,8 +9,8 @@
 
 #include "engine/world/tuning.h"
 #include "jobs/executor.h"
-#include "skerry/cavity.h"
 #include "skerry/cable.h"
+#include "skerry/cavity.h"
 #include "skerry/load.h"
 #include "skerry/rollout.h"
 #include "skerry/spring.h"

@@ -70,6 +70,8 @@ def test_every_kind_of_probe_has_its_columns() -> None:
     grip = bar.attach(bar.select(above=1.05))
     wheel = world.add_body(sk.Cylinder(radius=0.1, height=0.1), RUBBER, position=(0, 1, 1), name="wheel")
     hinge = world.add_joint("hinge", wheel, point=(0, 1, 1), axis=(0, 0, 1), motor=sk.Motor(speed=2.0, strength=1.0))
+    pad = world.add_body(sk.Mesh.box((0.1, 0.1, 0.1), 1), RUBBER, position=(2, 0, 1), dynamics="explicit", name="pad")
+    glue = world.add_tie(pad, pad.select(above=1.04))
     probes: dict[str, sk.Probe] = {
         "point": ball.probe((0, 0, 0.06)),
         "body": sk.BodyProbe(ball, origin=(0, 0, 0)),
@@ -77,6 +79,7 @@ def test_every_kind_of_probe_has_its_columns() -> None:
         "floor": sk.ForceProbe(floor, by=ball),
         "grip": sk.ReactionProbe(grip),
         "hinge": sk.JointProbe(hinge),
+        "glue": sk.TieProbe(glue),
         "energy": sk.EnergyProbe(),
         "stress": sk.StressProbe(bar, bar.select(below=1.0)),
         "volume": sk.VolumeProbe(bar),
@@ -89,6 +92,7 @@ def test_every_kind_of_probe_has_its_columns() -> None:
     last = recorder.array()[-1]
     assert {name.split(".")[0] for name in recorder.units} == {"time", *probes}
     assert last["grip.force_z"] == pytest.approx(bar.mass * G, rel=0.05)
+    assert last["glue.force_z"] == glue.state.force[2] > 0 and last["glue.error"] == glue.state.error
     assert last["hinge.angle"] == pytest.approx(1.0, rel=0.05)
     assert last["pose.rotation_z"] == pytest.approx(last["hinge.angle"])
     assert last["velocity.angular_velocity_z"] == pytest.approx(2.0, rel=1e-3)

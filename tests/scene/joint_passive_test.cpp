@@ -140,7 +140,8 @@ TEST_CASE("a motor works against friction, and the parts of the moment are told 
 }
 
 TEST_CASE("passive forces are settings of the joint that can be read, changed and saved", "[scene][joints]") {
-    Arm arm(JointSettings{.lower = -1, .motor = JointMotor{.position = 0.5, .strength = 2, .fastest = 3},
+    Arm arm(JointSettings{.lower = -1,
+                          .motor = JointMotor{.position = 0.5, .strength = 2, .fastest = 3},
                           .passive = {.stiffness = 1, .rest = 2, .damping = 3, .friction = 4}});
     Joints joints(arm.world);
     CHECK(joints.passive(arm.hinge) == JointPassive{.stiffness = 1, .rest = 2, .damping = 3, .friction = 4});

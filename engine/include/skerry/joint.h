@@ -33,8 +33,8 @@ struct JointMotor {
     std::vector<MotorKey> keys{};
 };
 
-/// Passive forces along the axis of a hinge (angles, moments) or a slider (displacements, forces). They oppose the motion
-/// of the joint without a motor (docs/methods/joints.md 4).
+/// Passive forces along the axis of a hinge (angles, moments) or a slider (displacements, forces). They oppose the
+/// motion of the joint without a motor (docs/methods/joints.md 4).
 struct JointPassive {
     Real stiffness = 0;  // stiffness of a spring, >= 0 [N m/rad or N/m]
     Real rest = 0;       // coordinate of the joint at which the spring exerts no force [rad or m]

@@ -14,7 +14,7 @@
 namespace skerry {
 
 /// A named part of a mesh. A set can list nodes, faces, tetrahedra, or several of them. The functions nodes_of,
-/// faces_of and tetrahedra_of of the namespace mesh find the kinds that are not listed.
+/// faces_of and tetrahedra_of of the namespace mesh return its parts of one kind.
 struct MeshSet {
     std::vector<Index> nodes{};                 // indices of nodes, ascending
     std::vector<std::array<Index, 3>> faces{};  // nodes of faces of tetrahedra
@@ -145,8 +145,8 @@ SurfaceMesh boundary(const Mesh& mesh);
 
 /// Nodes of a set: the listed nodes, and all nodes of the listed faces and tetrahedra.
 std::vector<Index> nodes_of(const MeshSet& set, std::span<const std::array<Index, 4>> tetrahedra);
-/// Faces of a set: the listed faces. If none are listed: the triangles of `surface`, the boundary of the tetrahedra,
-/// that belong to listed tetrahedra, or all nodes of which are in the set.
+/// Faces of a set: the listed faces, and the triangles of `surface`, the boundary of the tetrahedra, that belong to
+/// listed tetrahedra or whose nodes are all listed.
 std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, std::span<const std::array<Index, 4>> tetrahedra,
                                            std::span<const std::array<Index, 3>> surface);
 /// Tetrahedra of a set: the listed tetrahedra. If none are listed: those all nodes of which are in the set.

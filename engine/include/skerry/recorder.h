@@ -14,6 +14,7 @@
 #include "components/cavity_law.h"
 #include "components/joint_kind.h"
 #include "components/spring_side.h"
+#include "components/tie_kind.h"
 #include "skerry/world.h"
 
 #pragma GCC visibility push(default)
@@ -58,6 +59,10 @@ struct ReactionProbe {
 struct JointProbe {
     JointHandle joint{};
 };
+/// Records force, moment and error of a tie at the last step (TieState).
+struct TieProbe {
+    TieHandle tie{};
+};
 /// Records the tensions, the length, the rate, the work and the friction loss of a cable (CableState).
 struct CableProbe {
     CableHandle cable{};
@@ -101,7 +106,8 @@ struct NodesProbe {
 struct RecordedProbe {
     std::string name;  // unique and not empty; not "." or "time"; without '/' and control characters
     std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, JointProbe, CableProbe,
-                 EnergyProbe, StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe, CavityProbe, SpringProbe>
+                 EnergyProbe, StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe, CavityProbe, SpringProbe,
+                 TieProbe>
         what;
 };
 

@@ -11,6 +11,7 @@
 #include "engine/world/world_state.h"
 #include "skerry/cable.h"
 #include "skerry/joint.h"
+#include "skerry/tie.h"
 #include "systems/dynamics/checks/volume_ratios.h"
 #include "systems/dynamics/elements/element_energy.h"
 
@@ -177,6 +178,12 @@ void put_values(const World& world, TrackedProbe& probe, std::vector<Real>& valu
             [&](const ReactionProbe&) { put_force(probe.force, false, values); },
             [&](const JointProbe& joint) { put_joint(state_of(world, joint), values); },
             [&](const CableProbe& cable) { put_cable(state_of(world, cable), values); },
+            [&](const TieProbe& tie) {
+                const TieState now = tie_state(WorldAccess::state_of(world), tie.tie);
+                put_vector(now.force, values);
+                put_vector(now.moment, values);
+                values.push_back(now.error);
+            },
             [&](const CavityProbe& cavity) {
                 const CavityState now = cavity_state(WorldAccess::state_of(world), cavity.cavity);
                 values.insert(values.end(), {now.pressure, now.volume, now.mass, now.energy});
@@ -250,6 +257,7 @@ void require_objects(const World& world, const RecordedProbe& probe) {
                           [&](const ReactionProbe& force) { require(force.attachment); },
                           [&](const JointProbe& joint) { require(joint.joint); },
                           [&](const CableProbe& cable) { require(cable.cable); }, [](const EnergyProbe&) {},
+                          [&](const TieProbe& tie) { require(tie.tie); },
                           [&](const CavityProbe& cavity) { require(cavity.cavity); },
                           [&](const SpringProbe& spring) { require(spring.spring); },
                           [&](const BodyProbe& body) { require(body.body); },
@@ -334,6 +342,11 @@ void add_columns(const World& world, const RecordedProbe& probe, std::vector<Ser
                           [&](const ColliderForceProbe&) { contact_force(); }, [&](const ReactionProbe&) { force(); },
                           [&](const JointProbe& joint) { of_joint(state_of(world, joint).kind); },
                           [&](const CableProbe& cable) { of_cable(state_of(world, cable).tension.size()); },
+                          [&](const TieProbe&) {
+                              three("force", "N");
+                              three("moment", "N m");
+                              one("error", "m");
+                          },
                           [&](const CavityProbe&) {
                               one("pressure", "Pa");
                               one("volume", "m^3");

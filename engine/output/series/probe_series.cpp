@@ -68,10 +68,10 @@ std::unique_ptr<Writer> probe_series(const std::filesystem::path& file, const Sc
         refuse_series(file, extension.empty() ? "a name without extension" : "the extension " + extension,
                       "the extension .csv, .h5 or .hdf5");
     if (scene.recorded.empty())
-        refuse_series(
-            file, "a scene without probes that record a time series", "at least one probe with a quantity",
-            "add a probe of motion, force, reaction, joint, cable, energy, stress or volume to the scene; see "
-            "docs/outputs.md");
+        refuse_series(file, "a scene without probes that record a time series", "at least one probe with a quantity",
+                      "add a probe of motion, force, reaction, joint, tie, cable, cavity, spring, energy, stress or "
+                      "volume to the "
+                      "scene; see docs/outputs.md");
     if (csv) return std::make_unique<CsvSeries>(file, scene);
     return std::make_unique<Hdf5Series>(file, scene);
 }

@@ -105,6 +105,7 @@ from ._world.probes import (
     ReactionProbe,
     SpringProbe,
     StressProbe,
+    TieProbe,
     VelocityProbe,
     VolumeProbe,
 )
@@ -212,6 +213,7 @@ __all__ = [
     "SurfaceMesh",
     "Tie",
     "TieKind",
+    "TieProbe",
     "TieState",
     "VelocityProbe",
     "VolumeProbe",

@@ -73,9 +73,8 @@ void bind_joints(WorldClass& type) {
         .def("set_passive", &set_passive, nb::arg("joint"), nb::arg("passive"))
         .def("motor", guarded(motor_of))
         .def("limits", guarded(limits_of))
-        .def("passive", guarded([](World& world, const JointHandle& joint) {
-                 return object_of(Joints(world).passive(joint));
-             }))
+        .def("passive",
+             guarded([](World& world, const JointHandle& joint) { return object_of(Joints(world).passive(joint)); }))
         .def("set_limits",
              guarded([](World& world, const JointHandle& joint, std::optional<Real> lower, std::optional<Real> upper) {
                  Joints(world).set_limits(joint, lower, upper);

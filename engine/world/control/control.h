@@ -10,8 +10,8 @@
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
 #include "skerry/joint.h"
-#include "skerry/tie.h"
 #include "skerry/spring.h"
+#include "skerry/tie.h"
 
 namespace skerry {
 

@@ -23,16 +23,30 @@ struct CableDriveRow {
     const TimeTable* values;
 };
 
-CableDriveRow validated(const CableDrive& drive) {
+std::string title_of_cable(const std::string& first, const std::string& last) {
+    return "cable from " + first + " to " + last;
+}
+
+std::string title_of_cable(const Model& model, std::size_t row) {
+    const AnchorColumns& anchor = model.cables.anchor;
+    const auto title_of_point = [&](Index p) {
+        return title_of_end(model, anchor.body[static_cast<std::size_t>(p)],
+                            anchor.collider[static_cast<std::size_t>(p)]);
+    };
+    const Range points = model.cables.points[row];
+    return title_of_cable(title_of_point(points.begin), title_of_point(points.end - 1));
+}
+
+/// Checks the control of a cable. `object`: title of the cable.
+CableDriveRow validated(const std::string& object, const CableDrive& drive) {
     const int count = drive.tension.has_value() + drive.length.has_value() + drive.rate.has_value();
     if (count != 1)
-        refuse("cable", "drive",
-               count == 0 ? "no tension, length or rate" : "more than one of tension, length and rate",
+        refuse(object, "drive", count == 0 ? "no tension, length or rate" : "more than one of tension, length and rate",
                "exactly one of tension, length and rate");
-    const auto require_all = [](const char* field, const TimeTable& table, auto&& is_good, const char* expected) {
-        require_table("cable", field, table);
+    const auto require_all = [&](const char* field, const TimeTable& table, auto&& is_good, const char* expected) {
+        require_table(object, field, table);
         for (const TimeKey& key : table.keys)
-            if (!is_good(key.value)) refuse("cable", field, short_text(key.value), expected);
+            if (!is_good(key.value)) refuse(object, field, short_text(key.value), expected);
     };
     if (drive.tension) {
         require_all(
@@ -97,18 +111,19 @@ void append_points(CableTable& table, std::size_t row, std::span<const PlacedAnc
     }
 }
 
-std::vector<PlacedAnchor> placed_points(WorldState& state, const std::vector<Anchor>& points) {
-    if (points.size() < 2) refuse("cable", "points", std::to_string(points.size()), "at least 2 points");
+std::vector<PlacedAnchor> placed_points(WorldState& state, const std::string& object,
+                                        const std::vector<Anchor>& points) {
+    if (points.size() < 2) refuse(object, "points", std::to_string(points.size()), "at least 2 points");
     std::vector<PlacedAnchor> placed;
     bool any_body = false;
     for (std::size_t p = 0; p < points.size(); ++p) {
         const std::string field = "points[" + std::to_string(p) + "]";
-        placed.push_back(place_anchor(state, points[p], "cable", field));
+        placed.push_back(place_anchor(state, points[p], object, field));
         any_body |= points[p].body.has_value();
         if (p > 0 && points[p].point == points[p - 1].point)
-            refuse("cable", field.c_str(), "the same place as the point before", "another place");
+            refuse(object, field.c_str(), "the same place as the point before", "another place");
     }
-    if (!any_body) refuse("cable", "points", "no point on a body", "at least one point on a body");
+    if (!any_body) refuse(object, "points", "no point on a body", "at least one point on a body");
     return placed;
 }
 
@@ -118,10 +133,13 @@ CableHandle Cables::add(const CableSettings& cable) {
     WorldState& state = WorldAccess::state_of(*world_);
     state.require_between_steps("add_cable");
     Model& model = state.model;
-    const CableDriveRow drive = validated(cable.drive);
+    const std::string object = cable.points.empty() ? "cable"
+                                                    : title_of_cable(title_of_end(model, cable.points.front()),
+                                                                     title_of_end(model, cable.points.back()));
+    const CableDriveRow drive = validated(object, cable.drive);
     if (!(cable.friction >= 0 && std::isfinite(cable.friction)))
-        refuse("cable", "friction", short_text(cable.friction), "a friction coefficient >= 0");
-    const std::vector<PlacedAnchor> points = placed_points(state, cable.points);
+        refuse(object, "friction", short_text(cable.friction), "a friction coefficient >= 0");
+    const std::vector<PlacedAnchor> points = placed_points(state, object, cable.points);
     CableTable& table = model.cables;
     const std::size_t row = table.size();
     AnyTable(table).resize(row + 1);
@@ -201,7 +219,7 @@ void Cables::set_drive(CableHandle cable, const CableDrive& drive) {
     state.require_between_steps("set_drive");
     Model& model = state.model;
     const auto row = static_cast<std::size_t>(model.row(cable, "set_drive"));
-    const CableDriveRow wanted = validated(drive);
+    const CableDriveRow wanted = validated(title_of_cable(model, row), drive);
     CableTable& table = model.cables;
     if (table.control[row] == wanted.control && std::ranges::equal(table.keys_of(row), wanted.values->keys)) return;
     if (wanted.control == CableControl::rate && table.control[row] != CableControl::rate)

@@ -24,6 +24,10 @@ std::string title_of_cavity(const Model& model, std::size_t body) {
     return "cavity of body '" + model.body_records[body].name + "'";
 }
 
+std::string title_of_row(const Model& model, std::size_t cavity) {
+    return title_of_cavity(model, static_cast<std::size_t>(model.cavities.body[cavity]));
+}
+
 void require_above(const std::string& object, const char* field, Real value, Real least, const char* unit) {
     if (!(std::isfinite(value) && value > least))
         refuse(object, field, short_text(value), "a number > " + short_text(least) + unit);
@@ -283,8 +287,7 @@ bool replace_keys(Table& table, std::size_t row, const TimeTable& wanted) {
 std::size_t row_with_law(const Model& model, CavityHandle cavity, CavityLaw law, const char* call) {
     const auto row = static_cast<std::size_t>(model.row(cavity, call));
     if (const CavityLaw found = model.cavities.law[row]; found != law)
-        refuse(title_of_cavity(model, static_cast<std::size_t>(model.cavities.body[row])), call,
-               "a cavity with the law " + std::string(name_of(found)),
+        refuse(title_of_row(model, row), call, "a cavity with the law " + std::string(name_of(found)),
                "a cavity with the law " + std::string(name_of(law)));
     return row;
 }
@@ -300,17 +303,28 @@ void wake_ends(Model& model, std::size_t pipe) {
         if (body != no_index) model.wake(static_cast<std::size_t>(body));
 }
 
-void require_conductance(Real conductance) {
-    if (!(std::isfinite(conductance) && conductance >= 0))
-        refuse("pipe", "conductance", short_text(conductance), "a number >= 0 (kg/(s Pa))");
+/// Title of a pipe between two cavities, or between a cavity and a reservoir if both rows are equal.
+std::string title_of_pipe(const Model& model, std::size_t first, std::size_t second) {
+    return "pipe between the " + title_of_row(model, first) + " and " +
+           (first == second ? "a reservoir" : "the " + title_of_row(model, second));
 }
 
-/// Row of a cavity at the end of a pipe.
-std::size_t row_at_end(const Model& model, CavityHandle cavity, const char* field) {
-    const auto row = static_cast<std::size_t>(model.row(cavity, "add pipe"));
-    if (const CavityLaw law = model.cavities.law[row]; law != CavityLaw::gas)
-        refuse("pipe", field, "a cavity with the law " + std::string(name_of(law)), "a cavity with a gas");
-    return row;
+std::string title_of_pipe(const Model& model, std::size_t pipe) {
+    const auto row_of_slot = [&](std::uint32_t slot) {
+        return static_cast<std::size_t>(model.cavity_map.row(model.cavity_map.handle_of_slot(slot)));
+    };
+    return title_of_pipe(model, row_of_slot(model.pipes.first[pipe]), row_of_slot(model.pipes.second[pipe]));
+}
+
+void require_conductance(const std::string& object, Real conductance) {
+    if (!(std::isfinite(conductance) && conductance >= 0))
+        refuse(object, "conductance", short_text(conductance), "a number >= 0 (kg/(s Pa))");
+}
+
+/// Checks a cavity at the end of a pipe.
+void require_gas(const Model& model, const std::string& object, std::size_t cavity, const char* field) {
+    if (const CavityLaw law = model.cavities.law[cavity]; law != CavityLaw::gas)
+        refuse(object, field, "a cavity with the law " + std::string(name_of(law)), "a cavity with a gas");
 }
 
 }  // namespace
@@ -319,7 +333,7 @@ void Cavities::set_pressure(CavityHandle cavity, const TimeTable& pressure) {
     WorldState& state = WorldAccess::state_of(*world_);
     state.require_between_steps("set_pressure");
     const std::size_t row = row_with_law(state.model, cavity, CavityLaw::pressure, "set_pressure");
-    require_table("set_pressure", "pressure", pressure);
+    require_table(title_of_row(state.model, row), "pressure", pressure);
     replace_keys_of_cavity(state.model, row, pressure);
 }
 
@@ -327,7 +341,7 @@ void Cavities::set_inflow(CavityHandle cavity, const TimeTable& inflow) {
     WorldState& state = WorldAccess::state_of(*world_);
     state.require_between_steps("set_inflow");
     const std::size_t row = row_with_law(state.model, cavity, CavityLaw::gas, "set_inflow");
-    require_table("set_inflow", "inflow", inflow);
+    require_table(title_of_row(state.model, row), "inflow", inflow);
     replace_keys_of_cavity(state.model, row, inflow);
 }
 
@@ -335,7 +349,7 @@ void Cavities::set_liquid_volume(CavityHandle cavity, const TimeTable& volume) {
     WorldState& state = WorldAccess::state_of(*world_);
     state.require_between_steps("set_liquid_volume");
     const std::size_t row = row_with_law(state.model, cavity, CavityLaw::liquid, "set_liquid_volume");
-    require_keys("set_liquid_volume", "volume", volume, 0, " (m^3)");
+    require_keys(title_of_row(state.model, row), "volume", volume, 0, " (m^3)");
     replace_keys_of_cavity(state.model, row, volume);
 }
 
@@ -343,19 +357,22 @@ PipeHandle Cavities::add(const PipeSettings& pipe) {
     WorldState& state = WorldAccess::state_of(*world_);
     state.require_between_steps("add");
     Model& model = state.model;
-    const std::size_t first = row_at_end(model, pipe.first, "first");
-    const std::size_t second = pipe.second ? row_at_end(model, *pipe.second, "second") : first;
-    require_conductance(pipe.conductance);
-    require_table("pipe", "pressure", pipe.pressure);
+    const auto first = static_cast<std::size_t>(model.row(pipe.first, "add pipe"));
+    const auto second = static_cast<std::size_t>(model.row(pipe.second.value_or(pipe.first), "add pipe"));
+    const std::string object = title_of_pipe(model, first, second);
+    require_gas(model, object, first, "first");
+    require_gas(model, object, second, "second");
+    require_conductance(object, pipe.conductance);
+    require_table(object, "pressure", pipe.pressure);
     if (pipe.second && first == second)
-        refuse("pipe", "second", "the first cavity", "another cavity, or none for a reservoir");
+        refuse(object, "second", "the first cavity", "another cavity, or none for a reservoir");
     if (pipe.second && pipe.pressure != TimeTable())
-        refuse("pipe", "pressure", "a pressure of a reservoir", "no pressure for a pipe between two cavities");
+        refuse(object, "pressure", "a pressure of a reservoir", "no pressure for a pipe between two cavities");
     if (model.cavities.fluid[first] != model.cavities.fluid[second])
-        refuse("pipe", "second", "a cavity whose gas has another exponent, density or ambient pressure",
+        refuse(object, "second", "a cavity whose gas has another exponent, density or ambient pressure",
                "a cavity with the gas of the first cavity");
     for (const TimeKey& key : pipe.pressure.keys)
-        require_above("pipe", "pressure", key.value, -model.cavities.fluid[first].ambient, " (Pa), which is vacuum");
+        require_above(object, "pressure", key.value, -model.cavities.fluid[first].ambient, " (Pa), which is vacuum");
     PipeTable& table = model.pipes;
     const std::size_t row = table.size();
     AnyTable(table).resize(row + 1);
@@ -412,7 +429,7 @@ void Cavities::set_conductance(PipeHandle pipe, Real conductance) {
     WorldState& state = WorldAccess::state_of(*world_);
     state.require_between_steps("set_conductance");
     const auto row = static_cast<std::size_t>(state.model.row(pipe, "set_conductance"));
-    require_conductance(conductance);
+    require_conductance(title_of_pipe(state.model, row), conductance);
     if (state.model.pipes.conductance[row] == conductance) return;
     state.model.pipes.conductance[row] = conductance;
     wake_ends(state.model, row);
@@ -423,14 +440,14 @@ void Cavities::set_reservoir(PipeHandle pipe, const TimeTable& pressure) {
     state.require_between_steps("set_reservoir");
     Model& model = state.model;
     const auto row = static_cast<std::size_t>(model.row(pipe, "set_reservoir"));
+    const std::string object = title_of_pipe(model, row);
     if (model.pipes.keys[row].size() == 0)
-        refuse("pipe", "set_reservoir", "a pipe between two cavities", "a pipe with a reservoir");
-    require_table("set_reservoir", "pressure", pressure);
+        refuse(object, "set_reservoir", "a pipe between two cavities", "a pipe with a reservoir");
+    require_table(object, "pressure", pressure);
     const auto first =
         static_cast<std::size_t>(model.cavity_map.row(model.cavity_map.handle_of_slot(model.pipes.first[row])));
     for (const TimeKey& key : pressure.keys)
-        require_above("set_reservoir", "pressure", key.value, -model.cavities.fluid[first].ambient,
-                      " (Pa), which is vacuum");
+        require_above(object, "pressure", key.value, -model.cavities.fluid[first].ambient, " (Pa), which is vacuum");
     if (replace_keys(model.pipes, row, pressure)) wake_ends(model, row);
 }
 

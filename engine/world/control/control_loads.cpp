@@ -37,10 +37,16 @@ void wake_loaded(Model& model, Index body) {
         model.wake(static_cast<std::size_t>(body));
 }
 
+/// Title of a load on a body, or on all bodies if `body` is no_index.
+std::string title_of_load(const Model& model, Index body) {
+    if (body == no_index) return "load on all bodies";
+    return "load on body '" + model.body_records[static_cast<std::size_t>(body)].name + "'";
+}
+
 LoadHandle append_load(World& world, const LoadRow& row, const TimeTable& scale) {
     WorldState& state = WorldAccess::state_of(world);
     Model& model = state.model;
-    require_table("load", "scale", scale);
+    require_table(title_of_load(model, row.body), "scale", scale);
     LoadTable& table = model.loads;
     const std::size_t place = table.size();
     AnyTable(table).resize(place + 1);
@@ -78,17 +84,18 @@ std::array<Index, 3> sorted(std::array<Index, 3> face) {
 
 /// Throws SceneError if the list is empty, if a face is not on the surface of the body, or if it appears twice.
 void require_faces(std::span<const std::array<Index, 3>> faces, const Model& model, std::size_t body) {
+    const std::string object = title_of_load(model, static_cast<Index>(body));
     const BodyRecord& record = model.body_records[body];
     if (model.bodies.core_nodes[body] > 0)
-        refuse("load", "faces",
+        refuse(object, "faces",
                "faces of body '" + record.name + "', which is a " + std::string(model.round_name(body)),
                "a body with a mesh");
-    if (faces.empty()) refuse("load", "faces", "an empty list", "at least one face");
+    if (faces.empty()) refuse(object, "faces", "an empty list", "at least one face");
     std::set<std::array<Index, 3>> left;
     for (const std::array<Index, 3>& face : record.surface) left.insert(sorted(face));
     for (const std::array<Index, 3>& face : faces)
         if (left.erase(sorted(face)) == 0)
-            refuse("load", "faces",
+            refuse(object, "faces",
                    "the face of the nodes " + std::to_string(face[0]) + ", " + std::to_string(face[1]) + " and " +
                        std::to_string(face[2]),
                    "faces of the surface of body '" + record.name + "', each at most once");
@@ -132,13 +139,14 @@ LoadHandle Loads::add(const ForceLoad& load) {
     const Model& model = model_between_steps(*world_, "add_load");
     const Index body = model.row(load.body, "add_load");
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(body)];
-    require_finite("load", "force", load.force);
-    if (load.nodes.empty()) refuse("load", "nodes", "an empty list", "at least one node");
-    require_different_nodes("load on body '" + name_of_row(model, body) + "'", load.nodes, nodes.size());
+    const std::string object = title_of_load(model, body);
+    require_finite(object, "force", load.force);
+    if (load.nodes.empty()) refuse(object, "nodes", "an empty list", "at least one node");
+    require_different_nodes(object, load.nodes, nodes.size());
     LoadRow row{.kind = LoadKind::force, .body = body, .vector = load.force, .node = load.nodes};
     Real whole = 0;
     for (const Index node : load.nodes) whole += model.nodes.mass[nodes.begin + node];
-    if (!(whole > 0)) refuse("load", "nodes", "nodes without mass", "at least one node with a mass");
+    if (!(whole > 0)) refuse(object, "nodes", "nodes without mass", "at least one node with a mass");
     for (const Index node : load.nodes) row.weight.push_back(model.nodes.mass[nodes.begin + node] / whole);
     return append_load(*world_, row, load.scale);
 }
@@ -146,7 +154,7 @@ LoadHandle Loads::add(const ForceLoad& load) {
 LoadHandle Loads::add(const TractionLoad& load) {
     const Model& model = model_between_steps(*world_, "add_load");
     const Index body = model.row(load.body, "add_load");
-    require_finite("load", "traction", load.traction);
+    require_finite(title_of_load(model, body), "traction", load.traction);
     const std::span<const Vec3> rest =
         rows_of(model.nodes.rest_position, model.bodies.nodes[static_cast<std::size_t>(body)]);
     require_faces(load.faces, model, static_cast<std::size_t>(body));
@@ -168,11 +176,10 @@ LoadHandle Loads::add(const TractionLoad& load) {
 
 LoadHandle Loads::add(const AccelerationField& field) {
     const Model& model = model_between_steps(*world_, "add_load");
-    require_finite("load", "acceleration", field.acceleration);
-    return append_load(
-        *world_,
-        {.kind = LoadKind::acceleration, .body = body_of_field(model, field.body), .vector = field.acceleration},
-        field.scale);
+    const Index body = body_of_field(model, field.body);
+    require_finite(title_of_load(model, body), "acceleration", field.acceleration);
+    return append_load(*world_, {.kind = LoadKind::acceleration, .body = body, .vector = field.acceleration},
+                       field.scale);
 }
 
 LoadHandle Loads::add(const GravityScale& factor) {
@@ -180,7 +187,7 @@ LoadHandle Loads::add(const GravityScale& factor) {
     const Index body = body_of_field(model, factor.body);
     for (std::size_t row = 0; row < model.loads.size(); ++row)
         if (model.loads.kind[row] == LoadKind::gravity && model.loads.body[row] == body)
-            refuse("load", "body",
+            refuse(title_of_load(model, body), "body",
                    "a second factor of the weight of " +
                        (body == no_index ? "all bodies" : "body '" + name_of_row(model, body) + "'"),
                    "one factor, which set_scale() changes");
@@ -189,13 +196,12 @@ LoadHandle Loads::add(const GravityScale& factor) {
 
 LoadHandle Loads::add(const DragField& drag) {
     const Model& model = model_between_steps(*world_, "add_load");
+    const Index body = body_of_field(model, drag.body);
     if (!(std::isfinite(drag.rate) && drag.rate > 0))
-        refuse("load", "rate", short_text(drag.rate), "a finite number > 0 (1/s)");
-    require_finite("load", "wind", drag.wind);
-    return append_load(
-        *world_,
-        {.kind = LoadKind::drag, .body = body_of_field(model, drag.body), .vector = drag.wind, .rate = drag.rate},
-        drag.scale);
+        refuse(title_of_load(model, body), "rate", short_text(drag.rate), "a finite number > 0 (1/s)");
+    require_finite(title_of_load(model, body), "wind", drag.wind);
+    return append_load(*world_, {.kind = LoadKind::drag, .body = body, .vector = drag.wind, .rate = drag.rate},
+                       drag.scale);
 }
 
 void Loads::remove(LoadHandle load) {
@@ -234,7 +240,7 @@ LoadState Loads::state(LoadHandle load) const {
 void Loads::set_scale(LoadHandle load, const TimeTable& scale) {
     Model& model = model_between_steps(*world_, "set_scale");
     const auto row = static_cast<std::size_t>(model.row(load, "set_scale"));
-    require_table("load", "scale", scale);
+    require_table(title_of_load(model, model.loads.body[row]), "scale", scale);
     if (std::ranges::equal(model.loads.keys_of(row), scale.keys)) return;
     set_keys(model.loads.scale_keys, model.loads.key, row, scale.keys);
     wake_loaded(model, model.loads.body[row]);
@@ -243,10 +249,11 @@ void Loads::set_scale(LoadHandle load, const TimeTable& scale) {
 void Loads::set_vector(LoadHandle load, const Vec3& vector) {
     Model& model = model_between_steps(*world_, "set_vector");
     const auto row = static_cast<std::size_t>(model.row(load, "set_vector"));
+    const std::string object = title_of_load(model, model.loads.body[row]);
     if (model.loads.kind[row] == LoadKind::gravity)
-        refuse("load", "vector", "a vector for a factor of the weight",
+        refuse(object, "vector", "a vector for a factor of the weight",
                "a load of another kind; use set_scale() for the factor, or World::set_gravity()");
-    require_finite("load", field_of_vector(model.loads.kind[row]), vector);
+    require_finite(object, field_of_vector(model.loads.kind[row]), vector);
     if (model.loads.vector[row] == vector) return;
     model.loads.vector[row] = vector;
     wake_loaded(model, model.loads.body[row]);

@@ -15,38 +15,46 @@ namespace skerry {
 
 namespace {
 
-[[noreturn]] void refuse_spring(const char* field, const std::string& found, const std::string& expected) {
-    refuse("spring", field, found, expected);
+std::string title_of_spring(const std::string& first, const std::string& second) {
+    return "spring between " + first + " and " + second;
 }
 
-void require_not_negative(const char* field, Real found, const char* unit) {
+std::string title_of_spring(const Model& model, std::size_t row) {
+    const SpringTable& table = model.springs;
+    return title_of_spring(title_of_end(model, table.first.body[row], table.first.collider[row]),
+                           title_of_end(model, table.second.body[row], table.second.collider[row]));
+}
+
+// The parameter `object` of the following functions is the title of a spring.
+
+void require_not_negative(const std::string& object, const char* field, Real found, const char* unit) {
     if (!(std::isfinite(found) && found >= 0))
-        refuse_spring(field, short_text(found), std::string("a number >= 0 (") + unit + ")");
+        refuse(object, field, short_text(found), std::string("a number >= 0 (") + unit + ")");
 }
 
-void validate_rest_length(const TimeTable& rest_length) {
-    require_table("spring", "rest_length", rest_length);
+void validate_rest_length(const std::string& object, const TimeTable& rest_length) {
+    require_table(object, "rest_length", rest_length);
     for (std::size_t k = 0; k < rest_length.keys.size(); ++k)
         if (!(rest_length.keys[k].value >= 0))
-            refuse_spring(rest_length.keys.size() == 1 ? "rest_length" : "rest_length.keys",
-                          short_text(rest_length.keys[k].value), "a length >= 0 (m)");
+            refuse(object, rest_length.keys.size() == 1 ? "rest_length" : "rest_length.keys",
+                   short_text(rest_length.keys[k].value), "a length >= 0 (m)");
 }
 
 /// Checks an anchor of a spring. At theta < 1 a force that follows the deformation of an implicit body would add energy
 /// to the body.
-void require_stable(const Model& model, const PlacedAnchor& anchor, const char* field) {
+void require_stable(const Model& model, const std::string& object, const PlacedAnchor& anchor, const char* field) {
     if (anchor.body == no_index || model.settings.theta == 1) return;
     const auto body = static_cast<std::size_t>(anchor.body);
     if (model.dynamics_of(body) == BodyDynamics::implicit_elastic)
-        refuse_spring(field,
-                      "implicit body '" + model.body_records[body].name + "' in a world with theta " +
-                          short_text(model.settings.theta),
-                      "theta 1 in the settings, or another body");
+        refuse(object, field,
+               "implicit body '" + model.body_records[body].name + "' in a world with theta " +
+                   short_text(model.settings.theta),
+               "theta 1 in the settings, or another body");
 }
 
-void require_body(const PlacedAnchor& first, const PlacedAnchor& second) {
+void require_body(const std::string& object, const PlacedAnchor& first, const PlacedAnchor& second) {
     if (first.body == no_index && second.body == no_index)
-        refuse_spring("first, second", "no body", "a body in at least one of the two anchors");
+        refuse(object, "first, second", "no body", "a body in at least one of the two anchors");
 }
 
 void wake_bodies_of(Model& model, std::size_t row) {
@@ -77,6 +85,7 @@ struct Changed {
         world.require_between_steps(call);
         row = static_cast<std::size_t>(world.model.row(spring, call));
     }
+    std::string title() const { return title_of_spring(world.model, row); }
     void set(Column<Real>& column, Real value) const {
         if (column[row] == value) return;
         column[row] = value;
@@ -89,17 +98,20 @@ struct Changed {
 SpringHandle Springs::add(const SpringSettings& spring) {
     WorldState& world = WorldAccess::state_of(*world_);
     world.require_between_steps("add_spring");
-    require_not_negative("stiffness", spring.stiffness, "N/m");
-    require_not_negative("damping", spring.damping, "N s/m");
-    if (!(spring.strength > 0)) refuse_spring("strength", short_text(spring.strength), "a force > 0 (N)");
-    if (spring.rest_length) validate_rest_length(*spring.rest_length);
-    const PlacedAnchor first = place_anchor(world, spring.first, "spring", "first"),
-                       second = place_anchor(world, spring.second, "spring", "second");
-    require_body(first, second);
-    require_stable(world.model, first, "first");
-    require_stable(world.model, second, "second");
+    const std::string object =
+        title_of_spring(title_of_end(world.model, spring.first), title_of_end(world.model, spring.second));
+    require_not_negative(object, "stiffness", spring.stiffness, "N/m");
+    require_not_negative(object, "damping", spring.damping, "N s/m");
+    if (!(spring.strength > 0)) refuse(object, "strength", short_text(spring.strength), "a force > 0 (N)");
+    if (spring.rest_length) validate_rest_length(object, *spring.rest_length);
+    const PlacedAnchor first = place_anchor(world, spring.first, object, "first"),
+                       second = place_anchor(world, spring.second, object, "second");
+    require_body(object, first, second);
+    require_stable(world.model, object, first, "first");
+    require_stable(world.model, object, second, "second");
     if (spring.stiffness == 0 && spring.damping == 0)
-        refuse_spring("stiffness, damping", "0 and 0, so that no force acts", "a number > 0 for at least one of them");
+        refuse(object, "stiffness, damping", "0 and 0, so that no force acts",
+               "a number > 0 for at least one of them");
     Model& model = world.model;
     SpringTable& table = model.springs;
     const std::size_t row = table.size();
@@ -170,12 +182,13 @@ SpringState spring_state(const WorldState& world, SpringHandle spring) {
 
 void Springs::set_second(SpringHandle spring, const Anchor& anchor) {
     const Changed change(*world_, spring, "set_second");
-    const PlacedAnchor placed = place_anchor(change.world, anchor, "spring", "second");
+    const std::string object = change.title();
+    const PlacedAnchor placed = place_anchor(change.world, anchor, object, "second");
     AnchorColumns& columns = change.springs.second;
     PlacedAnchor first;
     first.body = change.springs.first.body[change.row];
-    require_body(first, placed);
-    require_stable(change.world.model, placed, "second");
+    require_body(object, first, placed);
+    require_stable(change.world.model, object, placed, "second");
     if (columns.body[change.row] == placed.body && columns.collider[change.row] == placed.collider &&
         columns.point[change.row] == placed.point)
         return;
@@ -187,21 +200,21 @@ void Springs::set_second(SpringHandle spring, const Anchor& anchor) {
 
 void Springs::set_rest_length(SpringHandle spring, const TimeTable& rest_length) {
     const Changed change(*world_, spring, "set_rest_length");
-    validate_rest_length(rest_length);
+    validate_rest_length(change.title(), rest_length);
     if (std::ranges::equal(change.springs.keys_of(change.row), rest_length.keys)) return;
     set_keys(change.springs.rest_length, change.springs.key, change.row, rest_length.keys);
     note_change(change.world, change.row);
 }
 
 void Springs::set_stiffness(SpringHandle spring, Real stiffness) {
-    require_not_negative("stiffness", stiffness, "N/m");
     const Changed change(*world_, spring, "set_stiffness");
+    require_not_negative(change.title(), "stiffness", stiffness, "N/m");
     change.set(change.springs.stiffness, stiffness);
 }
 
 void Springs::set_damping(SpringHandle spring, Real damping) {
-    require_not_negative("damping", damping, "N s/m");
     const Changed change(*world_, spring, "set_damping");
+    require_not_negative(change.title(), "damping", damping, "N s/m");
     change.set(change.springs.damping, damping);
 }
 

@@ -10,6 +10,7 @@
 #include "engine/world/edit/joining_rows.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/query/fitted_tree.h"
+#include "engine/world/query/place_anchor.h"
 #include "engine/world/validate.h"
 #include "skerry/tie.h"
 #include "systems/collision/narrow/collider_distance.h"
@@ -20,21 +21,34 @@ namespace skerry {
 
 namespace {
 
-[[noreturn]] void refuse_tie(const char* field, const std::string& found, const std::string& expected) {
-    refuse("tie", field, found, expected);
-}
+/// Rows of the objects that a tie joins.
+struct TiedObjects {
+    Index first, second = no_index, collider = no_index;
+};
 
 std::string title_of_tied(const Model& model, Index body) {
-    return "body '" + model.body_records[static_cast<std::size_t>(body)].name + "'";
+    return title_of_end(model, body, no_index);
 }
 
-void validate_break_force(Real force) {
-    if (!(force > 0)) refuse_tie("break_force", short_text(force), "a force > 0 (N)");
+std::string title_of_tie(const Model& model, const TiedObjects& objects) {
+    return "tie of " + title_of_tied(model, objects.first) + " to " +
+           title_of_end(model, objects.second, objects.collider);
 }
 
-void validate_nodes(const Model& model, Index body, const std::vector<Index>& nodes) {
-    if (nodes.empty()) refuse_tie("nodes", "no node", "at least one node of " + title_of_tied(model, body));
-    require_different_nodes("tie", nodes, model.bodies.nodes[static_cast<std::size_t>(body)].size());
+[[noreturn]] void refuse_tie(const Model& model, const TiedObjects& objects, const char* field,
+                             const std::string& found, const std::string& expected) {
+    refuse(title_of_tie(model, objects), field, found, expected);
+}
+
+void validate_break_force(const Model& model, const TiedObjects& objects, Real force) {
+    if (!(force > 0)) refuse_tie(model, objects, "break_force", short_text(force), "a force > 0 (N)");
+}
+
+void validate_nodes(const Model& model, const TiedObjects& objects, const std::vector<Index>& nodes) {
+    if (nodes.empty())
+        refuse_tie(model, objects, "nodes", "no node", "at least one node of " + title_of_tied(model, objects.first));
+    require_different_nodes(title_of_tie(model, objects), nodes,
+                            model.bodies.nodes[static_cast<std::size_t>(objects.first)].size());
 }
 
 /// Present poses of all colliders.
@@ -48,23 +62,24 @@ std::vector<RigidMotion> present_poses(const WorldState& world) {
     return poses;
 }
 
-/// Rows of the objects that a new tie joins.
-struct TiedObjects {
-    Index first, second = no_index, collider = no_index;
-};
-
 TiedObjects objects_of(const Model& model, const TieSettings& tie) {
-    if (tie.to_body && tie.to_collider) refuse_tie("to_body, to_collider", "a body and a collider", "one of the two");
     TiedObjects objects{model.row(tie.body, "add_tie")};
-    if (model.is_rigid(static_cast<std::size_t>(objects.first)))
-        refuse_tie("body", title_of_tied(model, objects.first) + ", which is rigid",
-                   "a deformable body (ties fix its nodes; joints connect rigid bodies)");
     if (tie.to_body) objects.second = model.row(*tie.to_body, "add_tie");
     if (tie.to_collider) objects.collider = model.row(*tie.to_collider, "add_tie");
+    const auto refuse_objects = [&](const char* field, const std::string& found, const std::string& expected) {
+        refuse_tie(model, objects, field, found, expected);
+    };
+    if (tie.to_body && tie.to_collider)
+        refuse_objects("to_body, to_collider", "a body and a collider", "one of the two");
+    if (model.is_rigid(static_cast<std::size_t>(objects.first)))
+        refuse_objects("body", title_of_tied(model, objects.first) + ", which is rigid",
+                       "a deformable body (ties fix its nodes; joints connect rigid bodies)");
     if (objects.second == objects.first)
-        refuse_tie("to_body", title_of_tied(model, objects.first) + " itself", "another body, a collider or the world");
+        refuse_objects("to_body", title_of_tied(model, objects.first) + " itself",
+                       "another body, a collider or the world");
     if (tie.kind == TieKind::slide && !tie.to_body && !tie.to_collider)
-        refuse_tie("kind", "a slide to the world, which has no surface", "a body or collider to slide on, or a weld");
+        refuse_objects("kind", "a slide to the world, which has no surface",
+                       "a body or collider to slide on, or a weld");
     return objects;
 }
 
@@ -75,11 +90,12 @@ struct OnSurface {
     Vec3 weight = Vec3::Zero();
 };
 
-OnSurface on_triangles(WorldState& world, std::size_t body, const Vec3& point) {
+/// Nearest point of the surface of `body`, which is the second body or the mesh of the collider.
+OnSurface on_triangles(WorldState& world, const TiedObjects& objects, std::size_t body, const Vec3& point) {
     const Model& model = world.model;
     const std::optional<TrianglePoint> found = nearest_point(fitted_tree(world, body), point, infinity);
     if (!found)
-        refuse_tie("to_body", title_of_tied(model, static_cast<Index>(body)) + ", which has no surface",
+        refuse_tie(model, objects, "to_body", title_of_tied(model, static_cast<Index>(body)) + ", which has no surface",
                    "a body with a surface");
     const auto& corner = model.surface.triangles.node[static_cast<std::size_t>(found->triangle)];
     const auto at = [&](std::size_t a) -> const Vec3& {
@@ -106,12 +122,12 @@ OnSurface nearest_place(WorldState& world, const TiedObjects& objects, std::span
     if (objects.second != no_index) {
         const auto body = static_cast<std::size_t>(objects.second);
         const auto round = model.round_shape(body);
-        return round ? on_shape(round->geometry, round->motion, point) : on_triangles(world, body, point);
+        return round ? on_shape(round->geometry, round->motion, point) : on_triangles(world, objects, body, point);
     }
     if (objects.collider == no_index) return {.point = point, .normal = Vec3::UnitZ()};
     const auto c = static_cast<std::size_t>(objects.collider);
     if (const Index mesh = model.colliders.body[c]; mesh != no_index)
-        return on_triangles(world, static_cast<std::size_t>(mesh), point);
+        return on_triangles(world, objects, static_cast<std::size_t>(mesh), point);
     return on_shape(model.colliders.geometry[c], pose[c], point);
 }
 
@@ -126,7 +142,7 @@ void require_close(WorldState& world, const TiedObjects& objects, std::span<cons
         const Vec3 point = model.nodes.position[static_cast<std::size_t>(model.bodies.nodes[first].begin + node)];
         const Real distance = (point - nearest_place(world, objects, pose, point).point).norm();
         if (!(distance <= reach))
-            refuse_tie("nodes",
+            refuse_tie(model, objects, "nodes",
                        "node " + std::to_string(node) + ", which is " + short_text(distance) +
                            " m from the surface to which it is tied",
                        "nodes at most " + short_text(reach) + " m from it (the mean edge length of the surface of " +
@@ -222,8 +238,8 @@ TieHandle Ties::add(const TieSettings& tie) {
     state.settle();
     Model& model = state.model;
     const TiedObjects objects = objects_of(model, tie);
-    validate_nodes(model, objects.first, tie.nodes);
-    validate_break_force(tie.break_force);
+    validate_nodes(model, objects, tie.nodes);
+    validate_break_force(model, objects, tie.break_force);
     const std::vector<RigidMotion> poses = present_poses(state);
     TieTable& table = model.ties;
     require_close(state, objects, poses, tie.nodes);
@@ -330,10 +346,11 @@ void Ties::set_break_force(TieHandle tie, Real force) {
     WorldState& state = WorldAccess::state_of(*world_);
     state.require_between_steps("set_break_force");
     Model& model = state.model;
+    TieTable& table = model.ties;
     const auto row = static_cast<std::size_t>(model.row(tie, "set_break_force"));
-    validate_break_force(force);
-    if (model.ties.break_force[row] == force) return;
-    model.ties.break_force[row] = force;
+    validate_break_force(model, {table.first[row], table.second[row], table.collider[row]}, force);
+    if (table.break_force[row] == force) return;
+    table.break_force[row] = force;
     wake_tied(model, row);
 }
 

@@ -86,6 +86,20 @@ PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::st
     return placed;
 }
 
+std::string title_of_end(const Model& model, Index body, Index collider) {
+    if (body != no_index) return "body '" + model.body_records[static_cast<std::size_t>(body)].name + "'";
+    if (collider == no_index) return "the world";
+    return "collider '" + model.collider_records[static_cast<std::size_t>(collider)].name + "'";
+}
+
+std::string title_of_end(const Model& model, const Anchor& anchor) {
+    const Index body = anchor.body ? model.body_map.row(*anchor.body) : no_index;
+    const Index collider = anchor.collider ? model.collider_map.row(*anchor.collider) : no_index;
+    if (anchor.body && body == no_index) return "a removed body";
+    if (anchor.collider && collider == no_index) return "a removed collider";
+    return title_of_end(model, body, collider);
+}
+
 AnchorsBetweenSteps::AnchorsBetweenSteps(const WorldState& world) : model_(world.model) {
     const ColliderTable& table = model_.colliders;
     const Real now = world.clock.time, before = world.clock.step_before;

@@ -23,6 +23,11 @@ struct PlacedAnchor {
 /// `object` if a handle is stale, the point is not finite, or the point is too far from a deformable body.
 PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::string& object, const std::string& field);
 
+/// Names the object to which an anchor is fixed, for messages: "body 'NAME'", "collider 'NAME'" or "the world". `body`
+/// and `collider`: rows, or no_index.
+std::string title_of_end(const Model& model, Index body, Index collider);
+std::string title_of_end(const Model& model, const Anchor& anchor);
+
 /// Inputs of anchors between steps. They stay valid until the world changes. Velocities of colliders are mean
 /// velocities of the last step, because the velocities of nodes also are.
 class AnchorsBetweenSteps {

@@ -148,8 +148,8 @@ struct Model {
     // True if the bounds depend on positions, so that they must be computed again before each step. Computed by
     // note_forces.
     bool force_rate_moves = false;
-    // For each body: what ForceElement::bound_damping and add_drag find [1/s]. If a column is empty, all its values are
-    // zero. Computed by note_forces.
+    // For each body: rates that ForceElement::bound_damping and add_drag find [1/s]. If a column is empty, all its
+    // values are zero. Computed by note_forces.
     Column<Real> force_damping, force_drag;
     BodyLinks links;          // pairs of bodies that are joined, for example by a joint; computed by note_changed_seams
     bool links_open = false;  // true if joints (or other rows that join bodies) have changed since `links` was computed

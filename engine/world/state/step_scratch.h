@@ -26,8 +26,8 @@
 #include "systems/dynamics/joints/measure_joints.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
-#include "systems/forces/prepare_cables.h"
 #include "systems/forces/add_loads.h"
+#include "systems/forces/prepare_cables.h"
 #include "systems/forces/springs.h"
 #include "systems/solver/solve_regions.h"
 
@@ -141,7 +141,7 @@ struct StepScratch {
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;
     ForceScratch forces;
-    Column<Vec3> axis_impulse;  // impulses of hold_axes and hold_axes_again [N s]
+    Column<Vec3> axis_impulse;         // impulses of hold_axes and hold_axes_again [N s]
     Column<Real> stiffness_sum;        // one entry per node; working memory of stable_step
     Column<std::uint8_t> beside_fast;  // one entry per node; working memory of check_state
     Column<Vec3> cluster_kick;         // used by kick_clusters

@@ -52,10 +52,10 @@ void show_contact_problem(const WorldState& world, Real time) {
     if (!record.problem_watch.wants(record.counters.steps) || scratch.contacts.size() == 0) return;
     const ContactTable& c = scratch.contacts;
     const KeptVelocities& kept = scratch.kept_velocities;
-    RegionInputs inputs = RegionInputs::bind(
-        {}, c, model.nodes, kept.velocity, scratch.parameters.collision.gravity, model.clusters, scratch.cluster_kick,
-        model.bodies, model.rigid_bodies, model.implicit_nodes, scratch.coupling, scratch.joints, scratch.cables,
-        model.surface_sets);
+    RegionInputs inputs =
+        RegionInputs::bind({}, c, model.nodes, kept.velocity, scratch.parameters.collision.gravity, model.clusters,
+                           scratch.cluster_kick, model.bodies, model.rigid_bodies, model.implicit_nodes,
+                           scratch.coupling, scratch.joints, scratch.cables, model.surface_sets);
     inputs.rigid.position = kept.position;
     inputs.rigid.center = kept.center;
     inputs.rigid.spins.angular_momentum = kept.angular_momentum;

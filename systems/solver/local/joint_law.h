@@ -26,8 +26,7 @@ inline Real drive_impulse(const AxisBounds& axis, Real w, Real b) {
     // strength.
     const bool motor_first = axis.target < 0;
     const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
-    const Real near_first =
-        std::clamp((std::min(axis.target, Real(0)) - b) / w, second - first, second + first);
+    const Real near_first = std::clamp((std::min(axis.target, Real(0)) - b) / w, second - first, second + first);
     if (near_first > second - first) return near_first;
     return std::clamp((std::max(axis.target, Real(0)) - b) / w, -second - first, second - first);
 }

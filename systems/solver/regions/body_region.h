@@ -25,8 +25,8 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
         return memory.node[n] != no_index &&
                stage.inputs.implicit.row(memory.node[n], stage.inputs.rigid.nodes) == no_index;
     }
-    /// Joints and cables require method ags, because only sweeps support them. Friction that depends on the direction also allows
-    /// the Newton steps of `automatic`.
+    /// Joints and cables require method ags, because only sweeps support them. Friction that depends on the direction
+    /// also allows the Newton steps of `automatic`.
     SolverMethod method(const SolverSettings& settings) const {
         const bool any = joint.empty() && cable.empty() && (!has_axes || settings.method == SolverMethod::automatic);
         return any ? settings.method : SolverMethod::ags;

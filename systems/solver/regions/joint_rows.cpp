@@ -49,7 +49,8 @@ Real fastest_pull(const RegionStage& stage, bool of_spins, const BodyMotion& fir
 
 /// Sets the impulses of spring, damper and friction of a joint axis (docs/methods/joints.md 4).
 void add_passive(const AxisLaw& axis, Real mobility, Real h, AxisBounds& bounds) {
-    constexpr Real at_start = 0.5;  // largest (omega h)^2 of the part of the spring that acts as at the start of the step
+    // Largest (omega h)^2 of the part of the spring that acts as at the start of the step.
+    constexpr Real at_start = 0.5;
     const JointPassiveRow& passive = axis.passive;
     const Real frequency = h * axis.kick * passive.stiffness * mobility;
     const Real at_end = frequency > at_start ? 1 - at_start / frequency : 0;
@@ -58,8 +59,8 @@ void add_passive(const AxisLaw& axis, Real mobility, Real h, AxisBounds& bounds)
     bounds.friction = axis.kick * passive.friction;
 }
 
-/// Limits, motor and passive forces of a joint axis as bounds of its velocity and impulse. `mobility` is the mobility of
-/// the axis [1/kg or 1/(kg m^2)]
+/// Limits, motor and passive forces of a joint axis as bounds of its velocity and impulse. `mobility` is the mobility
+/// of the axis [1/kg or 1/(kg m^2)].
 AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real fastest) {
     AxisBounds bounds;
     bounds.low = std::min((axis.lower - axis.coordinate) / h, fastest);

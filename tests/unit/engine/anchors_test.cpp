@@ -5,6 +5,11 @@
 #include <vector>
 
 #include "engine/world/query/place_anchor.h"
+#include "skerry/cable.h"
+#include "skerry/cavity.h"
+#include "skerry/load.h"
+#include "skerry/spring.h"
+#include "skerry/tie.h"
 #include "tests/support/worlds.h"
 
 namespace skerry::test::anchors_test {
@@ -126,6 +131,55 @@ TEST_CASE("an anchor that cannot be placed is refused with the reason") {
     CHECK_THAT(message_of([&] { anchors.add({.point = {0, infinity, 0}}); }), Catch::Contains("first.point"));
     world.remove(soft);
     CHECK_THAT(message_of([&] { anchors.add({.body = soft}); }), Catch::Contains("spring"));
+}
+
+TEST_CASE("messages about joining objects name the bodies that they join") {
+    World world{Settings{}};
+    const auto material = world.add_material({});
+    const BodyHandle soft =
+        world.add_body(mesh::box({0.2, 0.2, 0.2}, {2, 2, 2}), {.material = material, .name = "jelly"});
+    world.add_collider(Plane{}, {.position = {0, 0, -1}, .name = "floor"});
+    const ColliderHandle floor = world.colliders()[0];
+    using Catch::Contains;
+
+    Springs springs(world);
+    const Anchor on_jelly{.body = soft}, on_floor{.collider = floor, .point = {0, 0, -1}};
+    CHECK_THAT(message_of([&] {
+                   springs.add({.first = on_jelly, .second = on_floor, .stiffness = -1});
+               }),
+               Contains("spring between body 'jelly' and collider 'floor': stiffness"));
+    const SpringHandle spring = springs.add({.first = on_jelly, .second = {.point = {0, 0, 1}}, .stiffness = 1});
+    CHECK_THAT(message_of([&] { springs.set_damping(spring, -1); }),
+               Contains("spring between body 'jelly' and the world: damping"));
+
+    Ties ties(world);
+    CHECK_THAT(message_of([&] { ties.add({.body = soft, .to_collider = floor}); }),
+               Contains("tie of body 'jelly' to collider 'floor': nodes"));
+    const TieHandle tie = ties.add({.body = soft, .nodes = {0}});
+    CHECK_THAT(message_of([&] { ties.set_break_force(tie, 0); }),
+               Contains("tie of body 'jelly' to the world: break_force"));
+
+    Cables cables(world);
+    CHECK_THAT(message_of([&] { cables.add({.points = {on_jelly, on_floor}}); }),
+               Contains("cable from body 'jelly' to collider 'floor': drive"));
+    const CableHandle cable = cables.add({.points = {on_jelly, on_floor}, .drive = {.tension = TimeTable(1)}});
+    CHECK_THAT(message_of([&] { cables.set_drive(cable, {.length = TimeTable(-1)}); }),
+               Contains("cable from body 'jelly' to collider 'floor': length"));
+
+    Loads loads(world);
+    CHECK_THAT(message_of([&] { loads.add(ForceLoad{.body = soft}); }), Contains("load on body 'jelly': nodes"));
+    const LoadHandle load = loads.add(AccelerationField{});
+    CHECK_THAT(message_of([&] {
+                   loads.set_vector(load, {infinity, 0, 0});
+               }),
+               Contains("load on all bodies: acceleration"));
+
+    Cavities cavities(world);
+    const CavityHandle skin = cavities.add(CavitySettings{.body = soft, .filling = TimeTable(1)});
+    CHECK_THAT(message_of([&] { cavities.set_pressure(skin, TimeTable(infinity)); }),
+               Contains("cavity of body 'jelly': pressure"));
+    CHECK_THAT(message_of([&] { cavities.add(PipeSettings{.first = skin}); }),
+               Contains("pipe between the cavity of body 'jelly' and a reservoir: first"));
 }
 
 }  // namespace skerry::test::anchors_test

@@ -224,6 +224,9 @@ TEST_CASE("a set of one kind gives the numbers of the other kinds", "[unit]") {
     const MeshSet both{.nodes = {4}, .faces = {{0, 2, 1}}};
     CHECK(mesh::nodes_of(both, tetrahedra) == Numbers{0, 1, 2, 4});
     CHECK(mesh::faces_of(both, tetrahedra, surface) == Faces{{0, 2, 1}});
+    // listed faces, faces of listed tetrahedra and faces between listed nodes, each once
+    const MeshSet three{.nodes = {0, 1, 2, 3}, .faces = {{2, 1, 0}}, .tetrahedra = {1}};
+    CHECK(mesh::faces_of(three, tetrahedra, surface).size() == 6);
 }
 
 TEST_CASE("a written mesh has its sets when it is read", "[unit]") {

@@ -24,6 +24,19 @@ class ProgramInspectTest(ProgramCase):
         self.assertAlmostEqual(scene["body_kinds"][0]["stable_dt"], scene["stable_dt"], delta=1e-9 * scene["stable_dt"])
         self.assertIn("stable step", self.skerry("inspect", self.scene).stdout)
 
+    def test_inspect_counts_joining_objects_on_one_line(self):
+        body = {**SCENE["bodies"][0], "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [1, 1, 1]}}, "name": "pad",
+                "surfaces": [{"nodes": [0], "friction": 0.1}]}
+        material = body["material"]
+        scene = self.write("joined.json", {
+            **SCENE, "probes": [], "bodies": [body], "pairs": [{"materials": [material, material], "friction": 0.2}],
+            "loads": [{"kind": "gravity", "scale": 0.5}],
+            "springs": [{"first": {"body": "pad"}, "second": {"point": [0, 0, 1]}, "stiffness": 1}]})
+        text = self.skerry("inspect", scene).stdout
+        self.assertIn(" colliders, 1 loads, 1 springs, 1 pairs of materials, 1 surface sets\n  step ", text)
+        found = json.loads(self.skerry("inspect", scene, "--json").stdout)
+        self.assertEqual([found[key] for key in ("pipes", "loads", "springs", "pairs", "surfaces")], [0, 1, 1, 1, 1])
+
     def test_inspect_knows_rigid_bodies(self):
         rigid = {**SCENE["bodies"][0], "name": "stone", "dynamics": "rigid", "position": [0, 0, 3]}
         mixed = self.write("both.json", {**SCENE, "bodies": SCENE["bodies"] + [rigid]})

@@ -302,6 +302,40 @@ TEST_CASE("motors of a scene have keys, and probes name joints", "[unit]") {
     CHECK_THROWS_WITH(load_scene(file(R"("joint": "hinge", "body": "door")")), Catch::Contains("probes[0].body"));
 }
 
+TEST_CASE("probes name ties", "[unit]") {
+    const TemporaryFolder folder;
+    const auto file = [&](const std::string& tie, const std::string& probe) {
+        return folder.write("tied.json", R"({"materials": {"soft": {}}, "settings": {"gravity": [0, 0, -10]},
+            "bodies": [{"name": "pad", "material": "soft",
+                        "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [1, 1, 1]}}}],
+            "ties": [{"name": "glue", "body": "pad", "nodes": [0, 1]}, {"body": "pad", "nodes": [2])" +
+                                             tie + R"(}], "probes": [{"name": "p", "quantity": "tie", )" + probe +
+                                             "}]}");
+    };
+    Scene scene = load_scene(file("", R"("tie": "tie_1")"));
+    Recorder recorder(scene.world, scene.recorded);
+    std::vector<std::string> headings;
+    for (const SeriesColumn& column : recorder.columns()) headings.push_back(column.heading());
+    CHECK(headings == std::vector<std::string>{"time [s]", "p.force_x [N]", "p.force_y [N]", "p.force_z [N]",
+                                               "p.moment_x [N m]", "p.moment_y [N m]", "p.moment_z [N m]",
+                                               "p.error [m]"});
+    REQUIRE(scene.world.advance(0.001).ok());
+    recorder.sample(scene.world);
+    const TieState state = Ties(scene.world).state(Ties(scene.world).all()[1]);
+    const std::span<const Real> row = recorder.row(0);
+    CHECK(state.force.norm() > 0);
+    CHECK(Vec3(row[1], row[2], row[3]) == state.force);
+    CHECK(Vec3(row[4], row[5], row[6]) == state.moment);
+    CHECK(row[7] == state.error);
+    CHECK_THROWS_WITH(load_scene(file("", R"("tie": "glu")")),
+                      Catch::Contains("probes[0].tie: found \"glu\"") && Catch::Contains("glue"));
+    CHECK_THROWS_WITH(load_scene(file("", R"("joint": "glue")")), Catch::Contains("\"tie\""));
+    CHECK_THROWS_WITH(load_scene(file(R"(, "name": "glue")", R"("tie": "glue")")),
+                      Catch::Contains("ties[1].name: found \"glue\""));
+    CHECK_THROWS_WITH(load_scene(file(R"(, "name": "snap", "break_force": -1)", R"("tie": "glue")")),
+                      Catch::Contains("tie \"snap\": ties[1].break_force"));
+}
+
 TEST_CASE("a body with a shape in the place of a mesh is a sphere", "[unit]") {
     const TemporaryFolder folder;
     const auto scene = [&](const std::string& body) {

@@ -222,9 +222,7 @@ TEST_CASE("values of the wrong kind or out of range are refused with unit and ra
         {"a number for a material",
          body_with(R"("materials": {"-1": 5})"),
          {"bodies[0].materials.-1: found the number 5"}},
-        {"a list of materials",
-         body_with(R"("materials": ["rubber"])"),
-         {"expected an object {NAME: VALUE, ...}"}},
+        {"a list of materials", body_with(R"("materials": ["rubber"])"), {"expected an object {NAME: VALUE, ...}"}},
     });
 }
 

@@ -4,6 +4,7 @@
 #include "engine/scene/scene_plan.h"
 #include "skerry/error.h"
 #include "skerry/sets.h"
+#include "systems/collision/build_surface.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skerry::test::scene_sets_test {
@@ -63,6 +64,45 @@ TEST_CASE("sets are combined by name", "[unit]") {
     Scene scene = build_scene(plan);
     CHECK(Sets(scene.world).names(scene.world.bodies()[0]) ==
           std::vector<std::string>{"bottom", "edge", "ends", "top"});
+}
+
+TEST_CASE("surface drops the faces of a set that are inside of the mesh", "[unit]") {
+    const TemporaryFolder folder;
+    Mesh mesh = mesh::box({1, 1, 1}, {1, 1, 1});
+    const std::array<Index, 4> first = mesh.tetrahedra.front();
+    mesh.sets["faces"] = {.faces = {{first[0], first[1], first[2]},
+                                    {first[0], first[1], first[3]},
+                                    {first[0], first[2], first[3]},
+                                    {first[1], first[2], first[3]}}};
+    mesh::write((folder.path() / "m.msh").string(), mesh);
+    const ScenePlan plan = plan_scene(folder.write("scene.json", R"({"materials": {"soft": {}},
+        "bodies": [{"material": "soft", "mesh": {"file": "m.msh"}, "sets": {"skin": {"set": "faces", "surface": true}},
+                    "surfaces": [{"set": "skin", "mu": 0.1}]}]})"));
+    const std::size_t outside = plan.bodies[0].sets.at("skin").faces.size();
+    CHECK(outside > 0);
+    CHECK(outside < 4);
+    CHECK(plan.bodies[0].surfaces[0].settings.faces.size() == outside);
+    CHECK_NOTHROW(build_scene(plan));
+}
+
+TEST_CASE("loads, cavities and surfaces use nodes, faces and tetrahedra of a set together", "[unit]") {
+    const TemporaryFolder folder;
+    Mesh mesh = mesh::box({1, 1, 1}, {2, 1, 1});
+    const auto corners = boundary_triangles(mesh.tetrahedra).front().node;
+    std::vector<Index> right;
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+        if (mesh.nodes[n].x() > 0.4) right.push_back(static_cast<Index>(n));
+    mesh.sets["mixed"] = {.nodes = right, .faces = {corners}};
+    mesh::write((folder.path() / "m.msh").string(), mesh);
+    const ScenePlan plan = plan_scene(folder.write("scene.json", R"({"materials": {"soft": {}},
+        "bodies": [{"name": "b", "material": "soft", "mesh": {"file": "m.msh"},
+                    "surfaces": [{"set": "mixed", "mu": 0.1}]}],
+        "loads": [{"kind": "traction", "body": "b", "set": "mixed", "traction": [0, 0, 1]}],
+        "cavities": [{"body": "b", "set": "mixed", "pressure": 1}]})"));
+    CHECK(plan.bodies[0].surfaces[0].settings.faces.size() == 3);
+    CHECK(plan.bodies[0].surfaces[0].settings.nodes == right);
+    CHECK(std::get<TractionLoad>(plan.loads[0].load).faces.size() == 3);
+    CHECK(plan.cavities[0].settings.faces.size() == 3);
 }
 
 TEST_CASE("the tetrahedra of a set have the material of the set", "[unit]") {

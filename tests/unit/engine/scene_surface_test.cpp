@@ -51,6 +51,8 @@ TEST_CASE("errors of pairs name the file, the place and the materials", "[unit][
     CHECK_THAT(refusal(R"({"materials": ["steel", "rubber"], "friction": -1})"), Contains("pairs[0].friction"));
     CHECK_THAT(refusal(R"({"materials": ["steel", "rubber"], "static_friction": 0.1, "dynamic_friction": 0.2})"),
                Contains("pairs[0].dynamic_friction"));
+    CHECK_THAT(refusal(R"({"materials": ["steel", "rubber"], "mu": 1}, {"materials": ["rubber", "steel"], "mu": 2})"),
+               Contains("pairs[1].materials") && Contains("a second pair of \"rubber\" and \"steel\""));
     CHECK_THAT(refusal("", R"("material": "ice")"), Contains("colliders[0].material") && Contains("\"steel\""));
 }
 

@@ -186,8 +186,8 @@ class Body(TouchingObject):
         self._core.remove_set(self._handle, name_text(name, "name"))
 
     def faces(self, name: str) -> Indices:
-        """Node numbers of the faces of a set, shape (k, 3): the listed faces, or those of the surface that belong to
-        listed tetrahedra, or all nodes of which are in the set. SceneError: there are none, or no such set."""
+        """Node numbers of the faces of a set, shape (k, 3): the listed faces, and those of the surface that belong to
+        listed tetrahedra or whose nodes are all listed. SceneError: there are none, or no such set."""
         faces: Indices = self._core.set_faces(self._handle, name_text(name, "name"))
         return faces
 

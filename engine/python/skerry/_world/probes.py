@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .joint import Joint
     from .objects import PosedObject
     from .spring import Spring
+    from .tie import Tie
     from .world import World
 
 
@@ -89,6 +90,16 @@ class JointProbe:
     """
 
     joint: Joint
+
+
+@dataclass(frozen=True, slots=True)
+class TieProbe:
+    """Force, moment and error of a tie.
+
+    tie: the tie.
+    """
+
+    tie: Tie
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,6 +198,7 @@ Probe: TypeAlias = (
     | ForceProbe
     | ReactionProbe
     | JointProbe
+    | TieProbe
     | CableProbe
     | SpringProbe
     | EnergyProbe
@@ -214,6 +226,7 @@ def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
     from .collider import Collider
     from .joint import Joint
     from .spring import Spring
+    from .tie import Tie
 
     def handle_of(field: str, *kinds: type) -> Any:
         given, place = getattr(probe, field), f"probe '{name}': {field}"
@@ -233,6 +246,8 @@ def _recorded(name: str, probe: Probe, owner: World | None) -> Any:
             return _core.reaction_probe(name, handle_of("attachment", Attachment))
         case JointProbe():
             return _core.joint_probe(name, handle_of("joint", Joint))
+        case TieProbe():
+            return _core.tie_probe(name, handle_of("tie", Tie))
         case CableProbe():
             return _core.cable_probe(name, handle_of("cable", Cable))
         case CavityProbe():
@@ -273,6 +288,8 @@ def _object_of(world: World, value: Any) -> Any:
         return world._collider(value)
     if isinstance(value, _core.JointHandle):
         return world._joint(value)
+    if isinstance(value, _core.TieHandle):
+        return world._tie(value)
     if isinstance(value, _core.CableHandle):
         return world._cable(value)
     if isinstance(value, _core.CavityHandle):

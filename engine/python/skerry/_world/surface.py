@@ -93,18 +93,18 @@ class SurfaceRules(Building):
         precedence over the values of materials, bodies and colliders. A body has its material of add_body() here, a
         collider its `material`."""
         given = dataclasses.replace(checked(surface or Surface(), "surface", Surface), **values)
-        one, other = (self._own(material, "material", MaterialHandle) for material in (first, second))
+        one, other = self._own(first, "first", MaterialHandle), self._own(second, "second", MaterialHandle)
         self._core.set_pair(one, other, given)
 
     def pair(self, first: MaterialHandle, second: MaterialHandle) -> Surface | None:
         """Properties of the contacts between two materials; None: the general rule applies."""
-        one, other = (self._own(material, "material", MaterialHandle) for material in (first, second))
+        one, other = self._own(first, "first", MaterialHandle), self._own(second, "second", MaterialHandle)
         surface: Surface | None = self._core.pair(one, other)
         return surface
 
     def remove_pair(self, first: MaterialHandle, second: MaterialHandle) -> None:
         """Removes the properties of a pair of materials."""
-        one, other = (self._own(material, "material", MaterialHandle) for material in (first, second))
+        one, other = self._own(first, "first", MaterialHandle), self._own(second, "second", MaterialHandle)
         self._core.remove_pair(one, other)
 
     @property
