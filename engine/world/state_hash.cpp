@@ -193,10 +193,11 @@ void add_tied_nodes(Hash& hash, TieTable& table) {
     }
 }
 
-/// Hashes the members of all surface sets.
+/// Hashes the members of all surface sets, and the ranks of the sets: where sets overlap, the later row wins.
 void add_members_of_sets(Hash& hash, const SurfaceSetTable& table) {
     for (const std::size_t row : in_slot_order(table.slot)) {
         hash.add(table.slot[row]);
+        hash.add(row);
         add_rows(hash, table.members_of(row));
         hash.add(table.members_of(row).size());
     }

@@ -94,9 +94,9 @@ void WorldState::settle() {
     }
     erase_gone_rows();
     model.extend_derived();
+    find_holders(model);
     note_forces(model);
     model.links_open = true;
-    find_holders(model);
     cache.extend(model);
     query_trees.forget();
     record.balance.close();

@@ -87,15 +87,27 @@ SpringForce force_of(const SpringInputs& springs, const SpringMasses& masses, st
     return found;
 }
 
-/// Mean velocity of an anchor in the step [m/s].
-Vec3 velocity_in_step(const AnchorInputs& anchors, std::size_t s, std::span<const Vec3> velocity_next, Real h) {
+/// Velocities of an anchor in a step [m/s].
+struct AnchorVelocities {
+    Vec3 next;    // velocity with which the anchor moves in the step of length h
+    Vec3 during;  // velocity of the displacement during the force interval, see measure_work
+};
+
+AnchorVelocities velocities_in_step(const AnchorInputs& anchors, std::size_t s, const SpringWorkInputs& step, Real h,
+                                    Real lag) {
     if (const Index collider = anchors.collider[s]; collider != no_index) {
         const RigidMotion& of = anchors.motion[static_cast<std::size_t>(collider)];
         const Vec3 arm = of.rotation * anchors.point[s].point;
-        return of.velocity + (rotation_matrix(h * of.angular_velocity) * arm - arm) / h;
+        const Vec3 mean = of.velocity + (rotation_matrix(h * of.angular_velocity) * arm - arm) / h;
+        return {mean, mean};
     }
-    Vec3 sum = Vec3::Zero();
-    anchors.for_each_node(s, [&](std::size_t node, Real weight) { sum += weight * velocity_next[node]; });
+    AnchorVelocities sum{Vec3::Zero(), Vec3::Zero()};
+    anchors.for_each_node(s, [&](std::size_t node, Real weight) {
+        const Vec3& next = step.velocity_next[node];
+        sum.next += weight * next;
+        sum.during +=
+            weight * (lag == 0 && step.free.contain(node) ? Vec3((anchors.node_velocity[node] + next) / 2) : next);
+    });
     return sum;
 }
 
@@ -132,12 +144,12 @@ SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& 
         if (springs.rests(s)) continue;
         const SpringForce& now = step.next[s];
         const Vec3 before = springs.first.velocity(s) - springs.second.velocity(s);
-        const Vec3 during = velocity_in_step(springs.first, s, step.velocity_next, h) -
-                            velocity_in_step(springs.second, s, step.velocity_next, h);
-        sum.work += h * (now.force.dot(during) + now.elastic * now.rest_rate);
+        const AnchorVelocities first = velocities_in_step(springs.first, s, step, h, lag),
+                               second = velocities_in_step(springs.second, s, step, h, lag);
+        sum.work += h * (now.force.dot(first.during - second.during) + now.elastic * now.rest_rate);
         sum.work += lag * ((now.force - step.force_before[s]).dot(before) +
                            (now.elastic - step.elastic_before[s]) * step.rest_rate_before[s]);
-        sum.dissipated -= kick / 2 * now.damping.dot(before + during);
+        sum.dissipated -= kick / 2 * now.damping.dot(before + first.next - second.next);
     }
     return sum;
 }

@@ -6,6 +6,7 @@
 
 #include "components/body_table.h"
 #include "components/collider_table.h"
+#include "components/free_nodes.h"
 #include "components/node_table.h"
 #include "components/rigid_body_table.h"
 #include "components/spring_table.h"
@@ -118,13 +119,16 @@ struct SpringWorkInputs {
     std::span<const Real> elastic_before;    // elastic tension [N]
     std::span<const Real> rest_rate_before;  // [m/s]
     std::span<const Vec3> velocity_next;     // NodeTable [m/s]
+    FreeNodes free;
 
-    static SpringWorkInputs bind(const Binder& binder, const SpringTable& springs, const NodeTable& nodes) {
+    static SpringWorkInputs bind(const Binder& binder, const SpringTable& springs, const NodeTable& nodes,
+                                 const BodyTable& bodies, const RigidBodyTable& rigid) {
         return {.next = binder.read(springs.next),
                 .force_before = binder.read(springs.force),
                 .elastic_before = binder.read(springs.elastic),
                 .rest_rate_before = binder.read(springs.rest_rate),
-                .velocity_next = binder.read(nodes.velocity_next)};
+                .velocity_next = binder.read(nodes.velocity_next),
+                .free = FreeNodes::bind(binder, nodes, bodies, rigid)};
     }
 };
 

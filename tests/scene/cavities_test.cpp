@@ -101,6 +101,38 @@ TEST_CASE("gas behind a piston is a spring of stiffness gamma p A^2 / V", "[scen
     CHECK(world.report().energy_error_share < 1e-3);
 }
 
+TEST_CASE("the gas behind a piston keeps its volume when the piston is placed elsewhere", "[scene][cavities]") {
+    for (const BodyDynamics dynamics : {BodyDynamics::rigid, BodyDynamics::explicit_elastic}) {
+        World world({.gravity = no_gravity});
+        const BodyHandle piston = world.add_body(
+            mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}),
+            {.material = world.add_material({}), .velocity = {0.1, 0, 0}, .dynamics = dynamics});
+        const CavityHandle gas =
+            Cavities(world).add({.body = piston,
+                                 .faces = faces_where(world, piston, [](const Vec3& x) { return x.x() > 0.049; }),
+                                 .filling = GasFilling{},
+                                 .volume = 1e-3});
+        REQUIRE(world.advance(0.01).ok());
+        const CavityState before = Cavities(world).state(gas);
+        CHECK(before.volume < 1e-3);
+        const auto is_kept = [&] {
+            const CavityState now = Cavities(world).state(gas);
+            CHECK(now.volume == Approx(before.volume).epsilon(1e-12));
+            CHECK(now.pressure == Approx(before.pressure).epsilon(1e-9));
+            CHECK(now.mass == before.mass);
+        };
+        world.reset(piston, {.position = {10, 0, 0}, .rotation = {0, 0, 1}});
+        is_kept();
+        std::vector<Vec3> moved(world.positions(piston).begin(), world.positions(piston).end());
+        for (Vec3& x : moved) x.x() -= 20;
+        world.set_positions(piston, moved);
+        is_kept();
+        world.reset();
+        is_kept();
+        REQUIRE(world.advance(0.01).ok());
+    }
+}
+
 TEST_CASE("the forces of a closed cavity cancel, and its gas gives a free body no momentum", "[scene][cavities]") {
     for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic}) {
         HollowSphere sphere(pressurised,

@@ -73,7 +73,9 @@ TEST_CASE("rubber under uniaxial and equibiaxial tension and in shear has the st
 TEST_CASE("a block of rubber that is let go stretched to twice its length keeps energy and momenta", "[scene]") {
     for (const MaterialSettings& material : {rubber(), lossless(mooney_rivlin(3e4, 1e4, 4e5))}) {
         // Steps as long as is stable while the block is strained, which is about a third of that at rest, and a tenth
-        // of the stable step at rest. The energy of symplectic Euler oscillates in proportion to the step.
+        // of the stable step at rest. The energy of symplectic Euler oscillates in proportion to the step. In the same
+        // motion the stable neo-Hookean law with the same moduli has errors of 20 % and 3 % instead of 11 % and 2 % for
+        // the first material, and the same errors of 9 % and 3 % for the second one.
         for (const Real share : {1.0, 0.1}) {
             Settings settings{.gravity = Vec3::Zero()};
             if (share < 1) settings.step_size = share * Block(material).world.stable_step();

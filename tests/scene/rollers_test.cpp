@@ -1,5 +1,6 @@
 // Attachments that hold nodes along single directions, as roller supports do.
 #include <catch2/catch.hpp>
+#include <numeric>
 
 #include "tests/support/worlds.h"
 
@@ -99,6 +100,26 @@ TEST_CASE("momentum and energy add up on rollers that move and carry weight", "[
         const WorldReport report = bar.world.report();
         CHECK(report.momentum_error_share < 1e-13 * std::sqrt(static_cast<Real>(report.steps)));
         CHECK(report.energy_error_share < 1e-3);
+    }
+}
+
+TEST_CASE("the balance accounts for the work of a roller that accelerates a loaded block", "[scene]") {
+    Motion motion;
+    for (int k = 0; k <= 30; ++k) motion.keys.push_back({.time = 0.01 * k, .position = {0.5 * 2 * 1e-4 * k * k, 0, 0}});
+    for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
+        Settings settings = accurate({3, 0, 0});
+        settings.step_size = 1e-3;
+        settings.integrator = integrator;
+        World world(settings);
+        const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
+        const BodyHandle body = world.add_body(mesh, {.material = world.add_material(linear())});
+        std::vector<Index> all(mesh.nodes.size());
+        std::iota(all.begin(), all.end(), Index{0});
+        world.attach(body, all, motion, Vec3::Zero(), {Vec3::UnitX()});
+        world.set_loads(body, std::vector<Vec3>(all.size(), Vec3(2, 0, 0)));
+        REQUIRE(world.advance(0.25).ok());
+        INFO("leapfrog: " << (integrator == Integrator::leapfrog));
+        CHECK(world.report().energy_error_share < 1e-10);
     }
 }
 

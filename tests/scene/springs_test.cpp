@@ -270,6 +270,20 @@ TEST_CASE("a rest length that changes over time does work, and the balance accou
     CHECK(winch.world.report().energy_error_share < 1e-3);
 }
 
+TEST_CASE("the balance of energy accounts for springs and dampers with leapfrog, too", "[scene][springs]") {
+    for (const BodyDynamics dynamics : {BodyDynamics::rigid, BodyDynamics::implicit_elastic})
+        for (const Real damping : {0.0, 5.0}) {
+            Settings settings = with_step(2e-3);
+            settings.integrator = Integrator::leapfrog;
+            Oscillator oscillator(
+                settings, {.second = {.point = {1, 0, 0}}, .stiffness = 400, .damping = damping, .rest_length = 0.8},
+                dynamics);
+            REQUIRE(oscillator.world.advance(3).ok());
+            INFO(name_of(dynamics) << ", damping " << damping);
+            CHECK(oscillator.world.report().energy_error_share < 1e-6);
+        }
+}
+
 TEST_CASE("an anchor on a moving collider pulls a body, and the balance accounts for the work", "[scene][springs]") {
     World world(with_step(2e-4));
     const auto material = world.add_material({});
@@ -359,6 +373,26 @@ TEST_CASE("springs continue with the same bits with more threads, as a clone and
         return scene;
     };
     check_same_bits(course, [](World& world) { world.advance(0.2); });
+}
+
+TEST_CASE("a spring limits the steps of a rigid body after loading as before", "[scene][springs]") {
+    check_same_bits(
+        [](Index threads) {
+            Settings settings{.gravity = Vec3::Zero()};
+            settings.threads = threads;
+            Oscillator oscillator(settings,
+                                  {.second = {.point = {1, 0, 0}}, .stiffness = 1e6, .rest_length = 0.99});
+            const Real frequency = std::sqrt(1e6 / oscillator.mass);
+            CHECK(oscillator.world.stable_step() <= 2 / frequency);
+            REQUIRE(oscillator.world.advance(0.05).ok());
+            return oscillator;
+        },
+        [](World& world) {
+            const auto before = world.report().steps;
+            CHECK(world.stable_step() < 0.01);
+            REQUIRE(world.advance(0.05).ok());
+            CHECK(world.report().steps > before + 5);
+        });
 }
 
 TEST_CASE("a spring in the wrong place is refused by field", "[scene][springs]") {

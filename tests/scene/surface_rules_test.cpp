@@ -317,6 +317,28 @@ TEST_CASE("worlds with pairs and surface sets keep their bits", "[scene][surface
     CHECK(course.world.state_hash() != before);
 }
 
+TEST_CASE("the state hash shows which of two overlapping surface sets is the later one", "[scene][surface]") {
+    std::vector<std::uint64_t> hashes;
+    for (const bool rubber_first : {true, false}) {
+        World world;
+        const auto body = world.add_body(block, {.material = world.add_material({})});
+        const SurfaceSetSettings rubber{
+            .body = body, .nodes = nodes_where(block, [](const Vec3&) { return true; }), .surface = {.friction = 0.9}};
+        SurfaceSetSettings ice = rubber;
+        ice.surface.friction = 0.1;
+        SurfaceSets sets(world);
+        // In both worlds rubber has the first slot. In the second world this slot becomes free, and is used again.
+        const SurfaceSetHandle first = sets.add(rubber);
+        sets.add(ice);
+        if (!rubber_first) {
+            sets.remove(first);
+            sets.add(rubber);
+        }
+        hashes.push_back(world.state_hash());
+    }
+    CHECK(hashes[0] != hashes[1]);
+}
+
 TEST_CASE("a sleeping block on an incline wakes when its friction falls", "[scene][surface]") {
     for (const bool by_pair : {true, false}) {
         Settings settings = with_step(tilted_gravity(15));

@@ -44,6 +44,9 @@ CableState cable_state(const WorldState& state, CableHandle cable);
 // control_cavities.cpp
 
 CavityState cavity_state(const WorldState& world, CavityHandle cavity);
+/// Stores the present positions of the faces of all open cavities of a body that hold a gas or a liquid. The faces then
+/// sweep no volume when the nodes of the body are placed elsewhere.
+void renew_corners(Model& model, std::size_t body);
 
 // control_dynamics.cpp
 

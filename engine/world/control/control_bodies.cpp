@@ -92,6 +92,7 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
         origin[n] += position[n] - target[n];
         target[n] = position[n];
     }
+    renew_corners(model, body);
     if (model.bodies.blocks[body].size() > 0)
         model.bodies.stable_step[body] =
             evaluate_stable_step(model, body, model.nodes.position, world.scratch.stiffness_sum);

@@ -159,6 +159,18 @@ void erase_cavity(Model& model, std::size_t row) {
 
 }  // namespace
 
+void renew_corners(Model& model, std::size_t body) {
+    CavityTable& table = model.cavities;
+    const CavityInputs cavities = cavities_of(model);
+    for (std::size_t c = 0; c < table.size(); ++c) {
+        if (table.body[c] != static_cast<Index>(body) || table.closed[c] || table.law[c] == CavityLaw::pressure)
+            continue;
+        for (auto f = static_cast<std::size_t>(table.faces[c].begin); f < static_cast<std::size_t>(table.faces[c].end);
+             ++f)
+            table.corners[f] = cavities.corners_now(c, f);
+    }
+}
+
 CavityHandle Cavities::add(const CavitySettings& cavity) {
     WorldState& state = WorldAccess::state_of(*world_);
     state.require_between_steps("add");
@@ -204,9 +216,7 @@ CavityHandle Cavities::add(const CavitySettings& cavity) {
         table.corners.push_back(Mat3::Zero());
     }
     table.faces[row] = {begin, static_cast<Index>(table.face.size())};
-    if (!closed && (gas || liquid))
-        for (auto f = static_cast<std::size_t>(begin); f < table.face.size(); ++f)
-            table.corners[f] = cavities_of(model).corners_now(row, f);
+    renew_corners(model, body);
     const Real volume = volume_of_cavity(model, row);
     const TimeTable& keys = gas      ? gas->inflow
                             : liquid ? liquid->volume.value_or(TimeTable(volume))

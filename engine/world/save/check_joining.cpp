@@ -175,14 +175,30 @@ void check_cavities(const SavedFile& file, const Model& model) {
     const PipeTable& pipes = model.pipes;
     check_keys(file, "pipes", "keys", pipes.keys.span(), pipes.key.span());
     expect_between(file, "pipes/conductance", pipes.conductance, 0.0, infinity);
-    for (std::size_t p = 0; p < pipes.size(); ++p)
-        for (const std::uint32_t slot : {pipes.first[p], pipes.second[p]}) {
+    for (std::size_t p = 0; p < pipes.size(); ++p) {
+        const auto body_of_end = [&](std::uint32_t slot) {
             const bool lives = model.cavity_map.has_slot(slot);
             const auto row =
                 static_cast<std::size_t>(lives ? model.cavity_map.row(model.cavity_map.handle_of_slot(slot)) : 0);
             if (!lives || table.law[row] != CavityLaw::gas)
                 file.complain("pipes/first, second", at_row(std::to_string(slot), p), "the slot of a cavity with gas");
+            return table.body[row];
+        };
+        const auto require = [&](const char* column, Index found, Index expected, const char* reason) {
+            if (found != expected)
+                file.complain(std::string("pipes/") + column, at_row(std::to_string(found), p),
+                              std::to_string(expected) + ", " + reason);
+        };
+        const Index first_body = body_of_end(pipes.first[p]), second_body = body_of_end(pipes.second[p]);
+        require("first_body", pipes.first_body[p], first_body, "the body of the first cavity");
+        if (pipes.keys[p].size() > 0) {
+            require("second_body", pipes.second_body[p], no_index, "because the second end is a reservoir");
+            require("second", static_cast<Index>(pipes.second[p]), static_cast<Index>(pipes.first[p]),
+                    "as in pipes/first, because the second end is a reservoir");
+        } else {
+            require("second_body", pipes.second_body[p], second_body, "the body of the second cavity");
         }
+    }
 }
 
 void check_loads(const SavedFile& file, const Model& model) {

@@ -125,11 +125,11 @@ void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
     model.elements.rotation_next = model.elements.rotation;
     model.rebuild_outlines();
     model.derive_all();
+    find_holders(model);
     // assumed at first, because the last force may have been removed just before saving; note_forces corrects it
     model.forced = true;
     note_forces(model);
     model.links_open = true;
-    find_holders(model);
     model.note_rest();
     check_cache(file, model, world.cache);
     put_candidates(saved, file, model, world.cache.pairs);

@@ -18,9 +18,9 @@ ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, R
                 if (nodes.resting.contain(n)) continue;
                 part.impulse += kick * nodes.load[n];
                 part.work += h * nodes.load[n].dot(nodes.velocity_next[n]);
-                if (lag == 0 && nodes.is_free(n))
+                if (lag == 0 && nodes.free.contain(n))
                     part.work += h / 2 * nodes.load[n].dot(nodes.velocity[n] - nodes.velocity_next[n]);
-                if (lag != 0 && nodes.load[n] != nodes.load_before[n] && nodes.is_free(n))
+                if (lag != 0 && nodes.load[n] != nodes.load_before[n] && nodes.free.contain(n))
                     part.work += lag * (nodes.load[n] - nodes.load_before[n]).dot(nodes.velocity[n]);
             }
             return part;
@@ -28,7 +28,7 @@ ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, R
         join);
     for (const Index n : nodes.held) {
         // nodes with a mass are held along single directions only, see hold_axes
-        if (nodes.inverse_mass[n] > 0 || nodes.resting.contain(static_cast<std::size_t>(n))) continue;
+        if (nodes.free.inverse_mass[n] > 0 || nodes.resting.contain(static_cast<std::size_t>(n))) continue;
         const Vec3 &force = nodes.force[n], &velocity = nodes.velocity_next[n];
         ExternalWork hold{-kick * force, -kick * force.dot(velocity)};
         if (nodes.body_implicit[static_cast<std::size_t>(nodes.node_body[n])].size() == 0) {

@@ -7,6 +7,7 @@
 #include "components/body_table.h"
 #include "components/column.h"
 #include "components/external_work.h"
+#include "components/free_nodes.h"
 #include "components/node_table.h"
 #include "components/resting_nodes.h"
 #include "components/rigid_body_table.h"
@@ -20,10 +21,8 @@ struct WorkInputs {
     std::span<const Vec3> load_before;  // applied force of the last step by node; empty if there were none [N]
     std::span<const Vec3> force;        // force of elements, weight and loads by node; used only at held nodes [N]
     std::span<const Vec3> velocity, velocity_next;  // [m/s]
-    std::span<const Real> inverse_mass;             // by node; 0 for a held node [1/kg]
-    std::span<const Range> body_rigid;              // BodyTable
-    std::span<const Index> holder;                  // RigidBodyTable
-    std::span<const Real> mass;                     // kg, by node
+    FreeNodes free;
+    std::span<const Real> mass;  // kg, by node
     std::span<const Index> held;                    // nodes
     std::span<const Index> node_body;
     std::span<const Range> body_implicit;  // rows of implicit bodies, whose entries of `force` act for the whole step
@@ -39,9 +38,7 @@ struct WorkInputs {
                 .force = binder.read(node.force),
                 .velocity = binder.read(node.velocity),
                 .velocity_next = binder.read(node.velocity_next),
-                .inverse_mass = binder.read(node.inverse_mass),
-                .body_rigid = binder.read(body.rigid),
-                .holder = binder.read(rigid.holder),
+                .free = FreeNodes::bind(binder, node, body, rigid),
                 .mass = binder.read(node.mass),
                 .held = binder.read(attachment.node),
                 .node_body = binder.read(node.body),
@@ -49,12 +46,6 @@ struct WorkInputs {
                 .resting = {.node_body = binder.read_if(binder.value(any_asleep), node.body),
                             .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)},
                 .gravity = binder.value(gravity)};
-    }
-
-    /// True if forces move the node: the node is neither held nor part of a held body.
-    bool is_free(std::size_t n) const {
-        const Range rigid = body_rigid[static_cast<std::size_t>(node_body[n])];
-        return inverse_mass[n] > 0 && (rigid.size() == 0 || holder[static_cast<std::size_t>(rigid.begin)] == no_index);
     }
 };
 

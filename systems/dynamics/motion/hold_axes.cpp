@@ -29,7 +29,7 @@ void for_each_held(const AxisHoldInputs& inputs, Real h, auto&& visit) {
 
 }  // namespace
 
-ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, std::span<Vec3> velocity_next,
+ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag, std::span<Vec3> velocity_next,
                        Column<Vec3>& held_impulse) {
     ExternalWork sum;
     held_impulse.assign(inputs.node.size(), Vec3::Zero());
@@ -39,11 +39,14 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, std::spa
         velocity_next[n] += impulse * inputs.inverse_mass[n] * direction;
         held_impulse[i] += impulse * direction;
         sum.impulse += impulse * direction;
-        // The forces that this impulse balances do their work over the displacement at the end velocity. The kinetic
-        // energy changes with the mean of the velocities before and after.
-        sum.work += impulse * speed - inputs.mass[n] * gained * gained / 2;
-        sum.work -= (h - kick) * inputs.mass[n] * direction.dot(inputs.gravity) * speed;
-        if (!inputs.load.empty()) sum.work -= (h - kick) * direction.dot(inputs.load[n]) * speed;
+        // The forces that this impulse balances do their work over the displacement at the end velocity, or with
+        // leapfrog (lag = 0) at the mean velocity. The kinetic energy changes with the mean of the velocities before
+        // and after.
+        const Real during = lag == 0 ? speed - gained / 2 : speed;
+        sum.work += impulse * during;
+        if (lag != 0) sum.work -= inputs.mass[n] * gained * gained / 2;
+        sum.work -= (h - kick) * inputs.mass[n] * direction.dot(inputs.gravity) * during;
+        if (!inputs.load.empty()) sum.work -= (h - kick) * direction.dot(inputs.load[n]) * during;
     });
     return sum;
 }

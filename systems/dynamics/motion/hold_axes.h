@@ -48,8 +48,9 @@ struct AxisHoldInputs {
 /// Gives nodes that are held along single directions the prescribed velocities along these directions. The prescribed
 /// velocity leads to the position of the attachment at the end of the step, as in drive_nodes. Writes the impulses by
 /// entry of AttachmentTable::node, zero for nodes that are held completely [N s]. Returns their sum and their work,
-/// which is measured as in measure_work. Nodes of sleeping bodies are left out. Sequential.
-ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, std::span<Vec3> velocity_next,
+/// which is measured as in measure_work with the same `h`, `kick` and `lag`. Nodes of sleeping bodies are left out.
+/// Sequential.
+ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag, std::span<Vec3> velocity_next,
                        Column<Vec3>& held_impulse);
 
 /// Restores the prescribed velocities after contact impulses, and adds the impulses that this takes to `held_impulse`.

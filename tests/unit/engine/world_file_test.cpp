@@ -8,6 +8,7 @@
 #include "components/split_mix.h"
 #include "components/types.h"
 #include "engine/world/save/world_file.h"
+#include "skerry/cavity.h"
 #include "skerry/joint.h"
 #include "skerry/load.h"
 #include "tests/support/lively_scene.h"
@@ -365,6 +366,36 @@ TEST_CASE("a saved world with a load on a node that does not exist, or with wron
     CHECK_THAT(refusal("loads/nodes", 1, 1), Contains("loads: node: found 2 rows, expected 1"));
     CHECK_THAT(refusal("loads/scale_keys", 0, 1), Contains("loads: scale_keys"));
     CHECK_THAT(refusal("loads/body", 0, -1), Contains("loads: body: found -1"));
+}
+
+TEST_CASE("a saved world with a pipe whose bodies or ends do not fit its cavities is refused", "[unit]") {
+    World world;
+    const MaterialHandle material = world.add_material({});
+    std::vector<CavityHandle> cavities;
+    for (const Real x : {0.0, 1.0}) {
+        const BodyHandle body =
+            world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = material, .position = {x, 0, 0}});
+        cavities.push_back(Cavities(world).add(
+            {.body = body, .faces = {world.surface(body)[0]}, .filling = GasFilling{}, .volume = 1e-3}));
+    }
+    Cavities(world).add(PipeSettings{.first = cavities[0], .second = cavities[1], .conductance = 1e-9});
+    Cavities(world).add(PipeSettings{.first = cavities[1], .conductance = 1e-9});
+    const FileOfWorld saved(world);
+    CHECK(saved.refusal(saved.bytes).empty());
+    const std::vector<ValuesInFile> sets = values_in(saved.bytes);
+    const auto refusal = [&](const char* path, std::size_t place, Index value) {
+        const auto set = std::ranges::find(sets, path, &ValuesInFile::path);
+        REQUIRE(set != sets.end());
+        Bytes bytes = saved.bytes;
+        std::memcpy(bytes.data() + set->begin + place * sizeof value, &value, sizeof value);
+        renew_checksum(bytes);
+        return saved.refusal(bytes);
+    };
+    CHECK_THAT(refusal("pipes/first_body", 0, 1), Contains("pipes: first_body: found 1 at row 0, expected 0"));
+    CHECK_THAT(refusal("pipes/first_body", 1, -1), Contains("pipes: first_body: found -1 at row 1, expected 1"));
+    CHECK_THAT(refusal("pipes/second_body", 0, -1), Contains("pipes: second_body: found -1 at row 0, expected 1"));
+    CHECK_THAT(refusal("pipes/second_body", 1, 0), Contains("pipes: second_body: found 0 at row 1, expected -1"));
+    CHECK_THAT(refusal("pipes/second", 1, 0), Contains("pipes: second: found 0 at row 1, expected 1"));
 }
 
 TEST_CASE("a saved world with a self-contact but without positions of its last search is refused", "[unit]") {

@@ -51,8 +51,8 @@ void list_spring_measures(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("forces/measure_springs", w.scratch.findings.springs, measure_springs, spring_inputs(m),
-                        inputs<SpringWorkInputs>(m.springs, m.nodes), value(p.h), value(p.kick), value(p.work_lag),
-                        if_any_spring(m));
+                        inputs<SpringWorkInputs>(m.springs, m.nodes, m.bodies, m.rigid_bodies), value(p.h),
+                        value(p.kick), value(p.work_lag), if_any_spring(m));
 }
 
 void list_spring_memory(WorldState& w, TaskGraph& g) {
@@ -62,7 +62,7 @@ void list_spring_memory(WorldState& w, TaskGraph& g) {
 }
 
 Real energy_of_springs(const Model& model, Real t, Real lag) {
-    return spring_energy(springs_of(model), SpringWorkInputs::bind({}, model.springs, model.nodes), t, lag);
+    return spring_energy(springs_of(model), SpringWorkInputs::bind({}, model.springs, model.nodes, model.bodies, model.rigid_bodies), t, lag);
 }
 
 }  // namespace
