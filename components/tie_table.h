@@ -42,6 +42,12 @@ struct TieTable {
     Column<Real> broken;   // time at which the node broke off; infinite if it is tied [s]
 
     std::size_t size() const { return slot.size(); }
+    /// True if a node of the tie has not broken off.
+    bool holds(std::size_t tie) const {
+        for (Index k = nodes[tie].begin; k < nodes[tie].end; ++k)
+            if (!(broken[static_cast<std::size_t>(k)] < infinity)) return true;
+        return false;
+    }
 
     void erase_keys_of(std::size_t tie);
 

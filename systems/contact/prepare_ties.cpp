@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "components/check.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -163,6 +164,7 @@ void append(const TieTable& tie, std::size_t t, std::size_t k, const TieRow& row
     contacts.static_friction.push_back(tie.kind[t] == TieKind::weld ? infinity : 0);
     contacts.dynamic_friction.push_back(infinity);
     contacts.restitution.push_back(0);
+    contacts.friction_axis.push_back({});
     contacts.first_body.push_back(tie.first[t]);
     contacts.second_body.push_back(tie.second[t]);
     contacts.collider.push_back(tie.collider[t]);
@@ -223,6 +225,10 @@ bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& cont
             rows.point.push_back(row.point());
         }
     }
+    contacts.for_each_column([&](const char*, const auto& column, ColumnRole) {
+        SKERRY_CHECK(column.size() == contacts.size());
+        (void)column;
+    });
     return tie.size() > 0;
 }
 

@@ -74,10 +74,10 @@ struct TieInputs {
     /// Row of NodeTable of a node that is numbered as in the mesh of its body.
     Index row_of(Index body, Index node) const { return body_nodes[static_cast<std::size_t>(body)].begin + node; }
     std::span<const Index> nodes_of(std::size_t t) const { return rows_of(tie.node.span(), tie.nodes[t]); }
-    /// True if the tie is fixed to a collider that moves in this step.
+    /// True if the tie holds, and is fixed to a collider that moves in this step.
     bool is_led(std::size_t t) const {
         const Index collider = tie.collider[t];
-        return collider != no_index && !motion[static_cast<std::size_t>(collider)].stands_still();
+        return collider != no_index && !motion[static_cast<std::size_t>(collider)].stands_still() && tie.holds(t);
     }
     /// True if no object of tie `t` can move in this step, because its bodies are asleep.
     bool rests(std::size_t t) const;

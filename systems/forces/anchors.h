@@ -42,6 +42,12 @@ struct AnchorInputs {
                 visit(static_cast<std::size_t>(first + point[anchor].node[a]), weight);
     }
 
+    /// True if an anchor is on a collider that moves in this step.
+    bool is_led(std::size_t anchor) const {
+        const Index of = collider[anchor];
+        return of != no_index && !motion[static_cast<std::size_t>(of)].stands_still();
+    }
+
     /// Present position of an anchor [m].
     Vec3 at(std::size_t anchor) const {
         if (body[anchor] == no_index) {

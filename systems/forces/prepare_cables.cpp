@@ -37,12 +37,20 @@ Range list_points(const CableInputs& cables, std::size_t cable, CableBlockTable&
     }
     const Range listed{begin, static_cast<Index>(blocks.stencil.size())};
     const Real friction = cables.friction[cable];
+    Vec3 before = blocks.direction[listed.begin];  // direction of the last segment that has a length
     for (Index p = listed.begin + 1; friction > 0 && p + 1 < listed.end; ++p) {
-        const Vec3 &before = blocks.direction[p - 1], &after = blocks.direction[p];
+        const Vec3& after = blocks.direction[p];
+        if (after.isZero(0)) continue;
         const Real turn = std::atan2(before.cross(after).norm(), before.dot(after));
         blocks.most_ratio[p] = std::exp(friction * turn);
+        before = after;
     }
     return listed;
+}
+
+/// Greatest length at the end of a step of a cable whose rate of length is prescribed [m]. `before`: at its start [m].
+Real released_at_end(std::span<const TimeKey> keys, Real before, const CableTimes& times) {
+    return std::max(Real(0), before + times.h * mean_value(keys, times.t, times.h));
 }
 
 void find_wanted_length(const CableInputs& cables, const CableTimes& times, Real length, CableBlock& block) {
@@ -54,7 +62,7 @@ void find_wanted_length(const CableInputs& cables, const CableTimes& times, Real
         rate = (block.released - value_at(keys, times.t)) / times.h;
     } else {
         rate = mean_value(keys, times.t, times.h);
-        block.released = std::max(Real(0), cables.released[c] + times.h * rate);
+        block.released = released_at_end(keys, cables.released[c], times);
     }
     block.wanted = std::max((block.released - length) / times.h, std::min(rate, Real(0)) - times.recovery_speed);
 }
@@ -85,6 +93,7 @@ void add_block(const CableInputs& cables, std::size_t cable, const CableTimes& t
     }
     blocks.block.push_back(block);
     blocks.work.push_back(0);
+    blocks.dissipated.push_back(0);
     blocks.sum_impulse.push_back(Vec3::Zero());
 }
 
@@ -119,9 +128,15 @@ void add_cable_rates(const CableInputs& cables, std::span<Real> of_body) {
     }
 }
 
+bool CableInputs::is_led(std::size_t cable) const {
+    for (Index p = points[cable].begin; p < points[cable].end; ++p)
+        if (anchor.is_led(static_cast<std::size_t>(p))) return true;
+    return false;
+}
+
 bool CableInputs::is_driven(std::size_t cable, Real t, Real h) const {
     const std::span<const TimeKey> of = keys_of(cable);
-    return changes(of, t, h) || (control[cable] == CableControl::rate && value_at(of, t) != 0);
+    return is_led(cable) || changes(of, t, h) || (control[cable] == CableControl::rate && value_at(of, t) != 0);
 }
 
 bool CableInputs::moves(std::size_t cable) const {
@@ -133,7 +148,7 @@ bool CableInputs::moves(std::size_t cable) const {
 }
 
 bool CableInputs::rests(std::size_t cable) const {
-    if (body_asleep.empty()) return false;
+    if (body_asleep.empty() || is_led(cable)) return false;
     return std::ranges::all_of(rows_of(anchor.body, points[cable]), [&](Index body) {
         return body == no_index || body_asleep[static_cast<std::size_t>(body)] != 0;
     });
@@ -192,7 +207,7 @@ CableWork work_of_cable(std::span<const Real> tension, std::span<const Real> bef
     return sum;
 }
 
-bool store_cables(const CableBlockTable& blocks, Real kick, const CableMemory& out) {
+bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const CableMemory& out) {
     for (const CableBlock& block : blocks.block) {
         const auto c = static_cast<std::size_t>(block.cable);
         const std::span<const Real> length = rows_of(blocks.length, block.points),
@@ -206,10 +221,13 @@ bool store_cables(const CableBlockTable& blocks, Real kick, const CableMemory& o
         }
         std::ranges::copy(length, before.begin());
         std::ranges::copy(impulse, tension.begin());
-        out.released[c] = block.released;
-        out.step[c] = kick;
+        if (out.control[c] == CableControl::length) out.released[c] = block.released;
+        out.step[c] = times.kick;
     }
-    return !blocks.block.empty();
+    for (std::size_t c = 0; c < out.control.size(); ++c)
+        if (out.control[c] == CableControl::rate)
+            out.released[c] = released_at_end(rows_of(out.key, out.keys[c]), out.released[c], times);
+    return !out.control.empty();
 }
 
 CableMeasures measure_cables(const CableBlockTable& blocks) {
@@ -217,6 +235,7 @@ CableMeasures measure_cables(const CableBlockTable& blocks) {
     for (std::size_t b = static_cast<std::size_t>(blocks.first_solved); b < blocks.block.size(); ++b) {
         sum.impulse += blocks.sum_impulse[b];
         sum.work += blocks.work[b];
+        sum.dissipated += blocks.dissipated[b];
     }
     return sum;
 }

@@ -44,7 +44,10 @@ struct CableInputs {
     bool has_known_forces(std::size_t cable) const {
         return control[cable] == CableControl::tension && friction[cable] == 0;
     }
-    /// True if the control of the cable changes in the step of length `h` that starts at time `t`.
+    /// True if a point of the cable is on a collider that moves in this step.
+    bool is_led(std::size_t cable) const;
+    /// True if the control of the cable changes, or a collider moves one of its points, in the step of length `h` that
+    /// starts at time `t`.
     bool is_driven(std::size_t cable, Real t, Real h) const;
     /// True if some body is asleep and no point of the cable can move in this step.
     bool rests(std::size_t cable) const;
@@ -72,7 +75,7 @@ bool add_cable_forces(const CableBlockTable& blocks, Real kick, std::span<Vec3> 
 /// Adds, for each body, an upper bound of the contribution of its cables to its squared natural frequencies [1/s^2].
 void add_cable_rates(const CableInputs& cables, std::span<Real> of_body);
 
-/// Marks the bodies of cables whose control changes in this step. Returns false if there is none.
+/// Marks the bodies of driven cables (CableInputs::is_driven). Returns false if there is none.
 bool mark_driven_cables(const CableInputs& cables, Real t, Real h, std::span<std::uint8_t> marked);
 
 /// Work and loss of a cable during a motion.
@@ -85,11 +88,16 @@ CableWork work_of_cable(std::span<const Real> tension, std::span<const Real> bef
 
 /// Columns of CableTable that a committed step stores for the next step.
 struct CableMemory {
-    std::span<const Range> points;
+    std::span<const CableControl> control;
+    std::span<const Range> points, keys;
+    std::span<const TimeKey> key;
     std::span<Real> released, step, work, dissipated, tension, length;
 
     static CableMemory bind(const Binder& binder, CableTable& cable) {
-        return {.points = binder.read(cable.points),
+        return {.control = binder.read(cable.control),
+                .points = binder.read(cable.points),
+                .keys = binder.read(cable.keys),
+                .key = binder.read(cable.key),
                 .released = binder.write(cable.released),
                 .step = binder.write(cable.step),
                 .work = binder.write(cable.work),
@@ -99,13 +107,15 @@ struct CableMemory {
     }
 };
 
-/// Stores the tensions and lengths of the cables. Adds their work in the step before. Returns false if no cable acts.
-bool store_cables(const CableBlockTable& blocks, Real kick, const CableMemory& out);
+/// Stores the tensions and lengths of the cables that act, and adds their work in the step before. Advances the greatest
+/// length of all cables with a prescribed rate. Returns false if there is no cable.
+bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const CableMemory& out);
 
 /// Impulse and work of the cables of a step that the region solver has solved.
 struct CableMeasures {
     Vec3 impulse = Vec3::Zero();  // impulse that cables transmit from colliders and from held nodes [N s]
     Real work = 0;                // work of the cables on the bodies [J]
+    Real dissipated = 0;          // energy that friction at the points dissipates [J]
 };
 CableMeasures measure_cables(const CableBlockTable& blocks);
 

@@ -27,11 +27,7 @@ Real SpringLaw::with_damper(Real extension, Real elastic, Real damper) const {
 }
 
 bool SpringInputs::is_driven(std::size_t s, Real t, Real h) const {
-    const auto moves = [](const AnchorInputs& anchor, std::size_t row) {
-        const Index collider = anchor.collider[row];
-        return collider != no_index && !anchor.motion[static_cast<std::size_t>(collider)].stands_still();
-    };
-    return changes(rows_of(key, rest_length[s]), t, h) || moves(first, s) || moves(second, s);
+    return changes(rows_of(key, rest_length[s]), t, h) || first.is_led(s) || second.is_led(s);
 }
 
 namespace {

@@ -279,9 +279,9 @@ void Ties::remove(TieHandle tie) {
 
 void release_ties(WorldState& world) {
     TieTable& ties = world.model.ties;
+    world.model.links_open = true;
     for (std::size_t t = 0; t < ties.size(); ++t) {
-        const auto is_broken = [](Real time) { return time < infinity; };
-        if (ties.parts[t] == 0 || !std::ranges::all_of(rows_of(ties.broken, ties.nodes[t]), is_broken)) continue;
+        if (ties.parts[t] == 0 || ties.holds(t)) continue;
         ties.parts[t] = 0;
         if (parted_by_another(ties, t)) continue;
         const bool of_collider = ties.collider[t] != no_index;

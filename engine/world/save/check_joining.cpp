@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/world/complaint.h"
 #include "engine/world/save/checks.h"
 
 namespace skerry {
@@ -119,6 +120,26 @@ void check_ties(const SavedFile& file, const Model& model) {
     }
 }
 
+/// Names of columns of anchors for messages.
+struct AnchorNames {
+    std::string collider, point;
+};
+
+/// Checks anchors of a table.
+void check_anchors(const SavedFile& file, const Model& model, const AnchorNames& names, const AnchorColumns& anchors) {
+    for (std::size_t row = 0; row < anchors.body.size(); ++row) {
+        const Index body = anchors.body[row];
+        if (body == no_index) continue;
+        if (anchors.collider[row] != no_index)
+            file.complain(names.collider, at_row(anchors.collider[row], row), "-1, because the anchor is on a body");
+        const Index count = model.bodies.nodes[static_cast<std::size_t>(body)].size();
+        for (const Index node : anchors.point[row].node)
+            if (node < 0 || node >= count)
+                file.complain(names.point + "/node", at_row(node, row),
+                              "the number of a node of the body, from 0 to " + std::to_string(count - 1));
+    }
+}
+
 void check_cables(const SavedFile& file, const Model& model) {
     const CableTable& table = model.cables;
     check_keys(file, "cables", "keys", table.keys.span(), table.key.span());
@@ -130,6 +151,8 @@ void check_cables(const SavedFile& file, const Model& model) {
     expect_between(file, "cables/step", table.step, 0.0, infinity);
     expect_between(file, "cables/friction", table.friction, 0.0, infinity);
     expect_between(file, "cables/released", table.released, 0.0, infinity);
+    expect_between(file, "cables/tension", table.tension, 0.0, infinity);
+    check_anchors(file, model, {"cables/collider", "cables/anchor"}, table.anchor);
     Index end = 0;
     for (std::size_t c = 0; c < table.size(); ++c) {
         const Range of = table.points[c];
@@ -137,12 +160,10 @@ void check_cables(const SavedFile& file, const Model& model) {
             file.complain("cables/points", at_row("points that begin at row " + std::to_string(of.begin), c),
                           "at least two points from row " + std::to_string(end) + " on");
         if (table.keys[c].size() < 1) file.complain("cables/keys", at_row("no keys", c), "at least one key");
+        for (const TimeKey& key : table.keys_of(c))
+            if (table.control[c] == CableControl::tension && !(key.value >= 0))
+                file.complain("cables/key", at_row("the tension " + short_text(key.value), c), "a tension >= 0 (N)");
         end = of.end;
-    }
-    for (std::size_t p = 0; p < points; ++p) {
-        const Index body = table.anchor.body[p];
-        const Index nodes = body == no_index ? 1 : model.bodies.nodes[static_cast<std::size_t>(body)].size();
-        expect_between(file, "cables/anchor", table.anchor.point[p].node, 0, nodes - 1);
     }
     if (static_cast<std::size_t>(end) != points)
         file.complain("cables/points", std::to_string(end) + " points", std::to_string(points));
@@ -233,28 +254,11 @@ void check_loads(const SavedFile& file, const Model& model) {
                       std::to_string(listed) + ", as many as all ranges together");
 }
 
-/// Checks anchors of a table. `table` and `name`: names for messages.
-void check_anchors(const SavedFile& file, const Model& model, const std::string& table, const std::string& name,
-                   const AnchorColumns& anchors) {
-    for (std::size_t row = 0; row < anchors.body.size(); ++row) {
-        const Index body = anchors.body[row];
-        if (body == no_index) continue;
-        if (anchors.collider[row] != no_index)
-            file.complain(table + "/" + name + "_collider", at_row(anchors.collider[row], row),
-                          "-1, because the anchor is on a body");
-        const Index count = model.bodies.nodes[static_cast<std::size_t>(body)].size();
-        for (const Index node : anchors.point[row].node)
-            if (node < 0 || node >= count)
-                file.complain(table + "/" + name + "_point/node", at_row(node, row),
-                              "the number of a node of the body, from 0 to " + std::to_string(count - 1));
-    }
-}
-
 void check_springs(const SavedFile& file, const Model& model) {
     const SpringTable& table = model.springs;
     check_keys(file, "springs", "rest_length", table.rest_length.span(), table.key.span());
-    check_anchors(file, model, "springs", "first", table.first);
-    check_anchors(file, model, "springs", "second", table.second);
+    check_anchors(file, model, {"springs/first_collider", "springs/first_point"}, table.first);
+    check_anchors(file, model, {"springs/second_collider", "springs/second_point"}, table.second);
     expect_between(file, "springs/stiffness", table.stiffness, 0.0, infinity);
     expect_between(file, "springs/damping", table.damping, 0.0, infinity);
     expect_between(file, "springs/strength", table.strength, 0.0, infinity);

@@ -11,11 +11,13 @@ namespace skerry {
 namespace {
 
 /// Adds links between joined bodies: for each row of the table, between its first body and each other body that the row
-/// joins.
+/// joins. A tie of which all nodes have broken off joins nothing.
 template <class Table>
 void add_links(Table& table, BodyLinks& links) {
     const AnyTable any(table);
     for (std::size_t row = 0; row < table.slot.size(); ++row) {
+        if constexpr (requires { table.holds(row); })
+            if (!table.holds(row)) continue;
         Index first = no_index;
         for (const ColumnInfo& info : any.columns()) {
             if (info.role != ColumnRole::body) continue;

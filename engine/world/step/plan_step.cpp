@@ -27,6 +27,7 @@ Real step_of_turns(const Model& model, Real shorter_than, Index& fastest) {
         limit_by(model.joints.second[j]);
     }
     for (std::size_t t = 0; t < model.ties.size(); ++t) {
+        if (!model.ties.holds(t)) continue;
         limit_by(model.ties.first[t]);
         limit_by(model.ties.second[t]);
     }
@@ -47,7 +48,8 @@ StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
 
 namespace {
 
-/// True if a force that follows the motion acts on an implicit body. Such a force must be evaluated in every step.
+/// True if a force that follows the motion acts on an implicit body, or a cable runs through one. Such a force must be
+/// evaluated in every step.
 bool forces_follow_implicit_bodies(const Model& model) {
     const auto acts = [](const Column<Real>& bound, std::size_t body) { return !bound.empty() && bound[body] > 0; };
     for (const Index body : model.rigid_bodies.body) {
@@ -56,15 +58,18 @@ bool forces_follow_implicit_bodies(const Model& model) {
             (acts(model.force_rate, b) || acts(model.force_damping, b) || acts(model.force_drag, b)))
             return true;
     }
-    return false;
+    return std::ranges::any_of(model.cables.anchor.body, [&](Index body) {
+        const auto b = static_cast<std::size_t>(body);
+        return body != no_index && model.has_frame(b) && !model.is_rigid(b);
+    });
 }
 
 }  // namespace
 
 Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
     if (!(model.settings.implicit_step > 0) || model.implicit_nodes.size() == 0) return left;
-    if (forces_follow_implicit_bodies(model)) return left;
     if (clock.length == 0) {
+        if (forces_follow_implicit_bodies(model)) return left;
         // The tolerance prevents an extra long step for a remaining time that is only a rounding error.
         const Real count = std::max(1.0, std::ceil(left / model.settings.implicit_step - 1e-9));
         clock.length = clock.left = left / count;

@@ -190,12 +190,13 @@ struct RegionOutputs {
     std::span<AxisImpulses> axis_impulse{};  // by joint block
     std::span<Real> cable_impulse{};  // tension by point of the cables: warm start as input, solution as output [N s]
     std::span<Real> cable_work{};     // by solved cable: work on the bodies [J]
+    std::span<Real> cable_loss{};     // by solved cable: energy that friction at its points dissipates [J]
     std::span<Vec3> cable_sum{};      // by solved cable: total impulse on the moving nodes [N s]
 
     static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid,
                               ImplicitNodeTable& implicit, JointBlockTable& joints, CableBlockTable& cables) {
         const auto first = static_cast<std::size_t>(binder.read(cables.first_solved));
-        const std::span<Real> work = binder.write(cables.work);
+        const std::span<Real> work = binder.write(cables.work), loss = binder.write(cables.dissipated);
         const std::span<Vec3> sum = binder.write(cables.sum_impulse);
         return {.impulse = binder.write(contact.impulse),
                 .velocity_next = binder.write(node.velocity_next),
@@ -209,6 +210,7 @@ struct RegionOutputs {
                 .axis_impulse = binder.write(joints.axis_impulse),
                 .cable_impulse = binder.write(cables.impulse),
                 .cable_work = work.subspan(std::min(first, work.size())),
+                .cable_loss = loss.subspan(std::min(first, loss.size())),
                 .cable_sum = sum.subspan(std::min(first, sum.size()))};
     }
 };

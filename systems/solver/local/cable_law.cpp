@@ -26,10 +26,17 @@ struct MobilitySum {
 
 void CableLaw::read(std::span<const Vec4> point, std::span<Real> impulse_of_segment) const {
     Vec3 last = Vec3::Zero();
+    std::size_t known = 0;  // number of segments whose impulse is known
     for (std::size_t s = 0; s < segments(); ++s) {
-        impulse_of_segment[s] = direction[s].dot(point[s].head<3>() + last);
+        const bool has_length = !direction[s].isZero(0);
+        if (!has_length && known == 0) continue;
+        impulse_of_segment[s] =
+            has_length ? direction[s].dot(point[s].head<3>() + last) : impulse_of_segment[s - 1];
         last = impulse_of_segment[s] * direction[s];
+        while (known < s) impulse_of_segment[known++] = impulse_of_segment[s];
+        known = s + 1;
     }
+    std::ranges::fill(impulse_of_segment.subspan(known, segments() - known), Real(0));
 }
 
 void CableLaw::prepare() const {

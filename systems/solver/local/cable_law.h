@@ -16,7 +16,7 @@ struct CableLaw {
     Index moving = 0;  // number of the first point that impulses can move
     bool by_length = false;
     Real wanted = 0;                   // greatest sum of u [m/s] if `by_length`, else the impulse r_0 [N s]
-    std::span<const Vec3> direction;   // by segment: unit vector to the next point
+    std::span<const Vec3> direction;   // by segment: unit vector to the next point; 0 if the segment has no length
     std::span<const Real> most_ratio;  // by segment: e at the start of the segment
     std::span<const Real> mobility;    // A, row by row [1/kg]
     // Sum of the entries of A whose row and column are at least the segment, by segment [1/kg]. It is the mobility of
@@ -29,7 +29,8 @@ struct CableLaw {
 
     std::size_t segments() const { return impulse.size(); }
     /// Computes the impulses of the segments from the impulses of the points, of which `point` lists those of the cable
-    /// first. At its two points a segment has the impulses r_s and -r_s along its direction.
+    /// first. At its two points a segment has the impulses r_s and -r_s along its direction. A segment without length
+    /// has the impulse of the segment before it, or of the first segment with a length.
     void read(std::span<const Vec4> point, std::span<Real> impulse_of_segment) const;
     /// Fills far_mobility.
     void prepare() const;

@@ -74,7 +74,8 @@ void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory,
            .rate = numbers(2),
            .before = numbers(3),
            .previous = numbers(4)};
-    while (memory.contact[static_cast<std::size_t>(law.moving)].inverse_diagonal == 0) ++law.moving;
+    const auto last = static_cast<Index>(count) + first;
+    while (law.moving < last && memory.contact[static_cast<std::size_t>(law.moving)].inverse_diagonal == 0) ++law.moving;
     find_mobility(law, memory, walk, mobility);
     law.prepare();
     std::ranges::fill(law.impulse, Real(0));
@@ -109,20 +110,33 @@ void write_cable(const RegionStage& stage, Index cable, const BodyMemory& memory
     const CableLaw& law = law_of(stage, cable);
     const Range points = block_of(stage, cable).points;
     law.read(memory.impulse.subspan(static_cast<std::size_t>(law.first)), law.impulse);
+    // Rounding can make the tension of a slack segment negative.
+    for (Real& impulse : law.impulse) impulse = std::max(Real(0), impulse);
     std::ranges::copy(law.impulse, rows_of(stage.out.cable_impulse, points).begin());
-    Real work = 0;
+    Real work = 0, loss = 0;
     Vec3 sum = Vec3::Zero();
-    for (Index p = 0; p < points.size(); ++p) {
+    Real drawn = 0;  // rate of the cable past the point, towards the first point [m/s]
+    Vec3 after = Vec3::Zero();  // mean velocity of the next point in the step [m/s]
+    for (Index p = points.size(); p-- > 0;) {
         const Vec3 impulse = memory.impulse[static_cast<std::size_t>(law.first + p)].head<3>();
+        Vec3 velocity = stage.inputs.cables.velocity[static_cast<std::size_t>(points.begin + p)];
         const Stencil& stencil = stage.inputs.cables.stencil[static_cast<std::size_t>(points.begin + p)];
         for (std::size_t a = 0; a < 4; ++a) {
             const auto node = static_cast<std::size_t>(stencil.node[a]);
-            if (stencil.weight[a] == 0 || !(stage.inputs.inverse_mass[node] > 0)) continue;
+            if (stencil.weight[a] == 0) continue;
+            const Vec3 part = stencil.weight[a] / 2 * (stage.inputs.velocity[node] + stage.out.velocity_next[node]);
+            velocity += part;
+            if (!(stage.inputs.inverse_mass[node] > 0)) continue;
             sum += stencil.weight[a] * impulse;
-            work += stencil.weight[a] / 2 * impulse.dot(stage.inputs.velocity[node] + stage.out.velocity_next[node]);
+            work += impulse.dot(part);
         }
+        const auto s = static_cast<std::size_t>(p);
+        if (s < law.segments()) drawn -= law.direction[s].dot(after - velocity);
+        if (s > 0 && s < law.segments()) loss += (law.impulse[s - 1] - law.impulse[s]) * drawn;
+        after = velocity;
     }
     stage.out.cable_work[static_cast<std::size_t>(cable)] = work;
+    stage.out.cable_loss[static_cast<std::size_t>(cable)] = loss;
     stage.out.cable_sum[static_cast<std::size_t>(cable)] = sum;
 }
 

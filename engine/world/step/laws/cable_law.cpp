@@ -12,7 +12,9 @@ void list_cable_measures(WorldState& w, TaskGraph& g) {
 }
 
 void list_cable_memory(WorldState& w, TaskGraph& g) {
-    g.stage("forces/store_cables", store_cables, read(w.scratch.cables), value(w.scratch.parameters.kick),
+    const StepParameters& p = w.scratch.parameters;
+    g.stage("forces/store_cables", store_cables, read(w.scratch.cables),
+            inputs<CableTimes>(w.clock.time, p.h, p.kick, p.solver.recovery_speed),
             outputs<CableMemory>(w.model.cables), if_taken(w));
 }
 

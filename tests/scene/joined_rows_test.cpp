@@ -1,0 +1,152 @@
+// Worlds in which joints, cables, ties and friction that depends on the direction act together, and forces that begin
+// during a long step.
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "skerry/cable.h"
+#include "skerry/joint.h"
+#include "skerry/spring.h"
+#include "skerry/surface.h"
+#include "skerry/tie.h"
+#include "tests/support/worlds.h"
+
+namespace skerry::test::joined_rows_test {
+
+namespace {
+
+constexpr Real side = 0.1;  // [m]
+const Mesh cube = mesh::box({side, side, side}, {2, 2, 2});
+
+/// A body that slides on a plane with less friction across the axis x. Upon request a second body is tied to its top,
+/// and two other bodies are tied together in the air.
+struct Slider {
+    World world;
+    BodyHandle lower, upper;
+
+    Slider(SolverMethod method, BodyDynamics dynamics, bool carries, bool ties_elsewhere) : world(settings_of(method)) {
+        const MaterialHandle of = world.add_material({.young_modulus = 1e6, .friction = 0.3, .damping = 20});
+        world.add_collider(Plane{});
+        const auto add = [&](const Vec3& place, BodyDynamics kind) {
+            return world.add_body(
+                cube, {.material = of, .position = place, .velocity = {1, 1, 0}, .dynamics = kind});
+        };
+        lower = add({0, 0, 0.051}, dynamics);
+        std::vector<Index> bottom;
+        for (std::size_t n = 0; n < cube.nodes.size(); ++n)
+            if (cube.nodes[n].z() < -0.049) bottom.push_back(static_cast<Index>(n));
+        SurfaceSets(world).add({.body = lower,
+                                .nodes = bottom,
+                                .surface = {.friction = 0.5},
+                                .friction_across = 0.2,
+                                .direction = Vec3::UnitX()});
+        const auto tie_above = [&](BodyHandle below, const Vec3& place) {
+            const BodyHandle above = add(place + Vec3(0, 0, side), BodyDynamics::explicit_elastic);
+            Ties(world).add({.body = above, .nodes = bottom, .to_body = below});
+            return above;
+        };
+        if (carries) upper = tie_above(lower, {0, 0, 0.051});
+        if (ties_elsewhere) tie_above(add({0, 5, 3}, BodyDynamics::explicit_elastic), {0, 5, 3});
+    }
+    static Settings settings_of(SolverMethod method) {
+        Settings settings = accurate({0, 0, -standard_gravity}, 1e-10);
+        settings.method = method;
+        settings.step_size = 2e-4;
+        return settings;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("ties do not change directional friction elsewhere", "[scene][ties]") {
+    Slider alone(SolverMethod::automatic, BodyDynamics::explicit_elastic, false, false);
+    Slider with_ties(SolverMethod::automatic, BodyDynamics::explicit_elastic, false, true);
+    REQUIRE(alone.world.advance(0.1).ok());
+    REQUIRE(with_ties.world.advance(0.1).ok());
+    CHECK(with_ties.world.report().unconverged == 0);
+    CHECK((alone.world.center_of_mass(alone.lower) - with_ties.world.center_of_mass(with_ties.lower)).norm() < 1e-10);
+    const Vec3 velocity = alone.world.velocity(alone.lower).velocity;
+    CHECK(velocity.y() > velocity.x() + 0.1);  // friction across the direction is smaller
+}
+
+TEST_CASE("every solver method gives the same motion with each kind of row", "[scene][ties]") {
+    for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::rigid}) {
+        std::vector<Vec3> expected;
+        for (const auto& [method, name] : EnumNames<SolverMethod>::table) {
+            CAPTURE(static_cast<int>(dynamics), name);
+            Slider slider(method, dynamics, true, false);
+            World& world = slider.world;
+            const MaterialHandle of = world.add_material({});
+            const BodyHandle pendulum =
+                world.add_body(cube, {.material = of, .position = {2, 0, 2}, .dynamics = BodyDynamics::rigid});
+            const BodyHandle lamp =
+                world.add_body(cube, {.material = of, .position = {4, 0, 2}, .dynamics = BodyDynamics::rigid});
+            Joints(world).add({.first = pendulum, .point = {2.1, 0, 2}});
+            Cables(world).add({.points = {{.point = {4.1, 0, 3}}, {.body = lamp, .point = {4, 0, 2.05}}},
+                               .drive = {.length = 0.95}});
+            REQUIRE(world.advance(0.02).ok());
+            CHECK(world.report().unconverged == 0);
+            std::vector<Vec3> now;
+            for (const BodyHandle body : {slider.lower, slider.upper, pendulum, lamp})
+                now.push_back(world.center_of_mass(body));
+            if (expected.empty()) expected = now;
+            for (std::size_t b = 0; b < now.size(); ++b) CHECK((now[b] - expected[b]).norm() < 1e-8);
+        }
+    }
+}
+
+TEST_CASE("a tie that has broken off everywhere no longer leads or limits its body", "[scene][ties]") {
+    Settings settings = accurate();
+    settings.sleep = true;
+    settings.sleep_time = 0.05;
+    World world(settings);
+    world.add_collider(Plane{});
+    const MaterialHandle of = world.add_material({.young_modulus = 1e6, .damping = 50});
+    const BodyHandle body = world.add_body(cube, {.material = of, .position = {0, 0, 0.051}});
+    const BodyHandle other = world.add_body(
+        cube, {.material = of, .position = {0.3, 0, 5}, .angular_velocity = {0, 0, 50}, .dynamics = BodyDynamics::rigid});
+    const ColliderHandle box = world.add_collider(Box{{side, side, side}}, {.position = {0, 0, 0.3}});
+    Ties ties(world);
+    const TieHandle to_box = ties.add({.body = body, .nodes = {0}, .to_collider = box, .break_force = 0.01});
+    const TieHandle to_other = ties.add({.body = body, .nodes = {1}, .to_body = other, .break_force = 0.01});
+    world.set_velocity(box, {0, 0, 1});
+    REQUIRE(world.advance(0.01).ok());
+    REQUIRE(ties.state(to_box).nodes[0].broken);
+    REQUIRE(ties.state(to_other).nodes[0].broken);
+    REQUIRE(world.advance(0.7).ok());
+    CHECK(world.asleep(body));        // although the collider moves on
+    CHECK_FALSE(world.asleep(other));  // which still flies
+}
+
+TEST_CASE("a force that begins during a long step does not cut it short", "[scene][implicit]") {
+    constexpr Real rest = 0.05, speed = 1;  // slack of the spring or cable [m], speed of the body [m/s]
+    enum class Force { spring, cable };
+    for (const Force force : {Force::spring, Force::cable}) {
+        std::vector<Vec3> place;
+        for (const Real implicit_step : {0.0, 0.01}) {
+            Settings settings = accurate(Vec3::Zero(), 1e-10);
+            settings.step_size = 5e-4;
+            settings.implicit_step = implicit_step;
+            World world(settings);
+            const MaterialHandle of = world.add_material({.young_modulus = 1e6});
+            const BodyHandle body = world.add_body(
+                cube, {.material = of, .velocity = {speed, 0, 0}, .dynamics = BodyDynamics::implicit_elastic});
+            world.add_body(cube, {.material = of, .position = {0, 5, 0}});
+            const Anchor first{.point = {-0.5, 0, 0}}, second{.body = body, .point = {0, 0, 0}};
+            if (force == Force::spring)
+                Springs(world).add({.first = first,
+                                    .second = second,
+                                    .stiffness = 200,
+                                    .rest_length = TimeTable(0.5 + rest),
+                                    .only = SpringSide::tension});
+            else
+                Cables(world).add({.points = {first, second}, .drive = {.length = 0.5 + rest}});
+            REQUIRE(world.advance(0.137).ok());
+            place.push_back(world.center_of_mass(body));
+        }
+        CAPTURE(static_cast<int>(force), place[0].transpose(), place[1].transpose());
+        CHECK((place[1] - place[0]).norm() < 0.05 * rest);  // the force may begin one long step late
+    }
+}
+
+}  // namespace skerry::test::joined_rows_test
