@@ -380,8 +380,7 @@ TEST_CASE("a spring limits the steps of a rigid body after loading as before", "
         [](Index threads) {
             Settings settings{.gravity = Vec3::Zero()};
             settings.threads = threads;
-            Oscillator oscillator(settings,
-                                  {.second = {.point = {1, 0, 0}}, .stiffness = 1e6, .rest_length = 0.99});
+            Oscillator oscillator(settings, {.second = {.point = {1, 0, 0}}, .stiffness = 1e6, .rest_length = 0.99});
             const Real frequency = std::sqrt(1e6 / oscillator.mass);
             CHECK(oscillator.world.stable_step() <= 2 / frequency);
             REQUIRE(oscillator.world.advance(0.05).ok());

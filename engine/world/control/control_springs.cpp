@@ -110,8 +110,7 @@ SpringHandle Springs::add(const SpringSettings& spring) {
     require_stable(world.model, object, first, "first");
     require_stable(world.model, object, second, "second");
     if (spring.stiffness == 0 && spring.damping == 0)
-        refuse(object, "stiffness, damping", "0 and 0, so that no force acts",
-               "a number > 0 for at least one of them");
+        refuse(object, "stiffness, damping", "0 and 0, so that no force acts", "a number > 0 for at least one of them");
     Model& model = world.model;
     SpringTable& table = model.springs;
     const std::size_t row = table.size();

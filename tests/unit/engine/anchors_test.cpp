@@ -144,9 +144,7 @@ TEST_CASE("messages about joining objects name the bodies that they join") {
 
     Springs springs(world);
     const Anchor on_jelly{.body = soft}, on_floor{.collider = floor, .point = {0, 0, -1}};
-    CHECK_THAT(message_of([&] {
-                   springs.add({.first = on_jelly, .second = on_floor, .stiffness = -1});
-               }),
+    CHECK_THAT(message_of([&] { springs.add({.first = on_jelly, .second = on_floor, .stiffness = -1}); }),
                Contains("spring between body 'jelly' and collider 'floor': stiffness"));
     const SpringHandle spring = springs.add({.first = on_jelly, .second = {.point = {0, 0, 1}}, .stiffness = 1});
     CHECK_THAT(message_of([&] { springs.set_damping(spring, -1); }),
@@ -160,7 +158,9 @@ TEST_CASE("messages about joining objects name the bodies that they join") {
                Contains("tie of body 'jelly' to the world: break_force"));
 
     Cables cables(world);
-    CHECK_THAT(message_of([&] { cables.add({.points = {on_jelly, on_floor}}); }),
+    CHECK_THAT(message_of([&] {
+                   cables.add({.points = {on_jelly, on_floor}});
+               }),
                Contains("cable from body 'jelly' to collider 'floor': drive"));
     const CableHandle cable = cables.add({.points = {on_jelly, on_floor}, .drive = {.tension = TimeTable(1)}});
     CHECK_THAT(message_of([&] { cables.set_drive(cable, {.length = TimeTable(-1)}); }),

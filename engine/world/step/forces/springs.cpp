@@ -62,7 +62,9 @@ void list_spring_memory(WorldState& w, TaskGraph& g) {
 }
 
 Real energy_of_springs(const Model& model, Real t, Real lag) {
-    return spring_energy(springs_of(model), SpringWorkInputs::bind({}, model.springs, model.nodes, model.bodies, model.rigid_bodies), t, lag);
+    return spring_energy(springs_of(model),
+                         SpringWorkInputs::bind({}, model.springs, model.nodes, model.bodies, model.rigid_bodies), t,
+                         lag);
 }
 
 }  // namespace
