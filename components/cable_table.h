@@ -101,7 +101,7 @@ struct CableBlockTable {
     Column<Real> most_ratio;  // greatest ratio of the tensions on both sides of the point, exp(friction angle)
     Column<Real> impulse;  // tension of the segment from the point, as an impulse; before the solve: warm start [N s]
     Column<Real> work;     // by block: work of a solved cable on the bodies [J]
-    Column<Real> dissipated;  // by block: energy that friction at the points of a solved cable dissipates [J]
+    Column<Real> dissipated;   // by block: energy that friction at the points of a solved cable dissipates [J]
     Column<Vec3> sum_impulse;  // by block: total impulse of a solved cable on the moving nodes [N s]
     Index mobilities = 0;      // number of entries of all mobility matrices
     Index first_solved = 0;    // the blocks from here on have `solved` set

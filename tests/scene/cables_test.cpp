@@ -422,7 +422,8 @@ TEST_CASE("a saved cable that pushes, or a point of two objects, is refused", "[
         World world(with_step(1e-3));
         const BodyHandle cube = add_cube(world, {0, 0, 0});
         world.add_collider(Plane{}, {.position = {0, 0, -5}});
-        Cables(world).add({.points = {{.point = {0, 0, 1}}, {.body = cube, .point = {0, 0, 0}}}, .drive = {.tension = 1}});
+        Cables(world).add(
+            {.points = {{.point = {0, 0, 1}}, {.body = cube, .point = {0, 0, 0}}}, .drive = {.tension = 1}});
         change(WorldAccess::state_of(world).model.cables);
         const TemporaryFolder folder;
         world.save(folder.path() / "world.skerry");

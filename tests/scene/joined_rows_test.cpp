@@ -28,8 +28,7 @@ struct Slider {
         const MaterialHandle of = world.add_material({.young_modulus = 1e6, .friction = 0.3, .damping = 20});
         world.add_collider(Plane{});
         const auto add = [&](const Vec3& place, BodyDynamics kind) {
-            return world.add_body(
-                cube, {.material = of, .position = place, .velocity = {1, 1, 0}, .dynamics = kind});
+            return world.add_body(cube, {.material = of, .position = place, .velocity = {1, 1, 0}, .dynamics = kind});
         };
         lower = add({0, 0, 0.051}, dynamics);
         std::vector<Index> bottom;
@@ -82,8 +81,8 @@ TEST_CASE("every solver method gives the same motion with each kind of row", "[s
             const BodyHandle lamp =
                 world.add_body(cube, {.material = of, .position = {4, 0, 2}, .dynamics = BodyDynamics::rigid});
             Joints(world).add({.first = pendulum, .point = {2.1, 0, 2}});
-            Cables(world).add({.points = {{.point = {4.1, 0, 3}}, {.body = lamp, .point = {4, 0, 2.05}}},
-                               .drive = {.length = 0.95}});
+            Cables(world).add(
+                {.points = {{.point = {4.1, 0, 3}}, {.body = lamp, .point = {4, 0, 2.05}}}, .drive = {.length = 0.95}});
             REQUIRE(world.advance(0.02).ok());
             CHECK(world.report().unconverged == 0);
             std::vector<Vec3> now;
@@ -104,7 +103,8 @@ TEST_CASE("a tie that has broken off everywhere no longer leads or limits its bo
     const MaterialHandle of = world.add_material({.young_modulus = 1e6, .damping = 50});
     const BodyHandle body = world.add_body(cube, {.material = of, .position = {0, 0, 0.051}});
     const BodyHandle other = world.add_body(
-        cube, {.material = of, .position = {0.3, 0, 5}, .angular_velocity = {0, 0, 50}, .dynamics = BodyDynamics::rigid});
+        cube,
+        {.material = of, .position = {0.3, 0, 5}, .angular_velocity = {0, 0, 50}, .dynamics = BodyDynamics::rigid});
     const ColliderHandle box = world.add_collider(Box{{side, side, side}}, {.position = {0, 0, 0.3}});
     Ties ties(world);
     const TieHandle to_box = ties.add({.body = body, .nodes = {0}, .to_collider = box, .break_force = 0.01});
@@ -114,7 +114,7 @@ TEST_CASE("a tie that has broken off everywhere no longer leads or limits its bo
     REQUIRE(ties.state(to_box).nodes[0].broken);
     REQUIRE(ties.state(to_other).nodes[0].broken);
     REQUIRE(world.advance(0.7).ok());
-    CHECK(world.asleep(body));        // although the collider moves on
+    CHECK(world.asleep(body));         // although the collider moves on
     CHECK_FALSE(world.asleep(other));  // which still flies
 }
 

@@ -54,8 +54,9 @@ bool forces_follow_implicit_bodies(const Model& model) {
     const auto acts = [](const Column<Real>& bound, std::size_t body) { return !bound.empty() && bound[body] > 0; };
     for (const Index body : model.rigid_bodies.body) {
         const auto b = static_cast<std::size_t>(body);
-        if (!model.is_rigid(b) && (acts(model.force_rate, b) || acts(model.force_damping, b) ||
-                                   acts(model.force_drag, b))) return true;
+        if (!model.is_rigid(b) &&
+            (acts(model.force_rate, b) || acts(model.force_damping, b) || acts(model.force_drag, b)))
+            return true;
     }
     return std::ranges::any_of(model.cables.anchor.body, [&](Index body) {
         const auto b = static_cast<std::size_t>(body);

@@ -185,8 +185,8 @@ struct RegionOutputs {
     std::span<Vec3> push_out;       // pseudo velocity by node, except nodes of rigid bodies [m/s]
     // Contact impulses, moments and pseudo velocities by row of RigidBodyTable, zero before the solve.
     std::span<Vec3> contact_impulse{}, contact_moment{}, push_velocity{}, push_spin{};
-    std::span<Vec3> deforming_impulse{};  // by row of ImplicitNodeTable, zero before the solve [N s]
-    std::span<Vec3> joint_impulse{};      // by joint block: warm start as input, solution as output
+    std::span<Vec3> deforming_impulse{};     // by row of ImplicitNodeTable, zero before the solve [N s]
+    std::span<Vec3> joint_impulse{};         // by joint block: warm start as input, solution as output
     std::span<AxisImpulses> axis_impulse{};  // by joint block
     std::span<Real> cable_impulse{};  // tension by point of the cables: warm start as input, solution as output [N s]
     std::span<Real> cable_work{};     // by solved cable: work on the bodies [J]

@@ -30,8 +30,7 @@ void CableLaw::read(std::span<const Vec4> point, std::span<Real> impulse_of_segm
     for (std::size_t s = 0; s < segments(); ++s) {
         const bool has_length = !direction[s].isZero(0);
         if (!has_length && known == 0) continue;
-        impulse_of_segment[s] =
-            has_length ? direction[s].dot(point[s].head<3>() + last) : impulse_of_segment[s - 1];
+        impulse_of_segment[s] = has_length ? direction[s].dot(point[s].head<3>() + last) : impulse_of_segment[s - 1];
         last = impulse_of_segment[s] * direction[s];
         while (known < s) impulse_of_segment[known++] = impulse_of_segment[s];
         known = s + 1;

@@ -75,7 +75,8 @@ void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory,
            .before = numbers(3),
            .previous = numbers(4)};
     const auto last = static_cast<Index>(count) + first;
-    while (law.moving < last && memory.contact[static_cast<std::size_t>(law.moving)].inverse_diagonal == 0) ++law.moving;
+    while (law.moving < last && memory.contact[static_cast<std::size_t>(law.moving)].inverse_diagonal == 0)
+        ++law.moving;
     find_mobility(law, memory, walk, mobility);
     law.prepare();
     std::ranges::fill(law.impulse, Real(0));
@@ -115,7 +116,7 @@ void write_cable(const RegionStage& stage, Index cable, const BodyMemory& memory
     std::ranges::copy(law.impulse, rows_of(stage.out.cable_impulse, points).begin());
     Real work = 0, loss = 0;
     Vec3 sum = Vec3::Zero();
-    Real drawn = 0;  // rate of the cable past the point, towards the first point [m/s]
+    Real drawn = 0;             // rate of the cable past the point, towards the first point [m/s]
     Vec3 after = Vec3::Zero();  // mean velocity of the next point in the step [m/s]
     for (Index p = points.size(); p-- > 0;) {
         const Vec3 impulse = memory.impulse[static_cast<std::size_t>(law.first + p)].head<3>();
