@@ -11,6 +11,7 @@
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/query/fitted_tree.h"
 #include "engine/world/query/place_anchor.h"
+#include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 #include "skerry/tie.h"
 #include "systems/collision/narrow/collider_distance.h"
@@ -280,6 +281,7 @@ void Ties::remove(TieHandle tie) {
 void release_ties(WorldState& world) {
     TieTable& ties = world.model.ties;
     world.model.links_open = true;
+    note_changed_seams(world.model);
     for (std::size_t t = 0; t < ties.size(); ++t) {
         if (ties.parts[t] == 0 || ties.holds(t)) continue;
         ties.parts[t] = 0;
