@@ -104,9 +104,9 @@ TEST_CASE("gas behind a piston is a spring of stiffness gamma p A^2 / V", "[scen
 TEST_CASE("the gas behind a piston keeps its volume when the piston is placed elsewhere", "[scene][cavities]") {
     for (const BodyDynamics dynamics : {BodyDynamics::rigid, BodyDynamics::explicit_elastic}) {
         World world({.gravity = no_gravity});
-        const BodyHandle piston = world.add_body(
-            mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}),
-            {.material = world.add_material({}), .velocity = {0.1, 0, 0}, .dynamics = dynamics});
+        const BodyHandle piston =
+            world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}),
+                           {.material = world.add_material({}), .velocity = {0.1, 0, 0}, .dynamics = dynamics});
         const CavityHandle gas =
             Cavities(world).add({.body = piston,
                                  .faces = faces_where(world, piston, [](const Vec3& x) { return x.x() > 0.049; }),

@@ -342,6 +342,19 @@ TEST_CASE("a body that rests on a spring sleeps until the spring changes", "[sce
     CHECK(same.world.asleep(same.body));
 }
 
+TEST_CASE("a body on a slow winch does not fall asleep before the winch stops", "[scene][springs][sleep]") {
+    Oscillator winch({}, {.second = {.point = {0, 0, 1}},
+                          .stiffness = 500,
+                          .damping = 60,
+                          .rest_length = TimeTable({{0, 1}, {8, 1 - 1.6e-5}})});
+    bool slept = false;
+    winch.world.watch_steps([&](const StepReport&) { slept |= winch.world.asleep(winch.body); });
+    REQUIRE(winch.world.advance(7.9).ok());
+    CHECK_FALSE(slept);
+    REQUIRE(winch.world.advance(2).ok());
+    CHECK(slept);
+}
+
 TEST_CASE("springs continue with the same bits with more threads, as a clone and from a file", "[scene][springs]") {
     const auto course = [](Index threads) {
         Settings settings;
@@ -380,8 +393,7 @@ TEST_CASE("a spring limits the steps of a rigid body after loading as before", "
         [](Index threads) {
             Settings settings{.gravity = Vec3::Zero()};
             settings.threads = threads;
-            Oscillator oscillator(settings,
-                                  {.second = {.point = {1, 0, 0}}, .stiffness = 1e6, .rest_length = 0.99});
+            Oscillator oscillator(settings, {.second = {.point = {1, 0, 0}}, .stiffness = 1e6, .rest_length = 0.99});
             const Real frequency = std::sqrt(1e6 / oscillator.mass);
             CHECK(oscillator.world.stable_step() <= 2 / frequency);
             REQUIRE(oscillator.world.advance(0.05).ok());

@@ -22,8 +22,8 @@ struct WorkInputs {
     std::span<const Vec3> force;        // force of elements, weight and loads by node; used only at held nodes [N]
     std::span<const Vec3> velocity, velocity_next;  // [m/s]
     FreeNodes free;
-    std::span<const Real> mass;  // kg, by node
-    std::span<const Index> held;                    // nodes
+    std::span<const Real> mass;   // kg, by node
+    std::span<const Index> held;  // nodes
     std::span<const Index> node_body;
     std::span<const Range> body_implicit;  // rows of implicit bodies, whose entries of `force` act for the whole step
     RestingNodes resting;
