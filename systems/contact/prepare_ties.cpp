@@ -242,14 +242,4 @@ bool mark_led(const TieInputs& ties, std::span<std::uint8_t> marked) {
     return any;
 }
 
-bool keep_led_awake(const TieInputs& ties, Real h, std::span<Real> still_time) {
-    bool any = false;
-    for (std::size_t t = 0; t < ties.tie.size(); ++t) {
-        if (!ties.is_led(t)) continue;
-        any = true;
-        still_time[static_cast<std::size_t>(ties.tie.first[t])] = -h;
-    }
-    return any;
-}
-
 }  // namespace skerry

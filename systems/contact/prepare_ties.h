@@ -101,8 +101,5 @@ bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& cont
 
 /// Marks bodies that are tied to a moving collider. Returns false if there is none.
 bool mark_led(const TieInputs& ties, std::span<std::uint8_t> marked);
-/// Sets the time for which a body has been still to -h if the body is tied to a moving collider, so that it cannot fall
-/// asleep at the end of the step. Returns false if there is none.
-bool keep_led_awake(const TieInputs& ties, Real h, std::span<Real> still_time);
 
 }  // namespace skerry

@@ -90,19 +90,19 @@ bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& f
     return true;
 }
 
-bool find_driven(const LoadedBodies& loads, Real t, Real h, Column<std::uint8_t>& driven) {
-    driven.clear();
+bool mark_loaded(const LoadedBodies& loads, Real t, Real h, std::span<std::uint8_t> marked) {
+    bool any = false;
     for (std::size_t load = 0; load < loads.load_body.size(); ++load) {
         if (!changes(rows_of(loads.key, loads.scale_keys[load]), t, h)) continue;
-        if (driven.empty()) driven.assign(loads.body_kind.size(), 0);
+        any = true;
         if (loads.load_body[load] != no_index) {
-            driven[static_cast<std::size_t>(loads.load_body[load])] = 1;
+            marked[static_cast<std::size_t>(loads.load_body[load])] = 1;
             continue;
         }
         for (std::size_t body = 0; body < loads.body_kind.size(); ++body)
-            driven[body] |= loads.body_kind[body] == BodyKind::deformable;
+            marked[body] |= loads.body_kind[body] == BodyKind::deformable;
     }
-    return !driven.empty();
+    return any;
 }
 
 }  // namespace skerry

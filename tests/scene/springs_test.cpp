@@ -342,6 +342,19 @@ TEST_CASE("a body that rests on a spring sleeps until the spring changes", "[sce
     CHECK(same.world.asleep(same.body));
 }
 
+TEST_CASE("a body on a slow winch does not fall asleep before the winch stops", "[scene][springs][sleep]") {
+    Oscillator winch({}, {.second = {.point = {0, 0, 1}},
+                          .stiffness = 500,
+                          .damping = 60,
+                          .rest_length = TimeTable({{0, 1}, {8, 1 - 1.6e-5}})});
+    bool slept = false;
+    winch.world.watch_steps([&](const StepReport&) { slept |= winch.world.asleep(winch.body); });
+    REQUIRE(winch.world.advance(7.9).ok());
+    CHECK_FALSE(slept);
+    REQUIRE(winch.world.advance(2).ok());
+    CHECK(slept);
+}
+
 TEST_CASE("springs continue with the same bits with more threads, as a clone and from a file", "[scene][springs]") {
     const auto course = [](Index threads) {
         Settings settings;

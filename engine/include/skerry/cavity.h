@@ -47,7 +47,9 @@ struct CavitySettings {
     std::optional<std::vector<std::array<Index, 3>>> faces{};
     std::variant<TimeTable, GasFilling, LiquidFilling> filling{};
     // Volume of the gas or liquid at the start. Required if the faces do not enclose a volume, as those of a piston:
-    // the volume then changes by the volume that the faces sweep. Not allowed for faces that enclose a volume [m^3].
+    // the volume then changes by the volume that the faces sweep in steps. Calls that place nodes, such as
+    // World::reset(body), keep this volume and the mass of the gas; World::reset(saved) restores those of the saved
+    // world. Not allowed for faces that enclose a volume [m^3].
     std::optional<Real> volume{};
 };
 

@@ -148,15 +148,17 @@ struct StepScratch {
     Column<Real> cluster_work;         // used by kick_clusters
     ImplicitCoupling coupling;         // used by couple_implicit_bodies
     Column<StrainPart> strain_parts;   // used by strain_implicit_bodies
-    Column<std::uint8_t> pressed;      // for each body, nonzero if a contact presses on it or a motor starts to move it
+    Column<std::uint8_t> pressed;      // for each body, nonzero if a contact presses on it
     Column<ExternalWork> work_parts;   // used by measure_work
     InversionMemory inversions;        // used by find_inversions
     Column<WatchPart> watch_parts;     // used by watch_stable_steps
     Column<WatchPieces> watch_pieces;  // used by store_shapes
     Column<Real> viscous_parts;        // used by measure_viscosity
-    Column<std::uint8_t> driven;       // for each body, nonzero if a load on it changes in this step; empty: none does
-    Column<BodyField> fields;          // used by add_loads
-    RestingMemory resting_memory;      // used by keep_resting_contacts
+    // For each body, nonzero if a load, spring, cable, cavity, motor or tie that acts on it changes in this step. Empty
+    // if there are none of these, or bodies cannot fall asleep.
+    Column<std::uint8_t> driven;
+    Column<BodyField> fields;            // used by add_loads
+    RestingMemory resting_memory;        // used by keep_resting_contacts
     Column<Index> self_crossing_places;  // used by find_self_crossings
 
     bool inverts() const { return skerry::inverts(findings.inversions, parameters); }

@@ -36,7 +36,7 @@ struct ForceElement {
     // For each body, adds the rate c of forces -c m v that oppose the velocities v of its nodes of mass m [1/s]. They
     // act as at the start of the step, and limit the stable step too.
     void (*add_drag)(const Model&, std::span<Real> of_body) = nullptr;
-    ListStages mark_driven = nullptr;  // marks bodies that a change over time wakes, in StepScratch::pressed
+    ListStages mark_driven = nullptr;  // marks bodies that a change over time keeps awake, in StepScratch::driven
     // Whether the forces change in the step of length `h` that starts at time `t` although no body moves.
     bool (*is_driven)(const Model&, Real t, Real h) = nullptr;
     ListStages measure = nullptr;   // measures work and losses, which the balance then no longer counts as external
@@ -89,6 +89,10 @@ inline auto if_taken(const WorldState& world) {
     const StepFindings& found = world.scratch.findings;
     return only_if(can_be_taken, read(found.verdict), read(found.crossings), read(found.inversions),
                    value(world.scratch.parameters));
+}
+/// Condition of a stage that serves the sleep of bodies: the stage runs only if bodies can fall asleep.
+inline auto if_sleepy(const WorldState& world) {
+    return only_if([](const SleepSettings& sleep) { return sleep.on(); }, value(world.scratch.parameters.sleep));
 }
 /// Condition of a stage that checks the end of the step: the stage runs only if no fault has been found so far.
 inline auto if_possible(const WorldState& world) {

@@ -123,10 +123,10 @@ void separate(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/mark_pressed", mark_pressed, inputs<PressInputs>(c, m.bodies, p.solver.warm_start),
             make(w.scratch.pressed), if_any_asleep);
     g.stage("dynamics/mark_driven", mark_driven, inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep),
-            value(w.clock.time), value(p.h), write(w.scratch.pressed), if_any_asleep);
+            value(w.clock.time), value(p.h), write(w.scratch.driven), if_sleepy(w));
     g.stage("contact/mark_led", mark_led,
             inputs<TieInputs>(m.ties, m.bodies, m.nodes, m.rigid_bodies, m.colliders, m.any_asleep),
-            write(w.scratch.pressed), if_any_asleep);
+            write(w.scratch.driven), if_sleepy(w));
     of_forces<&ForceElement::mark_driven>(w, g);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints, w.scratch.cables),
@@ -183,10 +183,6 @@ void check_end(WorldState& w, TaskGraph& g) {
                         inputs<WorkInputs>(n, m.attachments, b, m.rigid_bodies, m.forced, m.any_asleep, p.gravity),
                         value(p.h), value(p.kick), value(p.work_lag), make(w.scratch.work_parts), if_any);
     of_forces<&ForceElement::measure>(w, g);
-}
-
-auto if_sleepy(const WorldState& w) {
-    return only_if([](const SleepSettings& sleep) { return sleep.on(); }, value(w.scratch.parameters.sleep));
 }
 
 void wake(WorldState& w, TaskGraph& g) {

@@ -98,6 +98,9 @@ bool run_stages(WorldState& world) {
         if (scratch.findings.verdict.fault != StepFault::none) return false;
     }
     scratch.pressed.clear();
+    const bool drivable =
+        scratch.parameters.sleep.on() && (model.forced || model.joints.size() > 0 || model.ties.size() > 0);
+    scratch.driven.assign(drivable ? model.bodies.slot.size() : 0, 0);
     world.transaction.begin_try(model);
     world.record.contact_view_is_current = false;
     if (scratch.left_out) {

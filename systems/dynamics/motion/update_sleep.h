@@ -101,7 +101,7 @@ struct RestInputs {
     std::span<const Mat3> rigid_rotation = {};
     std::span<const Index> rigid_holder = {};  // empty if no body is held
     std::span<const Index> body_core_nodes = {};
-    // For each body, nonzero if a load on the body changes in this step. Empty if no load changes.
+    // For each body, nonzero if a load or a joining object of the body changes in this step. May be empty.
     std::span<const std::uint8_t> driven = {};
 
     static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,

@@ -29,10 +29,9 @@ void add_cable_rate(const Model& model, std::span<Real> of_body) {
 
 void list_driven_cables(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
-    const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(w.model.any_asleep));
     g.stage("forces/mark_driven_cables", mark_driven_cables,
             inputs<CableInputs>(m.cables, m.bodies, m.nodes, m.colliders, m.any_asleep), value(w.clock.time),
-            value(w.scratch.parameters.h), write(w.scratch.pressed), if_any_asleep);
+            value(w.scratch.parameters.h), write(w.scratch.driven), if_sleepy(w));
 }
 
 bool a_cable_is_driven(const Model& model, Real t, Real h) {

@@ -90,10 +90,9 @@ void add_cavity_rate(const Model& model, std::span<Real> of_body) {
 
 void list_filled_cavities(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
-    const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(w.model.any_asleep));
     g.stage("forces/mark_filled", mark_filled, inputs<CavityInputs>(m.cavities, m.bodies, m.nodes),
             inputs<PipeInputs>(m.pipes), value(m.cavity_map), value(w.clock.time), value(w.scratch.parameters.h),
-            write(w.scratch.pressed), if_any_asleep);
+            write(w.scratch.driven), if_sleepy(w));
 }
 
 bool a_cavity_fills(const Model& model, Real t, Real h) {

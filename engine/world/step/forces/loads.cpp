@@ -17,8 +17,11 @@ void add_load_stages(WorldState& w, TaskGraph& g) {
     const auto if_any = only_if([](std::span<const Index> body) { return !body.empty(); }, read(m.loads.body));
     g.stage("forces/add_loads", add_loads, inputs<LoadInputs>(m.loads, m.bodies, m.nodes, p.gravity, p.intervals),
             make(s.fields), write(m.nodes.applied_force), if_any);
-    g.stage("forces/find_driven", find_driven, inputs<LoadedBodies>(m.loads, m.bodies), value(w.clock.time), value(p.h),
-            make(s.driven));
+}
+
+void list_driven_loads(WorldState& w, TaskGraph& g) {
+    g.stage("forces/mark_loaded", mark_loaded, inputs<LoadedBodies>(w.model.loads, w.model.bodies), value(w.clock.time),
+            value(w.scratch.parameters.h), write(w.scratch.driven), if_sleepy(w));
 }
 
 void add_drag_rates(const Model& model, std::span<Real> of_body) {
@@ -39,5 +42,10 @@ bool a_load_changes(const Model& model, Real t, Real h) {
 
 constinit const ForceElement loads_and_fields{
     .any = any_of_loads, .add_forces = add_load_stages, .add_drag = add_drag_rates, .is_driven = a_load_changes};
+constinit const ForceElement loads_and_fields{.any = any_of_loads,
+                                              .add_forces = add_load_stages,
+                                              .add_drag = add_drag_rates,
+                                              .mark_driven = list_driven_loads,
+                                              .is_driven = a_load_changes};
 
 }  // namespace skerry

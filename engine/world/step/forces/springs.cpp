@@ -35,9 +35,8 @@ void list_spring_forces(WorldState& w, TaskGraph& g) {
 }
 
 void list_driven_springs(WorldState& w, TaskGraph& g) {
-    const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(w.model.any_asleep));
     g.stage("forces/mark_driven_bodies", mark_driven_bodies, spring_inputs(w.model), value(w.clock.time),
-            value(w.scratch.parameters.h), write(w.scratch.pressed), if_any_asleep);
+            value(w.scratch.parameters.h), write(w.scratch.driven), if_sleepy(w));
 }
 
 bool a_spring_is_driven(const Model& model, Real t, Real h) {

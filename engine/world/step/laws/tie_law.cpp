@@ -36,12 +36,6 @@ void list_taken_rows(WorldState& w, TaskGraph& g) {
                         make(w.scratch.ties), if_any_tie(m));
 }
 
-void list_led_bodies(WorldState& w, TaskGraph& g) {
-    Model& m = w.model;
-    g.stage("contact/keep_led_awake", keep_led_awake, tie_inputs(m), value(w.scratch.parameters.h),
-            write(m.bodies.still_time), if_any_tie(m), if_taken(w));
-}
-
 void list_tie_memory(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage_with_result("contact/store_ties", w.scratch.findings.released_ties, store, read(w.scratch.ties),
@@ -51,7 +45,6 @@ void list_tie_memory(WorldState& w, TaskGraph& g) {
 
 }  // namespace
 
-constinit const ConstraintLaw tie_law{
-    .find = list_tie_rows, .take = list_taken_rows, .check = list_led_bodies, .remember = list_tie_memory};
+constinit const ConstraintLaw tie_law{.find = list_tie_rows, .take = list_taken_rows, .remember = list_tie_memory};
 
 }  // namespace skerry
