@@ -158,7 +158,9 @@ TEST_CASE("messages about joining objects name the bodies that they join") {
                Contains("tie of body 'jelly' to the world: break_force"));
 
     Cables cables(world);
-    CHECK_THAT(message_of([&] { cables.add({.points = {on_jelly, on_floor}, .drive = {}}); }),
+    CHECK_THAT(message_of([&] {
+                   cables.add({.points = {on_jelly, on_floor}, .drive = {}});
+               }),
                Contains("cable from body 'jelly' to collider 'floor': drive"));
     const CableHandle cable = cables.add({.points = {on_jelly, on_floor}, .drive = {.tension = TimeTable(1)}});
     CHECK_THAT(message_of([&] { cables.set_drive(cable, {.length = TimeTable(-1)}); }),
