@@ -40,8 +40,6 @@ bool a_load_changes(const Model& model, Real t, Real h) {
 
 }  // namespace
 
-constinit const ForceElement loads_and_fields{
-    .any = any_of_loads, .add_forces = add_load_stages, .add_drag = add_drag_rates, .is_driven = a_load_changes};
 constinit const ForceElement loads_and_fields{.any = any_of_loads,
                                               .add_forces = add_load_stages,
                                               .add_drag = add_drag_rates,
