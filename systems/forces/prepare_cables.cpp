@@ -28,10 +28,12 @@ Range list_points(const CableInputs& cables, std::size_t cable, CableBlockTable&
         for (std::size_t a = count; a < 4; ++a) stencil.node[a] = stencil.node[0];
         blocks.stencil.push_back(stencil);
         blocks.velocity.push_back(count > 0 ? Vec3(Vec3::Zero()) : cables.anchor.velocity(at));
-        const Vec3 to_next = p + 1 < points.end ? Vec3(cables.anchor.at(at + 1) - cables.anchor.at(at)) : Vec3::Zero();
-        const Real length = to_next.norm();
+        const Vec3 here = cables.anchor.at(at), next = p + 1 < points.end ? cables.anchor.at(at + 1) : here;
+        const Real length = (next - here).norm();
         blocks.length.push_back(length);
-        blocks.direction.push_back(length > 0 ? Vec3(to_next / length) : Vec3(Vec3::Zero()));
+        // A shorter segment has no direction, only a rounding error of its points.
+        const Real shortest = 1e-14 * (here.norm() + next.norm());  // [m]
+        blocks.direction.push_back(length > shortest ? Vec3((next - here) / length) : Vec3(Vec3::Zero()));
         blocks.most_ratio.push_back(1);
         blocks.impulse.push_back(0);
     }

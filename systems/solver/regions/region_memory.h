@@ -2,7 +2,6 @@
 // RegionTable::contacts, so the rows of a region are consecutive.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <memory>
@@ -57,11 +56,9 @@ inline std::size_t workspace_slots(SolverMethod method) {
     }
 }
 
-/// Number of workspace vectors for regions with rigid bodies. There the method `automatic` takes Newton steps, and any
-/// method is replaced by `ags` in a region with joints, cables or directional friction (BodyRegion::method).
+/// Number of workspace vectors for regions with rigid bodies. There the method `automatic` takes Newton steps.
 inline std::size_t body_workspace_slots(SolverMethod method) {
-    return std::max(workspace_slots(SolverMethod::ags),
-                    workspace_slots(method == SolverMethod::automatic ? SolverMethod::newton : method));
+    return workspace_slots(method == SolverMethod::automatic ? SolverMethod::newton : method);
 }
 
 struct RegionMemory {
