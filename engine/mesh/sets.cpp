@@ -11,11 +11,6 @@
 namespace skerry::mesh {
 namespace {
 
-std::array<Index, 3> sorted(std::array<Index, 3> face) {
-    std::ranges::sort(face);
-    return face;
-}
-
 void sort_unique(std::vector<Index>& numbers) {
     std::ranges::sort(numbers);
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
@@ -38,7 +33,7 @@ void tidy(MeshSet& set) {
     sort_unique(set.nodes);
     sort_unique(set.tetrahedra);
     std::set<std::array<Index, 3>> known;
-    std::erase_if(set.faces, [&](const std::array<Index, 3>& face) { return !known.insert(sorted(face)).second; });
+    std::erase_if(set.faces, [&](const std::array<Index, 3>& face) { return !known.insert(sorted_face(face)).second; });
 }
 
 void require_set(const std::string& object, const std::string& name, const MeshSet& set, std::size_t node_count,
@@ -53,7 +48,7 @@ void require_set(const std::string& object, const std::string& name, const MeshS
     if (set.faces.empty()) return;
     const std::vector<TetrahedronFace> faces = sorted_faces(tetrahedra);
     for (const std::array<Index, 3>& face : set.faces)
-        if (!std::ranges::binary_search(faces, sorted(face), {}, &TetrahedronFace::node))
+        if (!std::ranges::binary_search(faces, sorted_face(face), {}, &TetrahedronFace::node))
             refuse_set(object, name,
                        "a face with the nodes " + std::to_string(face[0]) + ", " + std::to_string(face[1]) + " and " +
                            std::to_string(face[2]),
@@ -64,16 +59,17 @@ std::size_t match_faces(std::span<const std::array<Index, 4>> tetrahedra, std::m
     if (std::ranges::all_of(sets, [](const auto& item) { return item.second.faces.empty(); })) return 0;
     const std::vector<TetrahedronFace> all = sorted_faces(tetrahedra);
     std::vector<std::pair<std::array<Index, 3>, std::array<Index, 3>>> outer;  // sorted nodes, oriented nodes
-    for (const BoundaryTriangle& t : boundary_triangles(tetrahedra)) outer.emplace_back(sorted(t.node), t.node);
+    for (const BoundaryTriangle& t : boundary_triangles(tetrahedra)) outer.emplace_back(sorted_face(t.node), t.node);
     std::ranges::sort(outer);
     std::size_t dropped = 0;
     for (auto& [name, set] : sets) {
         dropped += std::erase_if(set.faces, [&](const std::array<Index, 3>& face) {
-            return !std::ranges::binary_search(all, sorted(face), {}, &TetrahedronFace::node);
+            return !std::ranges::binary_search(all, sorted_face(face), {}, &TetrahedronFace::node);
         });
         for (std::array<Index, 3>& face : set.faces) {
-            const auto found = std::ranges::lower_bound(outer, sorted(face), {}, [](const auto& o) { return o.first; });
-            if (found != outer.end() && found->first == sorted(face)) face = found->second;
+            const auto found =
+                std::ranges::lower_bound(outer, sorted_face(face), {}, [](const auto& o) { return o.first; });
+            if (found != outer.end() && found->first == sorted_face(face)) face = found->second;
         }
     }
     return dropped;
@@ -107,15 +103,15 @@ std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, std::span<const s
                                            std::span<const std::array<Index, 3>> surface) {
     std::vector<std::array<Index, 3>> faces = set.faces;
     std::set<std::array<Index, 3>> listed, of_tetrahedra;
-    for (const std::array<Index, 3>& face : set.faces) listed.insert(sorted(face));
+    for (const std::array<Index, 3>& face : set.faces) listed.insert(sorted_face(face));
     for (const Index t : set.tetrahedra) {
         const auto& [a, b, c, d] = tetrahedra[static_cast<std::size_t>(t)];
         for (const std::array<Index, 3>& face :
              {std::array{b, c, d}, std::array{a, c, d}, std::array{a, b, d}, std::array{a, b, c}})
-            of_tetrahedra.insert(sorted(face));
+            of_tetrahedra.insert(sorted_face(face));
     }
     for (const std::array<Index, 3>& face : surface) {
-        const std::array<Index, 3> nodes = sorted(face);
+        const std::array<Index, 3> nodes = sorted_face(face);
         if (!listed.contains(nodes) && (of_tetrahedra.contains(nodes) || has_all(set.nodes, face)))
             faces.push_back(face);
     }

@@ -1,6 +1,8 @@
 // Named sets of nodes, faces and tetrahedra: checks, and texts of error messages.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -9,6 +11,12 @@
 #include "skerry/mesh.h"
 
 namespace skerry::mesh {
+
+/// The nodes of a face in ascending order, by which faces are compared.
+inline std::array<Index, 3> sorted_face(std::array<Index, 3> face) {
+    std::ranges::sort(face);
+    return face;
+}
 
 /// Sorts the nodes and tetrahedra of a set and drops repeated numbers. Also drops faces that have the nodes of an
 /// earlier face.

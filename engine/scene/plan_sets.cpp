@@ -58,11 +58,6 @@ std::vector<std::array<Index, 3>> surface_of(const Mesh& mesh) {
     return surface;
 }
 
-std::array<Index, 3> sorted(std::array<Index, 3> face) {
-    std::ranges::sort(face);
-    return face;
-}
-
 /// Set with which the conditions of an entry begin: the union of other sets, the tetrahedra of a label, or all nodes.
 MeshSet first_set(const SetEntry& entry, const Mesh& mesh, const NamedSets& known) {
     MeshSet set;
@@ -91,8 +86,8 @@ MeshSet plan_set(const SetEntry& entry, const Mesh& mesh, const NamedSets& known
         const std::vector<std::array<Index, 3>> surface = surface_of(mesh);
         set = {.nodes = {}, .faces = mesh::faces_of(set, mesh.tetrahedra, surface), .tetrahedra = {}};
         std::set<std::array<Index, 3>> outside;
-        for (const std::array<Index, 3>& face : surface) outside.insert(sorted(face));
-        std::erase_if(set.faces, [&](const auto& face) { return !outside.contains(sorted(face)); });
+        for (const std::array<Index, 3>& face : surface) outside.insert(mesh::sorted_face(face));
+        std::erase_if(set.faces, [&](const auto& face) { return !outside.contains(mesh::sorted_face(face)); });
     }
     std::vector<Index> wanted;
     if (!entry.nodes.empty()) wanted = nodes_listed(mesh, entry.nodes, entry.place.key("nodes"));

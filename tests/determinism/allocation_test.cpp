@@ -169,7 +169,7 @@ TEST_CASE("a pile of balls on a cavity with gas allocates nothing, either", "[de
     Cavities cavities(world);
     const auto surface = world.surface(ball);
     const CavityHandle gas = cavities.add({.body = ball,
-                                           .faces = {surface.begin(), surface.begin() + 2},
+                                           .faces = std::vector(surface.begin(), surface.begin() + 2),
                                            .filling = GasFilling{.pressure = 10, .inflow = 1e-9},
                                            .volume = 1e-4});
     cavities.add({.first = gas, .conductance = 1e-12, .pressure = TimeTable({{0, 0}, {5, 20}})});

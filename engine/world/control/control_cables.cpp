@@ -64,7 +64,7 @@ CableDriveRow validated(const std::string& object, const CableDrive& drive) {
     return {CableControl::rate, &*drive.rate};
 }
 
-void wake_bodies(Model& model, std::size_t cable) {
+void wake_bodies_of_cable(Model& model, std::size_t cable) {
     for (const Index body : rows_of(model.cables.anchor.body, model.cables.points[cable]))
         if (body != no_index) model.wake(static_cast<std::size_t>(body));
 }
@@ -152,7 +152,7 @@ CableHandle Cables::add(const CableSettings& cable) {
     append_points(table, row, points);
     set_keys(table.keys, table.key, row, drive.values->keys);
     if (drive.control == CableControl::rate) table.released[row] = present_length(state, row);
-    wake_bodies(model, row);
+    wake_bodies_of_cable(model, row);
     model.links_open = true;
     note_forces(model);
     return handle;
@@ -163,7 +163,7 @@ void Cables::remove(CableHandle cable) {
     state.require_between_steps("remove_cable");
     Model& model = state.model;
     const auto row = static_cast<std::size_t>(model.row(cable, "remove_cable"));
-    wake_bodies(model, row);
+    wake_bodies_of_cable(model, row);
     std::vector<bool> gone(model.cables.size(), false);
     gone[row] = true;
     erase_joining_rows(gone, model.cables, model.cable_map);
@@ -226,7 +226,7 @@ void Cables::set_drive(CableHandle cable, const CableDrive& drive) {
         table.released[row] = present_length(state, row);
     table.control[row] = wanted.control;
     set_keys(table.keys, table.key, row, wanted.values->keys);
-    wake_bodies(model, row);
+    wake_bodies_of_cable(model, row);
     note_forces(model);
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/mesh/sets.h"
 #include "engine/world/complaint.h"
 #include "engine/world/edit/joining_rows.h"
 #include "engine/world/step/step.h"
@@ -77,11 +78,6 @@ Index body_of_field(const Model& model, const std::optional<BodyHandle>& body) {
     return body ? model.row(*body, "add_load") : no_index;
 }
 
-std::array<Index, 3> sorted(std::array<Index, 3> face) {
-    std::ranges::sort(face);
-    return face;
-}
-
 /// Throws SceneError if the list is empty, if a face is not on the surface of the body, or if it appears twice.
 void require_faces(std::span<const std::array<Index, 3>> faces, const Model& model, std::size_t body) {
     const std::string object = title_of_load(model, static_cast<Index>(body));
@@ -92,9 +88,9 @@ void require_faces(std::span<const std::array<Index, 3>> faces, const Model& mod
                "a body with a mesh");
     if (faces.empty()) refuse(object, "faces", "an empty list", "at least one face");
     std::set<std::array<Index, 3>> left;
-    for (const std::array<Index, 3>& face : record.surface) left.insert(sorted(face));
+    for (const std::array<Index, 3>& face : record.surface) left.insert(mesh::sorted_face(face));
     for (const std::array<Index, 3>& face : faces)
-        if (left.erase(sorted(face)) == 0)
+        if (left.erase(mesh::sorted_face(face)) == 0)
             refuse(object, "faces",
                    "the face of the nodes " + std::to_string(face[0]) + ", " + std::to_string(face[1]) + " and " +
                        std::to_string(face[2]),

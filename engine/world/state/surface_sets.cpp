@@ -1,16 +1,12 @@
 // Which surface features belong to which surface set (components/surface_rules.h).
 #include <algorithm>
 
+#include "engine/mesh/sets.h"
 #include "engine/world/state/model.h"
 
 namespace skerry {
 
 namespace {
-
-std::array<Index, 3> sorted(std::array<Index, 3> nodes) {
-    std::ranges::sort(nodes);
-    return nodes;
-}
 
 /// Sets the entries of the features of one body that belong to one set.
 class SetIndex {
@@ -76,13 +72,13 @@ std::vector<Index> Model::triangles_of(std::size_t body, std::span<const std::ar
         for (Index t = triangles.begin; t < triangles.end; ++t) {
             std::array<Index, 3> node = surface.triangles.node[static_cast<std::size_t>(t)];
             for (Index& n : node) n -= bodies.nodes[body].begin;
-            entries.push_back({sorted(node), t});
+            entries.push_back({mesh::sorted_face(node), t});
         }
     std::ranges::sort(entries, {}, &Entry::node);
     std::vector<Index> found;
     for (const std::array<Index, 3>& face : faces) {
-        const auto entry = std::ranges::lower_bound(entries, sorted(face), {}, &Entry::node);
-        found.push_back(entry != entries.end() && entry->node == sorted(face) ? entry->row : no_index);
+        const auto entry = std::ranges::lower_bound(entries, mesh::sorted_face(face), {}, &Entry::node);
+        found.push_back(entry != entries.end() && entry->node == mesh::sorted_face(face) ? entry->row : no_index);
     }
     return found;
 }
