@@ -102,7 +102,8 @@ TEST_CASE("loads, cavities and surfaces use nodes, faces and tetrahedra of a set
     CHECK(plan.bodies[0].surfaces[0].settings.faces.size() == 3);
     CHECK(plan.bodies[0].surfaces[0].settings.nodes == right);
     CHECK(std::get<TractionLoad>(plan.loads[0].load).faces.size() == 3);
-    CHECK(plan.cavities[0].settings.faces.size() == 3);
+    REQUIRE(plan.cavities[0].settings.faces.has_value());
+    CHECK(plan.cavities[0].settings.faces->size() == 3);
 }
 
 TEST_CASE("the tetrahedra of a set have the material of the set", "[unit]") {

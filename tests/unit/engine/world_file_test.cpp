@@ -376,7 +376,7 @@ TEST_CASE("a saved world with a pipe whose bodies or ends do not fit its cavitie
         const BodyHandle body =
             world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = material, .position = {x, 0, 0}});
         cavities.push_back(Cavities(world).add(
-            {.body = body, .faces = {world.surface(body)[0]}, .filling = GasFilling{}, .volume = 1e-3}));
+            {.body = body, .faces = std::vector{world.surface(body)[0]}, .filling = GasFilling{}, .volume = 1e-3}));
     }
     Cavities(world).add(PipeSettings{.first = cavities[0], .second = cavities[1], .conductance = 1e-9});
     Cavities(world).add(PipeSettings{.first = cavities[1], .conductance = 1e-9});
