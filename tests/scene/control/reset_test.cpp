@@ -261,7 +261,8 @@ TEST_CASE("handles of objects that were added after a clone become stale when th
     Cavities cavities(world);
     const auto add_gas = [&] {
         const auto faces = world.surface(cube.body);
-        return cavities.add({.body = cube.body, .faces = std::vector{faces[0]}, .filling = GasFilling{}, .volume = 1e-3});
+        return cavities.add(
+            {.body = cube.body, .faces = std::vector{faces[0]}, .filling = GasFilling{}, .volume = 1e-3});
     };
     stays_stale(cavities, add_gas);
     stays_stale(cavities, [&] { return cavities.add({.first = add_gas(), .conductance = 1e-9}); });
