@@ -1,8 +1,11 @@
-// Ties beside friction that depends on the direction, broken ties, and forces that begin during a long step.
+// Worlds in which joints, cables, ties and friction that depends on the direction act together, and forces that begin
+// during a long step.
 #include <catch2/catch.hpp>
+#include <string>
 #include <vector>
 
 #include "skerry/cable.h"
+#include "skerry/joint.h"
 #include "skerry/spring.h"
 #include "skerry/surface.h"
 #include "skerry/tie.h"
@@ -63,6 +66,32 @@ TEST_CASE("ties do not change directional friction elsewhere", "[scene][ties]") 
     CHECK((alone.world.center_of_mass(alone.lower) - with_ties.world.center_of_mass(with_ties.lower)).norm() < 1e-10);
     const Vec3 velocity = alone.world.velocity(alone.lower).velocity;
     CHECK(velocity.y() > velocity.x() + 0.1);  // friction across the direction is smaller
+}
+
+TEST_CASE("every solver method gives the same motion with each kind of row", "[scene][ties]") {
+    for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::rigid}) {
+        std::vector<Vec3> expected;
+        for (const auto& [method, name] : EnumNames<SolverMethod>::table) {
+            CAPTURE(static_cast<int>(dynamics), name);
+            Slider slider(method, dynamics, true, false);
+            World& world = slider.world;
+            const MaterialHandle of = world.add_material({});
+            const BodyHandle pendulum =
+                world.add_body(cube, {.material = of, .position = {2, 0, 2}, .dynamics = BodyDynamics::rigid});
+            const BodyHandle lamp =
+                world.add_body(cube, {.material = of, .position = {4, 0, 2}, .dynamics = BodyDynamics::rigid});
+            Joints(world).add({.first = pendulum, .point = {2.1, 0, 2}});
+            Cables(world).add(
+                {.points = {{.point = {4.1, 0, 3}}, {.body = lamp, .point = {4, 0, 2.05}}}, .drive = {.length = 0.95}});
+            REQUIRE(world.advance(0.02).ok());
+            CHECK(world.report().unconverged == 0);
+            std::vector<Vec3> now;
+            for (const BodyHandle body : {slider.lower, slider.upper, pendulum, lamp})
+                now.push_back(world.center_of_mass(body));
+            if (expected.empty()) expected = now;
+            for (std::size_t b = 0; b < now.size(); ++b) CHECK((now[b] - expected[b]).norm() < 1e-8);
+        }
+    }
 }
 
 TEST_CASE("a tie that has broken off everywhere no longer leads or limits its body", "[scene][ties]") {

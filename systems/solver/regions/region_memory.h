@@ -2,6 +2,7 @@
 // RegionTable::contacts, so the rows of a region are consecutive.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <memory>
@@ -56,9 +57,11 @@ inline std::size_t workspace_slots(SolverMethod method) {
     }
 }
 
-/// Number of workspace vectors for regions with rigid bodies. There the method `automatic` takes Newton steps.
+/// Number of workspace vectors for regions that BodyRegion solves. There the method `automatic` takes Newton steps, and
+/// regions with rows that only sweeps support use `ags` (BodyRegion::method).
 inline std::size_t body_workspace_slots(SolverMethod method) {
-    return workspace_slots(method == SolverMethod::automatic ? SolverMethod::newton : method);
+    return std::max(workspace_slots(SolverMethod::ags),
+                    workspace_slots(method == SolverMethod::automatic ? SolverMethod::newton : method));
 }
 
 struct RegionMemory {
