@@ -223,7 +223,7 @@ MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, Mate
 MaterialSettings mooney_rivlin(Real c10, Real c01, Real bulk_modulus, MaterialSettings base) {
     // mu_1 = 2 c10 with the exponent 2, mu_2 = -2 c01 with the exponent -2
     const std::array<OgdenTerm, 2> both{{{2 * c10, 2}, {-2 * c01, -2}}};
-    return ogden(std::span(both).first(c01 == 0 ? 1 : 2), bulk_modulus, std::move(base));
+    return ogden(std::span(both).first(c01 == 0 ? 1 : 2), bulk_modulus, base);
 }
 
 }  // namespace skerry

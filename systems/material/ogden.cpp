@@ -34,7 +34,7 @@ using Three = std::array<T, 3>;
 
 /// Terms of the law that several functions need: for each axis the limited stretch, and the limited volume ratio.
 template <class T>
-struct Shape {
+struct PrincipalShape {
     Three<Limited<T>> stretch;
     Limited<T> volume;
     Three<T> area;  // derivative of J by each stretch: product of the other two
@@ -42,7 +42,7 @@ struct Shape {
     Three<T> log_stretch;
     T log_volume;
 
-    Shape(const T& a, const T& b, const T& c)
+    PrincipalShape(const T& a, const T& b, const T& c)
         : stretch{limited(a, Ogden::least_stretch), limited(b, Ogden::least_stretch), limited(c, Ogden::least_stretch)},
           volume(limited(a * b * c, Ogden::least_volume)),
           area{b * c, c * a, a * b},
@@ -68,7 +68,7 @@ void for_each_term(const MaterialConstants& material, auto&& visit) {
 
 /// Derivatives of the energy without volume change by the stretches [Pa].
 template <class T>
-Three<T> principal_stress(const MaterialConstants& material, const Shape<T>& shape) {
+Three<T> principal_stress(const MaterialConstants& material, const PrincipalShape<T>& shape) {
     Three<T> W{};
     for_each_term(material, [&](Real factor, Real exponent) {
         const Three<T> t = shape.powers(exponent);
@@ -87,7 +87,8 @@ struct PrincipalTangent {
 };
 
 template <class T>
-PrincipalTangent<T> principal_tangent(const MaterialConstants& material, const Shape<T>& shape, const Three<T>& s) {
+PrincipalTangent<T> principal_tangent(const MaterialConstants& material, const PrincipalShape<T>& shape,
+                                      const Three<T>& s) {
     constexpr Real close = 1e-4;  // stretches that differ by less count as equal
     constexpr Real least = 1e-3;  // lower bound of the sum of two stretches; below it R is about to jump
     PrincipalTangent<T> H;
@@ -155,7 +156,7 @@ Three<T> stretches_of(const LaneAxes<T>& axes) {
     return {axes.stretch.x, axes.stretch.y, axes.stretch.z};
 }
 template <class T>
-Shape<T> shape_of(const LaneAxes<T>& axes) {
+PrincipalShape<T> shape_of(const LaneAxes<T>& axes) {
     return {axes.stretch.x, axes.stretch.y, axes.stretch.z};
 }
 
@@ -175,7 +176,7 @@ constexpr Real rounding = 1 + 1e-6;  // covers the error of equal stretches in p
 template <class T>
 LaneMat3<T> Ogden::stress(const MaterialConstants& material, const LaneMat3<T>& F) {
     const LaneAxes<T> axes = principal_axes(F);
-    const Shape<T> shape = shape_of(axes);
+    const PrincipalShape<T> shape = shape_of(axes);
     const Three<T> W = principal_stress(material, shape);
     const T pressure = bulk_modulus(material) * (shape.J - 1.0);
     return from_axes(axes, W[0] + pressure * shape.area[0], W[1] + pressure * shape.area[1],
@@ -196,7 +197,7 @@ T Ogden::energy_density(const MaterialConstants& material, const LaneMat3<T>& F)
 template <class T>
 T Ogden::stiffness_bound(const MaterialConstants& material, const LaneMat3<T>& F) {
     const LaneAxes<T> axes = principal_axes(F);
-    const Shape<T> shape = shape_of(axes);
+    const PrincipalShape<T> shape = shape_of(axes);
     const Three<T> s = stretches_of(axes);
     PrincipalTangent<T> H = principal_tangent(material, shape, s);
     const Real K = bulk_modulus(material);
@@ -300,7 +301,7 @@ Real Ogden::stiffness_bound(const MaterialConstants& material, const Mat3& F) {
 Tangent Ogden::tangent(const MaterialConstants& material, const Mat3& F) {
     const Stretches frames(F);
     const Vec3& s = frames.stretch;
-    const Shape<Real> shape(s[0], s[1], s[2]);
+    const PrincipalShape<Real> shape(s[0], s[1], s[2]);
     const PrincipalTangent<Real> H = principal_tangent(material, shape, {s[0], s[1], s[2]});
     const Real K = bulk_modulus(material), pressure = K * (shape.J - 1);
     const Vec3 area(shape.area[0], shape.area[1], shape.area[2]);

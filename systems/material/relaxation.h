@@ -77,7 +77,7 @@ struct ViscousStretch {
 /// Doubled strains of the springs of the Maxwell elements. The strain of a spring is the total strain minus the strain
 /// of its dashpot.
 template <class T>
-struct Springs {
+struct MaxwellSprings {
     std::array<LaneSymmetric<T>, maxwell_count> strain;
     T volume;
 
@@ -140,7 +140,7 @@ inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real rela
 
 /// Elastic energy density of the springs of all Maxwell elements [J/m^3].
 template <class T>
-T energy_density(const ViscousModuli& moduli, const Springs<T>& springs) {
+T energy_density(const ViscousModuli& moduli, const MaxwellSprings<T>& springs) {
     T sum = moduli.bulk * (springs.volume * springs.volume);
     for (const LaneSymmetric<T>& strain : springs.strain)
         sum = sum + (2 * moduli.mu) * inner_product(strain, strain) + moduli.lambda * (strain.trace() * strain.trace());
@@ -159,13 +159,13 @@ LaneSymmetric<T> stress(const ViscousModuli& moduli, const ViscousStretch<T>& st
 }
 
 /// Strains of the springs of a block in its present shape. `strain`: twice Green's strain in this shape.
-inline Springs<Real8> springs_in(const LaneSymmetric<Real8>& strain, const SpringStrain& last) {
+inline MaxwellSprings<Real8> springs_in(const LaneSymmetric<Real8>& strain, const SpringStrain& last) {
     const auto six_from = [&](std::size_t i) {
         return LaneSymmetric<Real8>{load_reals(last[i]),     load_reals(last[i + 1]), load_reals(last[i + 2]),
                                     load_reals(last[i + 3]), load_reals(last[i + 4]), load_reals(last[i + 5])};
     };
     const LaneSymmetric<Real8> change = strain - six_from(0);
-    Springs<Real8> springs;
+    MaxwellSprings<Real8> springs;
     for (std::size_t k = 0; k < maxwell_count; ++k) springs.strain[k] = six_from(6 + 6 * k) + change;
     springs.volume = load_reals(last[bulk_entry]) + change.trace();
     return springs;

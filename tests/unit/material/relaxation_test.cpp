@@ -25,9 +25,9 @@ Mat3 random_matrix(std::mt19937_64& random) {
 }
 
 /// Springs before any relaxation.
-Springs<Real> springs_of(const Mat3& F) {
+MaxwellSprings<Real> springs_of(const Mat3& F) {
     const LaneSymmetric<Real> strain = twice_green_strain(from_matrix(F));
-    Springs<Real> springs{{}, strain.trace()};
+    MaxwellSprings<Real> springs{{}, strain.trace()};
     springs.strain.fill(strain);
     return springs;
 }
