@@ -22,23 +22,27 @@ namespace {
 // that close within a step, and of contacts with rotating faces, grow with the step length.
 constexpr Real step_of_rigid_bodies = 1.0 / 120;
 
+/// Value of a bound by body; zero for a body that was added after the bounds were computed.
+Real bound_of(const Column<Real>& of_body, std::size_t body) {
+    return body < of_body.size() ? of_body[body] : 0;
+}
+
 }  // namespace
 
 Real step_of_body(const Model& model, std::size_t body) {
     Real step = model.bodies.stable_step[body];
     // Adds bounds of squared natural frequencies: 4 / step^2 for the elements, and `rate` for the force elements. The
     // largest eigenvalue of a sum of symmetric matrices is at most the sum of their largest eigenvalues.
-    if (const Real rate = model.force_rate.empty() ? 0 : model.force_rate[body]; rate > 0)
-        step = 2 / std::sqrt(4 / (step * step) + rate);
+    if (const Real rate = bound_of(model.force_rate, body); rate > 0) step = 2 / std::sqrt(4 / (step * step) + rate);
     const Index material = model.bodies.material[body];
     Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
-    if (!model.force_damping.empty()) damping += model.force_damping[body];
+    damping += bound_of(model.force_damping, body);
     // In each step, damping multiplies velocities by a factor k. A mode of the circular frequency omega is then stable
     // for step lengths h with omega h < sqrt(2 (1 + k)).
     // Half the bound of the squared product of frequency and step length: 1 + k, at most 2.
     const Real half = damping > 0 && std::isfinite(step) ? 1 + std::exp(-damping * step) : 2;
     step *= std::sqrt(half / 2);
-    const Real drag = model.force_drag.empty() ? 0 : model.force_drag[body];
+    const Real drag = bound_of(model.force_drag, body);
     if (!(drag > 0)) return step;
     // Forces -c m v reduce the factor k by c h. The condition (omega h)^2 < 2 (1 + k - c h) then is a quadratic
     // inequality for h. The bound 1/c keeps the decay free of oscillation in bodies that have no other limit.
