@@ -236,7 +236,7 @@ TEST_CASE("handles of objects that were added after a clone become stale when th
     CHECK_FALSE(cube.world.alive(plane));
     CHECK_FALSE(Joints(cube.world).alive(joint));
 
-    // The same for everything that acts on bodies.
+    // Handles of joints, ties, cables and other objects that act on bodies stay stale, too.
     World& world = cube.world;
     const auto stays_stale = [&](auto&& view, auto&& add_one) {
         const auto first = add_one();
