@@ -119,6 +119,7 @@ void for_each_setting(Is<JointSettings> auto& s, auto&& visit) {
     visit("kind", s.kind);
     visit("point", s.point);
     visit("axis", s.axis);
+    visit("coordinate", s.coordinate);
     visit("lower", s.lower);
     visit("upper", s.upper);
     visit("motor", s.motor);
@@ -226,7 +227,7 @@ static_assert(has_size<SurfaceSettings, 8>);
 static_assert(has_size<Pose, 6>);
 static_assert(has_size<MotionKey, 7>);
 static_assert(has_size<Motion, 6, std::vector<MotionKey>>);
-static_assert(has_size<JointSettings, 15, std::optional<JointMotor>, JointPassive>);
+static_assert(has_size<JointSettings, 16, std::optional<JointMotor>, JointPassive>);
 static_assert(has_size<JointPassive, 4>);
 static_assert(has_size<SpringSettings, 4, Anchor, Anchor, std::optional<TimeTable>>);
 static_assert(has_size<MotorKey, 5>);

@@ -150,6 +150,14 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         if (joint.second) settings.second = bodies[*joint.second];
         joints.push_back(called_at(joint.place, [&] { return Joints(world).add(settings); }));
     }
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        const JointPlan& joint = plan.joints[j];
+        if (!joint.mimic) continue;
+        const std::size_t leader = find_joint(plan, joint.mimic->joint, joint.place.key("mimic").key("joint"));
+        called_at(joint.place, [&] {
+            Joints(world).set_mimic(joints[j], JointMimic{joints[leader], joint.mimic->ratio, joint.mimic->offset});
+        });
+    }
     std::vector<TieHandle> ties;
     for (const TiePlan& tie : plan.ties) {
         TieSettings settings = tie.settings;

@@ -103,7 +103,8 @@ SurfacePlan plan_surface(const SurfaceEntry& entry, const Mesh& mesh, const std:
     return surface;
 }
 
-/// Returns the positions of all copies of a body.
+}  // namespace
+
 std::vector<Vec3> positions_of(const BodyEntry& entry) {
     std::vector<Vec3> positions = entry.positions;
     if (entry.repeat) {
@@ -120,6 +121,8 @@ std::vector<Vec3> positions_of(const BodyEntry& entry) {
     if (positions.empty()) positions.push_back(entry.position);
     return positions;
 }
+
+namespace {
 
 std::size_t find_material(const ScenePlan& plan, const std::string& wanted, const Place& place) {
     std::vector<std::string> names;
@@ -269,6 +272,7 @@ JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePla
     joint.settings.kind = entry.kind;
     joint.settings.point = entry.point;
     joint.settings.axis = entry.axis;
+    joint.settings.coordinate = entry.coordinate;
     joint.settings.lower = entry.lower;
     joint.settings.upper = entry.upper;
     joint.settings.passive = entry.passive;
@@ -280,6 +284,7 @@ JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePla
                                           .keys = entry.motor->keys};
         if (entry.motor->fastest) joint.settings.motor->fastest = *entry.motor->fastest;
     }
+    joint.mimic = entry.mimic;
     joint.place = entry.place;
     return joint;
 }

@@ -197,14 +197,20 @@ struct MotorEntry {
     Real strength = 0;
     std::optional<Real> fastest;
 };
+struct MimicEntry {
+    std::string joint;  // name of the leader
+    Real ratio = JointMimic{}.ratio, offset = JointMimic{}.offset;
+};
 struct JointEntry {
     std::string name;
     JointKind kind = JointKind::ball;
     std::string first;
     std::optional<std::string> second;
     Vec3 point = JointSettings{}.point, axis = JointSettings{}.axis;
+    Real coordinate = JointSettings{}.coordinate;
     std::optional<Real> lower, upper;
     std::optional<MotorEntry> motor;
+    std::optional<MimicEntry> mimic;
     JointPassive passive;
     bool bodies_touch = JointSettings{}.bodies_touch;
     Place place;
@@ -292,13 +298,22 @@ struct ProbeEntry {
     Place place;
 };
 
+/// A scene file that a scene includes. Without a name its content becomes a part of the scene as it is.
+struct IncludeEntry {
+    FilePath scene;
+    std::string name;              // stands in front of the names of all objects: NAME/OBJECT
+    Vec3 position = Vec3::Zero();  // pose of the frame of the included scene [m]
+    Rotation rotation;
+    Place place;
+};
+
 struct SceneFile {
     std::string schema;  // location of the JSON schema, used only by editors
     std::string name;
     std::string description;
     Real seconds = 2;
     Real frame_step = 1.0 / 60;
-    OneOrMore<FilePath> include;
+    OneOrMore<IncludeEntry> include;
     Settings settings;
     Named<MaterialSettings> materials;
     std::vector<PairEntry> pairs;

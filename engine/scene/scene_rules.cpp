@@ -376,6 +376,20 @@ const Rule<Settings>& rule_of<Settings>() {
 }
 
 template <>
+const Rule<IncludeEntry>& rule_of<IncludeEntry>() {
+    static const auto rule =
+        Rule<IncludeEntry>("include", "A scene whose objects are added with other names and at another place.")
+            .key("scene", &IncludeEntry::scene, {.meaning = "scene file", .required = true})
+            .key("name", &IncludeEntry::name,
+                 {.meaning = "name that stands in front of the names of all objects and materials, as in NAME/OBJECT, "
+                             "and NAME_PROBE for probes",
+                  .required = true})
+            .key("position", &IncludeEntry::position, {.meaning = "position of the frame of the scene", .unit = "m"})
+            .key("rotation", &IncludeEntry::rotation, {.meaning = "rotation of the frame of the scene"});
+    return rule;
+}
+
+template <>
 const Rule<SceneFile>& rule_of<SceneFile>() {
     static const auto rule =
         Rule<SceneFile>(
@@ -389,7 +403,7 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
                 {.meaning =
                      "scene files to read before this file. Their materials and the entries of their lists, such as "
                      "bodies, springs or probes, are added to those of this file; where both files set the same single "
-                     "value, this file takes precedence"})
+                     "value, this file takes precedence. Of a scene with a name, only the objects are added"})
             .key("seconds", &SceneFile::seconds,
                  {.meaning = "simulated time of a run; default: 2", .unit = "s", .limits = above(0)})
             .key("frame_step", &SceneFile::frame_step,

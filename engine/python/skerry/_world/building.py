@@ -246,6 +246,7 @@ class Building(CavityBuilding):
         *,
         point: VectorLike = (0.0, 0.0, 0.0),
         axis: VectorLike = (0.0, 0.0, 1.0),
+        coordinate: float = 0.0,
         lower: float | None = None,
         upper: float | None = None,
         motor: Motor | None = None,
@@ -255,7 +256,7 @@ class Building(CavityBuilding):
         """Joins two rigid bodies, or a rigid body and the world, in their present poses, and returns the joint.
 
         kind: "ball", "hinge", "slider" or "fixed". point: position of the joint (3,) [m]. axis: axis of a hinge or a
-        slider (3,). lower, upper: limits of its coordinate, which is 0 now [rad or m]. motor: motor on the axis.
+        slider (3,). coordinate: present coordinate; lower, upper: its limits [rad or m]. motor: motor on the axis.
         passive: spring, damper and dry friction on the axis. bodies_touch: True: the two bodies may collide.
         SceneError: a body is not rigid, or a value is out of range."""
         given = Arguments(
@@ -263,6 +264,7 @@ class Building(CavityBuilding):
             kind=kind,
             point=vector(point, "point"),
             axis=vector(axis, "axis"),
+            coordinate=real(coordinate, "coordinate"),
             lower=lower,
             upper=upper,
             motor=motor,
