@@ -66,6 +66,9 @@ void for_each_setting(Is<BodySettings> auto& s, auto&& visit) {
     visit("contact_distance", s.contact_distance);
     visit("self_contact", s.self_contact);
     visit("dynamics", s.dynamics);
+    visit("mass", s.mass);
+    visit("center_of_mass", s.center_of_mass);
+    visit("inertia", s.inertia);
     visit("collision_group", s.collision_group);
     visit("collision_mask", s.collision_mask);
     visit("element", s.element);
@@ -219,7 +222,7 @@ template <class Struct, std::size_t numbers, class... Parts>
 inline constexpr bool has_size = sizeof(Struct) == numbers * sizeof(Real) + (sizeof(Parts) + ... + 0);
 static_assert(has_size<Settings, 17>);
 static_assert(
-    has_size<BodySettings, 18, std::map<int, MaterialHandle>, std::map<std::string, MaterialHandle>, std::string>);
+    has_size<BodySettings, 34, std::map<int, MaterialHandle>, std::map<std::string, MaterialHandle>, std::string>);
 static_assert(has_size<MaterialSettings, 20>);
 static_assert(has_size<ColliderSettings, 16, Motion, std::string>);
 static_assert(has_size<LoadSettings, 2>);

@@ -83,7 +83,9 @@ BodyHandle add_mesh_body(const ScenePlan& plan, const BodyPlan& body, const Body
         return world.add_body(with_sets, settings);
     } catch (const SceneError&) {
         if (const std::filesystem::path& file = plan.mesh_files[body.mesh]; !file.empty())
-            mesh::require_positive(mesh, file.string());
+            mesh.triangles.empty()
+                ? mesh::require_positive(mesh, file.string())
+                : mesh::require_shells({mesh.nodes, mesh.triangles}, file.string(), settings.inertia.has_value());
         throw;
     }
 }

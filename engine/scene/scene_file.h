@@ -141,6 +141,9 @@ struct BodyEntry {
     std::optional<Real> contact_distance;
     bool self_contact = false;
     BodyDynamics dynamics = BodySettings{}.dynamics;
+    std::optional<Real> mass;
+    std::optional<Vec3> center_of_mass;
+    std::optional<std::array<Vec3, 3>> inertia;
     std::uint32_t collision_group = BodySettings{}.collision_group, collision_mask = BodySettings{}.collision_mask;
     ElementKind element = BodySettings{}.element;
     OneOrMore<PinEntry> pin;

@@ -153,7 +153,8 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
     static const auto rule =
         Rule<BodyEntry>("body", "A body. The mesh is first rotated about its origin and then moved to the position.")
             .key("name", &BodyEntry::name, {.meaning = "name in messages, output and probes; default: body_NUMBER"})
-            .key("mesh", &BodyEntry::mesh, {.meaning = "tetrahedral mesh of the body"})
+            .key("mesh", &BodyEntry::mesh,
+                 {.meaning = "mesh of the body: tetrahedra, or for a rigid body also a closed surface"})
             .key("shape", &BodyEntry::shape,
                  {.meaning = "shape of a rigid body without a mesh; \"dynamics\" may be left out or \"rigid\""})
             .key("material", &BodyEntry::material, {.meaning = "name of one of the materials", .required = true})
@@ -184,6 +185,16 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
                       "predicted cost; otherwise explicit; "
                       "\"explicit\": any deformation, short steps; \"implicit\": small deformation, any step size, for "
                       "stiff bodies; \"rigid\": no deformation, with the mass and inertia of the mesh"})
+            .key("mass", &BodyEntry::mass,
+                 {.meaning = "mass of a rigid body; default: by density. It scales the inertia of the mesh unless "
+                             "\"center_of_mass\" and \"inertia\" are given, too",
+                  .unit = "kg",
+                  .limits = above(0)})
+            .key("center_of_mass", &BodyEntry::center_of_mass,
+                 {.meaning = "centre of mass of a rigid body in the frame of the mesh", .unit = "m"})
+            .key("inertia", &BodyEntry::inertia,
+                 {.meaning = "inertia tensor about the centre of mass in the frame of the mesh, by rows",
+                  .unit = "kg m^2"})
             .key("collision_group", &BodyEntry::collision_group, group_doc)
             .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
             .key("element", &BodyEntry::element, {.meaning = "type of the elements that carry the stress"})
