@@ -43,6 +43,16 @@ struct JointPassiveRow {
 template <>
 struct NumbersOf<JointPassiveRow> : Reals<4> {};
 
+/// Linear relation between the coordinates of two joints: q = ratio q_leader + offset.
+struct MimicRow {
+    Real ratio = 1;   // without unit, or [m/rad] or [rad/m] if a hinge and a slider are coupled
+    Real offset = 0;  // [rad or m]
+
+    bool operator==(const MimicRow&) const = default;
+};
+template <>
+struct NumbersOf<MimicRow> : Reals<2> {};
+
 /// Parts of the impulse along the axis that the motor, and the spring, damper and friction, exert [N s or N m s].
 struct AxisImpulses {
     Real motor = 0, passive = 0;
@@ -58,8 +68,7 @@ struct JointFrame {
 template <>
 struct NumbersOf<JointFrame> : Reals<12> {};
 
-/// One row per joint. The joint coordinate is the angle of a hinge [rad] or the displacement of a slider [m]. The
-/// coordinate is zero when the joint is created.
+/// One row per joint. The joint coordinate is the angle of a hinge [rad] or the displacement of a slider [m].
 struct JointTable {
     Column<std::uint32_t> slot;
     Column<JointKind> kind;
@@ -72,6 +81,9 @@ struct JointTable {
     Column<JointMotorRow> motor;
     Column<JointPassiveRow> passive;
     Column<Range> motor_keys;  // range of rows in the column `key`; empty: the target of the motor is constant
+    Column<Index> leader;      // row of the joint that this joint mimics; no_index if it mimics none
+    Column<MimicRow> mimic;
+    Column<Real> mimic_impulse;  // impulse of the mimic row along the axis in the last step [N s or N m s]
     // Joint coordinate at the start of the last step. The angle of a hinge includes complete revolutions.
     Column<Real> coordinate;
     // Impulse and angular impulse of the joint on the first body in the last step, in the joint frame of the second
@@ -85,6 +97,11 @@ struct JointTable {
 
     std::span<const TimeKey> keys_of(std::size_t joint) const { return rows_of(key.span(), motor_keys[joint]); }
     void erase_keys_of(std::size_t joint) { erase_keys(motor_keys, key, joint); }
+    /// Renumbers `leader` after rows were erased. `row_now`: new row by old row; no_index for erased rows.
+    void rows_moved(std::span<const Index> row_now) {
+        for (Index& row : leader.span())
+            if (row != no_index) row = row_now[static_cast<std::size_t>(row)];
+    }
 
     /// Visits the columns with one row per joint. The column `key` is visited by for_each_column only.
     void for_each_row_column(auto&& visit) {
@@ -101,6 +118,9 @@ struct JointTable {
         visit("motor", motor, ColumnRole::state);
         visit("passive", passive, ColumnRole::state);
         visit("motor_keys", motor_keys, ColumnRole::link);
+        visit("leader", leader, ColumnRole::link);
+        visit("mimic", mimic, ColumnRole::state);
+        visit("mimic_impulse", mimic_impulse, ColumnRole::state);
         visit("coordinate", coordinate, ColumnRole::state);
         visit("impulse", impulse, ColumnRole::state);
         visit("moment", moment, ColumnRole::state);
@@ -126,6 +146,15 @@ struct AxisLaw {
     Real kick = 0;  // time for which forces act in this step [s]
 };
 
+/// Share of a block in a mimic row. A mimic row is one equation for the axes of two joints, c u + c_leader u_leader =
+/// 0. It has two adjacent blocks, first that of the joint that mimics, then that of its leader. Only their third
+/// equations are used.
+struct MimicShare {
+    Real coefficient = 0;         // c of the block; 0: the block belongs to no mimic row
+    bool leads = false;           // true for the block of the leader
+    Index other_node = no_index;  // a node that impulses of the other block can move; no_index if there is none
+};
+
 /// Three constraint equations of one joint in this step. They constrain either the relative velocity at the joint point
 /// or the relative angular velocity of the two bodies. Impulses in the equations act on the first body.
 struct JointBlock {
@@ -137,9 +166,20 @@ struct JointBlock {
     Mat3 frame;                     // columns: directions of the three equations
     Vec3 error;                     // position error of the joint along the locked directions [m or rad]
     AxisLaw axis;
+    MimicShare mimic{};
+
+    /// A node of a body of the block that impulses can move; no_index if there is none.
+    Index own_node() const { return first_node == no_index ? second_node : first_node; }
+    /// A node that impulses of the block, or of the other block of its mimic row, can move.
+    Index moving_node() const { return own_node() == no_index ? mimic.other_node : own_node(); }
+    /// Joins the nodes whose impulses the block couples. `join(a, b)` joins two nodes.
+    void join_nodes(auto&& join) const {
+        if (first_node != no_index && second_node != no_index) join(first_node, second_node);
+        if (own_node() != no_index && mimic.other_node != no_index) join(own_node(), mimic.other_node);
+    }
 };
 
-/// Blocks of all joints, in joint order. The blocks of one joint are adjacent.
+/// Blocks of all joints, in joint order, then the blocks of mimic rows. The blocks of one joint are adjacent.
 struct JointBlockTable {
     Column<JointBlock> block;
     // Impulses of the three equations of each block; before the solve: the warm start [N s or N m s].

@@ -19,10 +19,13 @@ using Edge = std::pair<Index, Index>;  // nodes of an edge, the lower number fir
 
 std::vector<Edge> unique_edges(const Mesh& mesh) {
     std::vector<Edge> edges;
-    edges.reserve(6 * mesh.tetrahedra.size());
+    edges.reserve(6 * mesh.tetrahedra.size() + 3 * mesh.triangles.size());
     for (const std::array<Index, 4>& t : mesh.tetrahedra)
         for (std::size_t a = 0; a < 4; ++a)
             for (std::size_t b = a + 1; b < 4; ++b) edges.emplace_back(std::minmax(t[a], t[b]));
+    for (const auto& [a, b, c] : mesh.triangles)
+        for (const Edge& edge : {Edge(std::minmax(a, b)), Edge(std::minmax(b, c)), Edge(std::minmax(c, a))})
+            edges.push_back(edge);
     std::vector<Edge> spare;
     const auto node_count = static_cast<Index>(mesh.nodes.size());
     counting_sort(edges, spare, node_count, [](const Edge& edge) { return edge.second; });
@@ -85,7 +88,8 @@ MeshReport inspect(const Mesh& mesh) {
         report.lower = report.lower.cwiseMin(node);
         report.upper = report.upper.cwiseMax(node);
     }
-    const std::vector<BoundaryTriangle> triangles = boundary_triangles(mesh.tetrahedra);
+    std::vector<BoundaryTriangle> triangles = boundary_triangles(mesh.tetrahedra);
+    for (const std::array<Index, 3>& triangle : mesh.triangles) triangles.push_back({triangle, no_index});
     report.boundary_triangles = triangles.size();
     report.labels = mesh::count_labels(mesh);
     for (const auto& [name, set] : mesh.sets)
@@ -95,6 +99,9 @@ MeshReport inspect(const Mesh& mesh) {
     report.components = mesh::count_parts(mesh);
     measure_edges(mesh, report);
     measure_tetrahedra(mesh, report);
+    // By the divergence theorem, the enclosed volume is a sum over the tetrahedra that one node forms with the
+    // triangles.
+    for (const auto& [a, b, c] : mesh.triangles) report.volume += mesh::six_volumes(mesh, {0, a, b, c}) / 6;
     return report;
 }
 

@@ -43,8 +43,30 @@ std::size_t count_parts(const Mesh& mesh) {
     parts.start(mesh.nodes.size());
     for (const std::array<Index, 4>& t : mesh.tetrahedra)
         for (const Index n : t) parts.join(t[0], n);
+    for (const std::array<Index, 3>& t : mesh.triangles)
+        for (const Index n : t) parts.join(t[0], n);
     for (const std::array<Index, 4>& t : mesh.tetrahedra) parts.number(t[0]);
+    for (const std::array<Index, 3>& t : mesh.triangles) parts.number(t[0]);
     return static_cast<std::size_t>(parts.number_count);
+}
+
+std::string open_edge(std::span<const BoundaryTriangle> surface) {
+    const std::vector<Side> sides = sides_of(surface);
+    std::string fault;  // the first one
+    std::size_t count = 0;
+    for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+        std::array<std::size_t, 2> in_direction{};
+        for (; last < sides.size() && sides[last].node == sides[first].node; ++last) {
+            const auto [low, high] = sides[last].corner;
+            ++in_direction[low % 3 == (high + 1) % 3 ? 1 : 0];
+        }
+        if (in_direction[0] != in_direction[1] && count++ == 0)
+            fault = "an edge between nodes " + std::to_string(sides[first].node[0]) + " and " +
+                    std::to_string(sides[first].node[1]) + " that " + std::to_string(in_direction[0]) +
+                    (in_direction[0] == 1 ? " triangle has" : " triangles have") + " in one direction and " +
+                    std::to_string(in_direction[1]) + " in the other";
+    }
+    return count > 1 ? fault + " (" + std::to_string(count) + " such edges in total)" : fault;
 }
 
 std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {

@@ -34,7 +34,9 @@ RawMesh read_raw(const std::string& path, bool surface) {
                   extension.empty() ? "no extension" : "the extension " + extension,
                   surface ? "the extension .msh, .vtk, .vtu, .node, .ele, .obj or .stl"
                           : "the extension .msh, .vtk, .vtu, .node or .ele",
-                  "export the mesh in one of these formats"}
+                  extension == ".obj" || extension == ".stl"
+                      ? "a body that deforms needs tetrahedra; a rigid body or a collider needs only a surface"
+                      : "export the mesh in one of these formats"}
             .raise();
     FileReader reader(path);
     if (extension == ".msh") return read_gmsh(reader);
@@ -169,9 +171,9 @@ Mesh read(const std::string& path, std::vector<std::string>* notes) {
     return take_tetrahedra(path, raw, notes);
 }
 
-SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes) {
-    RawMesh raw = read_raw(path, true);
-    if (!raw.tetrahedra.empty()) return boundary(take_tetrahedra(path, raw, notes));
+namespace {
+
+SurfaceMesh take_triangles(const std::string& path, RawMesh& raw) {
     if (raw.curved_triangles > 0)
         Complaint{path,
                   {},
@@ -192,6 +194,20 @@ SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* note
     surface.nodes = drop_unused(raw.nodes, raw.triangles).nodes;
     surface.triangles = std::move(raw.triangles);
     return surface;
+}
+
+}  // namespace
+
+SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes) {
+    RawMesh raw = read_raw(path, true);
+    return raw.tetrahedra.empty() ? take_triangles(path, raw) : boundary(take_tetrahedra(path, raw, notes));
+}
+
+Mesh read_rigid(const std::string& path, std::vector<std::string>* notes) {
+    RawMesh raw = read_raw(path, true);
+    if (!raw.tetrahedra.empty()) return take_tetrahedra(path, raw, notes);
+    SurfaceMesh surface = take_triangles(path, raw);
+    return {.nodes = std::move(surface.nodes), .tetrahedra = {}, .triangles = std::move(surface.triangles)};
 }
 
 }  // namespace skerry::mesh

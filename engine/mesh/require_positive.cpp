@@ -1,9 +1,17 @@
 #include "engine/mesh/require_positive.h"
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
+#include <vector>
 
+#include "components/union_find.h"
+#include "engine/mesh/manifold_fault.h"
 #include "engine/mesh/tetrahedron.h"
 #include "skerry/error.h"
+#include "systems/collision/tree/box.h"
+#include "systems/collision/tree/box_tree.h"
+#include "systems/geometry/passes_through.h"
 
 namespace skerry::mesh {
 
@@ -26,6 +34,107 @@ void require_positive(const Mesh& mesh, const std::string& what) {
     hint << "inverted: " << inverted << ", flat: " << flat << " of " << mesh.tetrahedra.size()
          << " tetrahedra, numbered from 0; repair the mesh with skerry inspect MESH --repair OUT.msh";
     Complaint{what, object.str(), "rest volume", found.str(), "a positive volume", hint.str()}.raise();
+}
+
+namespace {
+
+/// A part of a surface: triangles that common nodes connect.
+struct Shell {
+    Vec3 lower = Vec3::Constant(infinity), upper = Vec3::Constant(-infinity);  // bounding box [m]
+    Real volume = 0;                                                           // [m^3]
+    Index node = no_index;                                                     // one of its nodes
+
+    bool encloses(const Shell& other) const {
+        return volume > 0 && (lower.array() <= other.lower.array()).all() &&
+               (other.upper.array() <= upper.array()).all();
+    }
+};
+
+std::vector<Shell> shells_of(const SurfaceMesh& surface) {
+    UnionFind parts;
+    parts.start(surface.nodes.size());
+    for (const std::array<Index, 3>& triangle : surface.triangles)
+        for (const Index n : triangle) parts.join(triangle[0], n);
+    std::vector<Shell> shells;
+    for (const std::array<Index, 3>& triangle : surface.triangles) {
+        const auto number = static_cast<std::size_t>(parts.number(triangle[0]));
+        if (number == shells.size()) shells.emplace_back().node = triangle[0];
+        Shell& shell = shells[number];
+        Mat3 corners;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3& x = surface.nodes[static_cast<std::size_t>(triangle[k])];
+            corners.col(static_cast<Index>(k)) = x - surface.nodes[static_cast<std::size_t>(shell.node)];
+            shell.lower = shell.lower.cwiseMin(x);
+            shell.upper = shell.upper.cwiseMax(x);
+        }
+        shell.volume += corners.determinant() / 6;
+    }
+    return shells;
+}
+
+/// True if an edge of the first triangle passes through the second one, more than by rounding errors.
+bool passes(const SurfaceMesh& surface, const std::array<Index, 3>& first, const std::array<Index, 3>& second) {
+    constexpr Real rounding = 1e-6;  // least height of an end above the plane, relative to the length of the edge
+    const auto at = [&](Index n) -> const Vec3& { return surface.nodes[static_cast<std::size_t>(n)]; };
+    const Vec3 &a = at(second[0]), &b = at(second[1]), &c = at(second[2]), normal = (b - a).cross(c - a);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 &p = at(first[k]), &q = at(first[(k + 1) % 3]);
+        const Real least = rounding * (q - p).norm() * normal.norm();
+        if (std::abs(normal.dot(p - a)) > least && std::abs(normal.dot(q - a)) > least && passes_through(p, q, a, b, c))
+            return true;
+    }
+    return false;
+}
+
+/// Describes the first two triangles that cross, or returns an empty text.
+std::string crossing_of(const SurfaceMesh& surface) {
+    std::vector<Aabb> boxes(surface.triangles.size(), empty_box());
+    for (std::size_t t = 0; t < boxes.size(); ++t)
+        for (const Index n : surface.triangles[t]) grow(boxes[t], surface.nodes[static_cast<std::size_t>(n)]);
+    const BoxTree tree(boxes);
+    std::string found;
+    for (std::size_t t = 0; t < boxes.size() && found.empty(); ++t)
+        tree.for_each_overlap(boxes[t], [&](Index other) {
+            if (found.empty() &&
+                passes(surface, surface.triangles[t], surface.triangles[static_cast<std::size_t>(other)]))
+                found = "triangles " + std::to_string(t) + " and " + std::to_string(other) + ", which cross";
+        });
+    return found;
+}
+
+}  // namespace
+
+void require_shells(const SurfaceMesh& surface, const std::string& what, bool may_cross) {
+    std::vector<BoundaryTriangle> triangles;
+    for (const std::array<Index, 3>& triangle : surface.triangles) triangles.push_back({triangle, no_index});
+    if (const std::string fault = open_edge(triangles); !fault.empty())
+        Complaint{what, "mesh", "triangles", fault, "a closed surface", "close the holes of the surface"}.raise();
+    const std::vector<Shell> shells = shells_of(surface);
+    for (const Shell& shell : shells) {
+        constexpr Real flat = 1e-12;  // rounding error of the volume, relative to the cube of the size
+        const Real size = (shell.upper - shell.lower).maxCoeff();
+        const auto around = [&](const Shell& other) { return other.encloses(shell); };
+        if (shell.volume > flat * size * size * size || (shell.volume < 0 && std::ranges::any_of(shells, around)))
+            continue;
+        std::ostringstream found;
+        found << shell.volume << " m^3 inside the shell at node " << shell.node;
+        Complaint{what,
+                  "mesh",
+                  "triangles",
+                  found.str(),
+                  "a positive volume",
+                  "triangles must be counter-clockwise as seen from outside: reverse the order of their nodes"}
+            .raise();
+    }
+    if (may_cross) return;
+    if (const std::string found = crossing_of(surface); !found.empty())
+        Complaint{what,
+                  "mesh",
+                  "triangles",
+                  found,
+                  "triangles that do not cross",
+                  "or give mass, center_of_mass and inertia, because volumes that overlap count twice"}
+            .raise();
 }
 
 }  // namespace skerry::mesh

@@ -37,7 +37,7 @@ void tidy(MeshSet& set) {
 }
 
 void require_set(const std::string& object, const std::string& name, const MeshSet& set, std::size_t node_count,
-                 std::span<const std::array<Index, 4>> tetrahedra) {
+                 std::span<const std::array<Index, 4>> tetrahedra, std::span<const std::array<Index, 3>> surface) {
     const auto require = [&](Index number, std::size_t count, const char* kind) {
         if (number < 0 || number >= static_cast<Index>(count))
             refuse_set(object, name, std::string(kind) + " " + std::to_string(number),
@@ -46,13 +46,16 @@ void require_set(const std::string& object, const std::string& name, const MeshS
     for (const Index n : set.nodes) require(n, node_count, "node");
     for (const Index t : set.tetrahedra) require(t, tetrahedra.size(), "tetrahedron");
     if (set.faces.empty()) return;
-    const std::vector<TetrahedronFace> faces = sorted_faces(tetrahedra);
+    std::vector<std::array<Index, 3>> faces;
+    for (const TetrahedronFace& face : sorted_faces(tetrahedra)) faces.push_back(face.node);
+    for (const std::array<Index, 3>& triangle : surface) faces.push_back(sorted_face(triangle));
+    std::ranges::sort(faces);
     for (const std::array<Index, 3>& face : set.faces)
-        if (!std::ranges::binary_search(faces, sorted_face(face), {}, &TetrahedronFace::node))
+        if (!std::ranges::binary_search(faces, sorted_face(face)))
             refuse_set(object, name,
                        "a face with the nodes " + std::to_string(face[0]) + ", " + std::to_string(face[1]) + " and " +
                            std::to_string(face[2]),
-                       "the nodes of a face of a tetrahedron");
+                       "the nodes of a face of a tetrahedron or of the surface");
 }
 
 std::size_t match_faces(std::span<const std::array<Index, 4>> tetrahedra, std::map<std::string, MeshSet>& sets) {

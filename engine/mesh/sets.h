@@ -23,9 +23,9 @@ inline std::array<Index, 3> sorted_face(std::array<Index, 3> face) {
 void tidy(MeshSet& set);
 
 /// Throws SceneError that names `object` and the set if a number is out of range, or if a listed face is not a face of
-/// the tetrahedra.
+/// the tetrahedra or of the surface.
 void require_set(const std::string& object, const std::string& name, const MeshSet& set, std::size_t node_count,
-                 std::span<const std::array<Index, 4>> tetrahedra);
+                 std::span<const std::array<Index, 4>> tetrahedra, std::span<const std::array<Index, 3>> surface = {});
 
 /// Reverses listed faces that are boundary triangles with the opposite orientation, and drops triangles that are not
 /// faces of the tetrahedra. Returns the number of dropped triangles.

@@ -8,13 +8,21 @@ namespace skerry {
 
 namespace {
 
-/// Returns the material of each tetrahedron of a body.
+/// Returns the material of each cell of a body.
 std::vector<Index> materials_of(const World& world, BodyHandle body) {
     const Model& model = WorldAccess::state_of(world).model;
     const auto row = static_cast<std::size_t>(model.row(body, "frame"));
     const BodyRecord& record = model.body_records[row];
     if (!record.tetrahedron_material.empty()) return record.tetrahedron_material;
-    return std::vector<Index>(record.tetrahedra.size(), model.bodies.material[row]);
+    return std::vector<Index>(record.tetrahedra.empty() ? record.surface.size() : record.tetrahedra.size(),
+                              model.bodies.material[row]);
+}
+
+/// Returns a value for each cell of a body, given those of its tetrahedra. A body without tetrahedra is rigid, and its
+/// cells have the value zero.
+std::vector<Mat3> values_of_cells(std::vector<Mat3> of_tetrahedra, const BodyFrame& body) {
+    of_tetrahedra.resize(body.count_cells(), Mat3::Zero());
+    return of_tetrahedra;
 }
 
 }  // namespace
@@ -33,17 +41,19 @@ Frame collect_frame(const World& world) {
     });
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const BodyHandle body = bodies[b];
-        frame.bodies.push_back({.handle = body,
-                                .name = world.name(body),
-                                .position = world.positions(body),
-                                .velocity = world.velocities(body),
-                                .surface = world.surface(body),
-                                .tetrahedra = world.tetrahedra(body),
-                                .stress = world.stress(body),
-                                .strain = world.strain(body),
-                                .node_stress = std::move(fields[b].stress),
-                                .node_strain = std::move(fields[b].strain),
-                                .material = materials_of(world, body)});
+        BodyFrame& of_body = frame.bodies.emplace_back(BodyFrame{.handle = body,
+                                                                 .name = world.name(body),
+                                                                 .position = world.positions(body),
+                                                                 .velocity = world.velocities(body),
+                                                                 .surface = world.surface(body),
+                                                                 .tetrahedra = world.tetrahedra(body),
+                                                                 .stress = {},
+                                                                 .strain = {},
+                                                                 .node_stress = std::move(fields[b].stress),
+                                                                 .node_strain = std::move(fields[b].strain),
+                                                                 .material = materials_of(world, body)});
+        of_body.stress = values_of_cells(world.stress(body), of_body);
+        of_body.strain = values_of_cells(world.strain(body), of_body);
     }
     for (const ColliderHandle collider : world.colliders())
         frame.colliders.push_back({.handle = collider,

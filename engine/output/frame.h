@@ -19,12 +19,16 @@ struct BodyFrame {
     std::span<const Vec3> velocity;  // by node [m/s]
     // Corners of the boundary triangles, as indices of `position`.
     std::span<const std::array<Index, 3>> surface;
-    // Corners of the tetrahedra, as indices of `position`.
+    // Corners of the tetrahedra, as indices of `position`. The cells of a body are its tetrahedra, or the triangles of
+    // `surface` if it has none.
     std::span<const std::array<Index, 4>> tetrahedra;
-    std::vector<Mat3> stress, strain;            // values by tetrahedron: Cauchy stress [Pa] and Green strain
+    std::vector<Mat3> stress, strain;            // values by cell: Cauchy stress [Pa] and Green strain
     std::vector<Mat3> node_stress, node_strain;  // values by node: Cauchy stress [Pa] and Green strain
-    // Material number of each tetrahedron. Materials are numbered in the order in which they were added.
+    // Material number of each cell. Materials are numbered in the order in which they were added.
     std::vector<Index> material{};
+
+    std::size_t count_cells() const { return tetrahedra.empty() ? surface.size() : tetrahedra.size(); }
+    std::size_t corners_of_cell() const { return tetrahedra.empty() ? 3 : 4; }
 };
 
 struct ColliderFrame {

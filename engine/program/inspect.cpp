@@ -30,7 +30,8 @@ constexpr std::size_t longest_list = 300;  // maximum length of a list of names 
 /// Report on all bodies that have the same mesh, materials, elements and dynamics, and therefore the same stable step.
 struct BodyKindReport {
     std::string first_name;
-    // Name of each material of the bodies, and number of tetrahedra of this material (always above 0).
+    // Name of each material of the bodies, and number of tetrahedra of this material. The number is above 0 unless the
+    // bodies have no tetrahedra.
     std::vector<std::pair<std::string, std::size_t>> materials;
     std::size_t count = 0;
     std::size_t body = 0;  // index in ScenePlan::bodies of the first of these bodies
@@ -58,7 +59,7 @@ std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan
     }
     std::vector<std::pair<std::string, std::size_t>> named;
     for (const auto& [material, tetrahedra] : count)
-        if (tetrahedra > 0) named.emplace_back(plan.materials[material].first, tetrahedra);
+        if (tetrahedra > 0 || mesh.tetrahedra == 0) named.emplace_back(plan.materials[material].first, tetrahedra);
     return named;
 }
 
@@ -108,7 +109,9 @@ std::string shape_text(const BodyPlan& body, const BodyKindReport& kind) {
     if (const auto& cylinder = body.shape.cylinder)
         return "a cylinder of radius " + with_unit(cylinder->radius, "m") + " and height " +
                with_unit(cylinder->height, "m") + " (" + how + ")";
-    return grouped(kind.mesh.tetrahedra) + " tetrahedra (" + how + "), mean edge " +
+    const bool is_surface = kind.mesh.tetrahedra == 0;
+    return grouped(is_surface ? kind.mesh.boundary_triangles : kind.mesh.tetrahedra) +
+           (is_surface ? " triangles (" : " tetrahedra (") + how + "), mean edge " +
            with_unit(kind.mesh.mean_edge, "m");
 }
 

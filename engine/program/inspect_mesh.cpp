@@ -6,7 +6,6 @@
 #include <iostream>
 #include <optional>
 
-#include "engine/mesh/manifold_fault.h"
 #include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
 #include "engine/program/start_text.h"
@@ -130,52 +129,29 @@ int report_mesh(const InspectOptions& options, const Mesh& mesh, const std::vect
     return exit_ok;
 }
 
-/// Statistics of a triangle surface.
-struct SurfaceReport {
-    Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // bounding box [m]
-    Real area = 0;                                    // [m^2]
-    Real volume = 0;  // enclosed volume, negative if the triangles are clockwise as seen from outside [m^3]
-    Real shortest = 0, longest = 0;  // lengths of the sides of the triangles [m]
-    std::string fault;               // first violation of a closed manifold; empty if there is none
-};
-
-SurfaceReport report_of(const SurfaceMesh& surface) {
-    SurfaceReport report;
-    report.lower = report.upper = surface.nodes.front();
-    for (const Vec3& node : surface.nodes) {
-        report.lower = report.lower.cwiseMin(node);
-        report.upper = report.upper.cwiseMax(node);
+Real area_of(const SurfaceMesh& surface) {
+    Real area = 0;
+    for (const auto& [a, b, c] : surface.triangles) {
+        const auto from_a = [&, first = a](Index n) -> Vec3 {
+            return surface.nodes[static_cast<std::size_t>(n)] - surface.nodes[static_cast<std::size_t>(first)];
+        };
+        area += from_a(b).cross(from_a(c)).norm() / 2;
     }
-    report.shortest = infinity;
-    std::vector<BoundaryTriangle> triangles;
-    for (const std::array<Index, 3>& triangle : surface.triangles) {
-        triangles.push_back({triangle, no_index});
-        std::array<Vec3, 3> x;
-        for (std::size_t k = 0; k < 3; ++k)
-            x[k] = surface.nodes[static_cast<std::size_t>(triangle[k])] - surface.nodes.front();
-        report.area += (x[1] - x[0]).cross(x[2] - x[0]).norm() / 2;
-        report.volume += x[0].dot(x[1].cross(x[2])) / 6;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Real side = (x[(k + 1) % 3] - x[k]).norm();
-            report.shortest = std::min(report.shortest, side);
-            report.longest = std::max(report.longest, side);
-        }
-    }
-    report.fault = mesh::manifold_fault(triangles);
-    return report;
+    return area;
 }
 
-/// Reports a surface of triangles, from which a collider can be made.
+/// Reports a surface of triangles, from which a collider or a rigid body can be made.
 int report_surface(const InspectOptions& options, const SurfaceMesh& surface) {
-    const SurfaceReport report = report_of(surface);
+    const MeshReport report = inspect({.nodes = surface.nodes, .tetrahedra = {}, .triangles = surface.triangles});
+    const Real area = area_of(surface);
     Problems problems;
-    if (!report.fault.empty())
-        problems.push_back("the surface is not a closed manifold: " + report.fault +
+    if (!report.closed_manifold)
+        problems.push_back("the surface is not a closed manifold: " + report.boundary_fault +
                            "; contacts may fail there, and the surface cannot be filled with tetrahedra");
     else if (report.volume < 0)
         problems.push_back(
             "the triangles are clockwise as seen from outside: a collider of this surface holds bodies inside, as a "
-            "container; for a solid collider reverse the order of their nodes");
+            "container; for a solid collider or a rigid body reverse the order of their nodes");
     if (options.json) {
         const Json json = {{"schema", "skerry.surface/1"},
                            {"file", options.file.string()},
@@ -183,23 +159,26 @@ int report_surface(const InspectOptions& options, const SurfaceMesh& surface) {
                            {"triangles", surface.triangles.size()},
                            {"lower", vector_json(report.lower)},
                            {"upper", vector_json(report.upper)},
-                           {"area", report.area},
-                           {"volume", report.fault.empty() ? Json(report.volume) : Json()},
-                           {"edge", {{"min", report.shortest}, {"max", report.longest}}},
-                           {"closed_manifold", report.fault.empty()},
+                           {"area", area},
+                           {"volume", report.closed_manifold ? Json(report.volume) : Json()},
+                           {"edge", {{"min", report.min_edge}, {"max", report.max_edge}}},
+                           {"closed_manifold", report.closed_manifold},
+                           {"components", report.components},
                            {"problems", problems}};
         std::cout << json.dump(1) << std::endl;
         return exit_ok;
     }
     const Vec3 size = report.upper - report.lower;
     std::cout << options.file.string() << ": a surface of " << grouped(surface.triangles.size()) << " triangles, "
-              << grouped(surface.nodes.size()) << " nodes (for colliders; a body needs tetrahedra)\n"
+              << grouped(surface.nodes.size())
+              << " nodes (for colliders and rigid bodies; a body that deforms needs tetrahedra)\n"
               << "  size          " << short_number(size.x()) << " x " << short_number(size.y()) << " x "
-              << short_number(size.z()) << " m, area " << short_number(report.area) << " m^2"
-              << (report.fault.empty() ? ", volume " + short_number(report.volume) + " m^3" : "") << "\n"
-              << "  edges         " << with_unit(report.shortest, "m") << " to " << with_unit(report.longest, "m")
+              << short_number(size.z()) << " m, area " << short_number(area) << " m^2"
+              << (report.closed_manifold ? ", volume " + short_number(report.volume) + " m^3" : "") << "\n"
+              << "  edges         " << with_unit(report.min_edge, "m") << " to " << with_unit(report.max_edge, "m")
               << "\n"
-              << "  boundary      " << (report.fault.empty() ? "a closed manifold" : "not a closed manifold") << "\n";
+              << "  boundary      " << (report.closed_manifold ? "a closed manifold" : "not a closed manifold") << ", "
+              << grouped(report.components) << (report.components == 1 ? " part\n" : " parts\n");
     print_problems(problems);
     return exit_ok;
 }

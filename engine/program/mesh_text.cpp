@@ -9,7 +9,7 @@ namespace skerry {
 
 Problems problems_of(const MeshReport& r) {
     Problems problems;
-    if (r.tetrahedra == 0) problems.push_back("the mesh has no tetrahedra");
+    if (r.tetrahedra == 0 && r.boundary_triangles == 0) problems.push_back("the mesh has no tetrahedra");
     if (r.inverted > 0)
         problems.push_back(grouped(r.inverted) + " inverted tetrahedra (of negative volume): a run refuses the mesh");
     if (r.flat > 0) problems.push_back(grouped(r.flat) + " flat tetrahedra (without volume): a run refuses the mesh");

@@ -94,6 +94,11 @@ private:
             std::array<Real, 3> numbers{};
             if (!nb::try_cast(given, numbers)) complain(name, given, expected_of(value));
             value = Vec3(numbers[0], numbers[1], numbers[2]);
+        } else if constexpr (std::is_same_v<T, Mat3>) {
+            std::array<std::array<Real, 3>, 3> rows{};
+            if (!nb::try_cast(given, rows)) complain(name, given, "three rows of three numbers");
+            for (std::size_t row = 0; row < 3; ++row)
+                value.row(static_cast<Index>(row)) = Vec3(rows[row][0], rows[row][1], rows[row][2]);
         } else {
             if (!nb::try_cast(given, value)) complain(name, given, expected_of(value));
         }

@@ -66,6 +66,9 @@ void for_each_setting(Is<BodySettings> auto& s, auto&& visit) {
     visit("contact_distance", s.contact_distance);
     visit("self_contact", s.self_contact);
     visit("dynamics", s.dynamics);
+    visit("mass", s.mass);
+    visit("center_of_mass", s.center_of_mass);
+    visit("inertia", s.inertia);
     visit("collision_group", s.collision_group);
     visit("collision_mask", s.collision_mask);
     visit("element", s.element);
@@ -119,6 +122,7 @@ void for_each_setting(Is<JointSettings> auto& s, auto&& visit) {
     visit("kind", s.kind);
     visit("point", s.point);
     visit("axis", s.axis);
+    visit("coordinate", s.coordinate);
     visit("lower", s.lower);
     visit("upper", s.upper);
     visit("motor", s.motor);
@@ -218,7 +222,7 @@ template <class Struct, std::size_t numbers, class... Parts>
 inline constexpr bool has_size = sizeof(Struct) == numbers * sizeof(Real) + (sizeof(Parts) + ... + 0);
 static_assert(has_size<Settings, 17>);
 static_assert(
-    has_size<BodySettings, 18, std::map<int, MaterialHandle>, std::map<std::string, MaterialHandle>, std::string>);
+    has_size<BodySettings, 34, std::map<int, MaterialHandle>, std::map<std::string, MaterialHandle>, std::string>);
 static_assert(has_size<MaterialSettings, 20>);
 static_assert(has_size<ColliderSettings, 16, Motion, std::string>);
 static_assert(has_size<LoadSettings, 2>);
@@ -226,7 +230,7 @@ static_assert(has_size<SurfaceSettings, 8>);
 static_assert(has_size<Pose, 6>);
 static_assert(has_size<MotionKey, 7>);
 static_assert(has_size<Motion, 6, std::vector<MotionKey>>);
-static_assert(has_size<JointSettings, 15, std::optional<JointMotor>, JointPassive>);
+static_assert(has_size<JointSettings, 16, std::optional<JointMotor>, JointPassive>);
 static_assert(has_size<JointPassive, 4>);
 static_assert(has_size<SpringSettings, 4, Anchor, Anchor, std::optional<TimeTable>>);
 static_assert(has_size<MotorKey, 5>);

@@ -49,6 +49,17 @@ const Rule<JointPassive>& rule_of<JointPassive>() {
 }
 
 template <>
+const Rule<MimicEntry>& rule_of<MimicEntry>() {
+    using Mimic = MimicEntry;
+    static const auto rule =
+        Rule<Mimic>("mimic", "Coupling to another hinge or slider: coordinate = ratio * its coordinate + offset.")
+            .key("joint", &Mimic::joint, {.meaning = "name of the other joint", .required = true})
+            .key("ratio", &Mimic::ratio, {.meaning = "not 0; between a hinge and a slider in m/rad or rad/m"})
+            .key("offset", &Mimic::offset, {.meaning = "coordinate while the other one is 0", .unit = "rad or m"});
+    return rule;
+}
+
+template <>
 const Rule<JointEntry>& rule_of<JointEntry>() {
     using Entry = JointEntry;
     static const auto rule =
@@ -65,12 +76,15 @@ const Rule<JointEntry>& rule_of<JointEntry>() {
             .key("point", &Entry::point, {.meaning = "position of the joint in the world", .unit = "m"})
             .key("axis", &Entry::axis,
                  {.meaning = "axis of a hinge or slider in the world, of any nonzero length; default: z"})
+            .key("coordinate", &Entry::coordinate,
+                 {.meaning = "rotation or translation of the first body in the poses at the start", .unit = "rad or m"})
             .key("lower", &Entry::lower,
                  {.meaning = "lower limit of the rotation or translation; default: none", .unit = "rad or m"})
             .key("upper", &Entry::upper,
                  {.meaning = "upper limit of the rotation or translation; default: none", .unit = "rad or m"})
             .key("motor", &Entry::motor, {.meaning = "motor on the axis; default: none"})
             .key("passive", &Entry::passive, {.meaning = "spring, damper and dry friction on the axis; default: none"})
+            .key("mimic", &Entry::mimic, {.meaning = "another joint that the joint follows; default: none"})
             .key("bodies_touch", &Entry::bodies_touch,
                  {.meaning = "whether the two bodies can touch each other; default: false"});
     return rule;

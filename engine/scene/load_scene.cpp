@@ -83,7 +83,9 @@ BodyHandle add_mesh_body(const ScenePlan& plan, const BodyPlan& body, const Body
         return world.add_body(with_sets, settings);
     } catch (const SceneError&) {
         if (const std::filesystem::path& file = plan.mesh_files[body.mesh]; !file.empty())
-            mesh::require_positive(mesh, file.string());
+            mesh.triangles.empty()
+                ? mesh::require_positive(mesh, file.string())
+                : mesh::require_shells({mesh.nodes, mesh.triangles}, file.string(), settings.inertia.has_value());
         throw;
     }
 }
@@ -149,6 +151,14 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         settings.first = bodies[joint.first];
         if (joint.second) settings.second = bodies[*joint.second];
         joints.push_back(called_at(joint.place, [&] { return Joints(world).add(settings); }));
+    }
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        const JointPlan& joint = plan.joints[j];
+        if (!joint.mimic) continue;
+        const std::size_t leader = find_joint(plan, joint.mimic->joint, joint.place.key("mimic").key("joint"));
+        called_at(joint.place, [&] {
+            Joints(world).set_mimic(joints[j], JointMimic{joints[leader], joint.mimic->ratio, joint.mimic->offset});
+        });
     }
     std::vector<TieHandle> ties;
     for (const TiePlan& tie : plan.ties) {

@@ -48,6 +48,8 @@ std::size_t find_cable(const ScenePlan& plan, const std::string& name, const Pla
                  nearest_hint(name, names));
 }
 
+}  // namespace
+
 std::size_t find_joint(const ScenePlan& plan, const std::string& name, const Place& place) {
     const auto found = std::ranges::find(plan.joints, name, &JointPlan::name);
     if (found != plan.joints.end()) return static_cast<std::size_t>(found - plan.joints.begin());
@@ -57,6 +59,8 @@ std::size_t find_joint(const ScenePlan& plan, const std::string& name, const Pla
                  names.empty() ? "the name of a joint, but the scene has no joints" : "the name of a joint",
                  nearest_hint(name, names));
 }
+
+namespace {
 
 /// Finds the body or collider that exerts a force. Throws SceneError if a body and a collider both have the name.
 void find_partner(const ProbeEntry& entry, const ScenePlan& plan, SeriesPlan& series) {

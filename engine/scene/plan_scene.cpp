@@ -14,8 +14,8 @@ namespace skerry {
 
 namespace {
 
-/// `notes`: gets remarks about the mesh file.
-Mesh make_shape(const MeshEntry& entry, std::vector<std::string>& notes) {
+/// `rigid`: true if the mesh may be a surface without tetrahedra. `notes`: gets remarks about the mesh file.
+Mesh make_shape(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes) {
     if (entry.box) return mesh::box(entry.box->size, entry.box->cells);
     if (entry.ball) return mesh::ball(entry.ball->radius, entry.ball->resolution);
     if (entry.cylinder)
@@ -23,11 +23,12 @@ Mesh make_shape(const MeshEntry& entry, std::vector<std::string>& notes) {
     if (entry.lathe) return mesh::lathe(entry.lathe->profile, entry.lathe->resolution);
     if (entry.skittle) return mesh::skittle(entry.skittle->height, entry.skittle->resolution);
     if (entry.table) return mesh::table(*entry.table);
-    return mesh::read(entry.file->path.string(), &notes);
+    const std::string file = entry.file->path.string();
+    return rigid ? mesh::read_rigid(file, &notes) : mesh::read(file, &notes);
 }
 
-Mesh make_mesh(const MeshEntry& entry, std::vector<std::string>& notes) {
-    Mesh mesh = called_at(entry.place, [&] { return make_shape(entry, notes); });
+Mesh make_mesh(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes) {
+    Mesh mesh = called_at(entry.place, [&] { return make_shape(entry, rigid, notes); });
     for (Vec3& node : mesh.nodes) node *= entry.scale;
     return mesh;
 }
@@ -39,7 +40,7 @@ Mesh picture_of(const BodyShapeEntry& shape) {
 }
 
 SurfaceMesh make_surface(const MeshEntry& entry, std::vector<std::string>& notes) {
-    if (!entry.file) return mesh::boundary(make_mesh(entry, notes));
+    if (!entry.file) return mesh::boundary(make_mesh(entry, false, notes));
     SurfaceMesh surface = called_at(entry.place, [&] { return mesh::read_surface(entry.file->path.string(), &notes); });
     for (Vec3& node : surface.nodes) node *= entry.scale;
     return surface;
@@ -103,7 +104,8 @@ SurfacePlan plan_surface(const SurfaceEntry& entry, const Mesh& mesh, const std:
     return surface;
 }
 
-/// Returns the positions of all copies of a body.
+}  // namespace
+
 std::vector<Vec3> positions_of(const BodyEntry& entry) {
     std::vector<Vec3> positions = entry.positions;
     if (entry.repeat) {
@@ -120,6 +122,8 @@ std::vector<Vec3> positions_of(const BodyEntry& entry) {
     if (positions.empty()) positions.push_back(entry.position);
     return positions;
 }
+
+namespace {
 
 std::size_t find_material(const ScenePlan& plan, const std::string& wanted, const Place& place) {
     std::vector<std::string> names;
@@ -169,7 +173,8 @@ std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& 
         const auto known = so_far.mesh_of_file.find({entry.mesh->file->path, entry.mesh->scale});
         if (known != so_far.mesh_of_file.end()) return known->second;
     }
-    plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh, plan.notes) : picture_of(*entry.shape));
+    const bool rigid = entry.dynamics == BodyDynamics::rigid;
+    plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh, rigid, plan.notes) : picture_of(*entry.shape));
     plan.mesh_files.push_back(entry.mesh && entry.mesh->file ? entry.mesh->file->path : std::filesystem::path());
     if (entry.mesh && entry.mesh->file) so_far.mesh_of_file[{entry.mesh->file->path, entry.mesh->scale}] = next;
     return next;
@@ -203,6 +208,12 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
         body.settings.dynamics = entry.dynamics == BodyDynamics::automatic && !planned.pins.empty()
                                      ? BodyDynamics::explicit_elastic
                                      : entry.dynamics;
+        body.settings.mass = entry.mass;
+        body.settings.center_of_mass = entry.center_of_mass;
+        if (entry.inertia) {
+            Mat3& inertia = body.settings.inertia.emplace();
+            for (std::size_t row = 0; row < 3; ++row) inertia.row(static_cast<Index>(row)) = (*entry.inertia)[row];
+        }
         body.settings.collision_group = entry.collision_group;
         body.settings.collision_mask = entry.collision_mask;
         body.settings.element = entry.element;
@@ -269,6 +280,7 @@ JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePla
     joint.settings.kind = entry.kind;
     joint.settings.point = entry.point;
     joint.settings.axis = entry.axis;
+    joint.settings.coordinate = entry.coordinate;
     joint.settings.lower = entry.lower;
     joint.settings.upper = entry.upper;
     joint.settings.passive = entry.passive;
@@ -280,6 +292,7 @@ JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePla
                                           .keys = entry.motor->keys};
         if (entry.motor->fastest) joint.settings.motor->fastest = *entry.motor->fastest;
     }
+    joint.mimic = entry.mimic;
     joint.place = entry.place;
     return joint;
 }

@@ -53,7 +53,7 @@ bool is_inside(const RestBox& box, const Vec3& x) {
 }
 
 std::vector<std::array<Index, 3>> surface_of(const Mesh& mesh) {
-    std::vector<std::array<Index, 3>> surface;
+    std::vector<std::array<Index, 3>> surface = mesh.triangles;
     for (const BoundaryTriangle& triangle : boundary_triangles(mesh.tetrahedra)) surface.push_back(triangle.node);
     return surface;
 }

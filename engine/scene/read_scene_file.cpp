@@ -1,5 +1,6 @@
 #include "engine/scene/assign.h"
 #include "engine/scene/parse_json.h"
+#include "engine/scene/place_scene.h"
 #include "engine/scene/scene_rules.h"
 
 namespace skerry {
@@ -13,14 +14,26 @@ void read_into(SceneFile& scene, const Json& json, const Place& place, std::vect
     // content is added to the content of the included files.
     SceneFile own;
     rule_of<SceneFile>().read(json, place, own);
-    for (const FilePath& included : own.include.items) {
-        const std::filesystem::path next = std::filesystem::weakly_canonical(included.path);
+    std::vector<std::string> names;
+    for (const IncludeEntry& included : own.include.items) {
+        const std::filesystem::path& file = included.scene.path;
+        const std::filesystem::path next = std::filesystem::weakly_canonical(file);
         if (std::find(open.begin(), open.end(), next) != open.end())
             place.key("include").refuse(
-                in_quotes(included.path.string()) + ", which includes this file directly or through other files",
+                in_quotes(file.string()) + ", which includes this file directly or through other files",
                 "a scene file that does not include this file", "delete one of the two includes");
         open.push_back(next);
-        read_into(scene, read_json(included.path), Place(included.path), open);
+        if (included.name.empty()) {
+            read_into(scene, read_json(file), Place(file), open);
+        } else {
+            if (std::ranges::find(names, included.name) != names.end())
+                included.place.key("name").refuse(in_quotes(included.name) + ", which another included scene has",
+                                                  "a different name for every included scene");
+            names.push_back(included.name);
+            SceneFile part;
+            read_into(part, read_json(file), Place(file), open);
+            add_placed(included, part, scene);
+        }
         open.pop_back();
     }
     if (own.include.items.empty() && open.size() == 1) {

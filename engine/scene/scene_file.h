@@ -141,6 +141,9 @@ struct BodyEntry {
     std::optional<Real> contact_distance;
     bool self_contact = false;
     BodyDynamics dynamics = BodySettings{}.dynamics;
+    std::optional<Real> mass;
+    std::optional<Vec3> center_of_mass;
+    std::optional<std::array<Vec3, 3>> inertia;
     std::uint32_t collision_group = BodySettings{}.collision_group, collision_mask = BodySettings{}.collision_mask;
     ElementKind element = BodySettings{}.element;
     OneOrMore<PinEntry> pin;
@@ -197,14 +200,20 @@ struct MotorEntry {
     Real strength = 0;
     std::optional<Real> fastest;
 };
+struct MimicEntry {
+    std::string joint;  // name of the leader
+    Real ratio = JointMimic{}.ratio, offset = JointMimic{}.offset;
+};
 struct JointEntry {
     std::string name;
     JointKind kind = JointKind::ball;
     std::string first;
     std::optional<std::string> second;
     Vec3 point = JointSettings{}.point, axis = JointSettings{}.axis;
+    Real coordinate = JointSettings{}.coordinate;
     std::optional<Real> lower, upper;
     std::optional<MotorEntry> motor;
+    std::optional<MimicEntry> mimic;
     JointPassive passive;
     bool bodies_touch = JointSettings{}.bodies_touch;
     Place place;
@@ -292,13 +301,22 @@ struct ProbeEntry {
     Place place;
 };
 
+/// A scene file that a scene includes. Without a name its content becomes a part of the scene as it is.
+struct IncludeEntry {
+    FilePath scene;
+    std::string name;              // stands in front of the names of all objects: NAME/OBJECT
+    Vec3 position = Vec3::Zero();  // pose of the frame of the included scene [m]
+    Rotation rotation;
+    Place place;
+};
+
 struct SceneFile {
     std::string schema;  // location of the JSON schema, used only by editors
     std::string name;
     std::string description;
     Real seconds = 2;
     Real frame_step = 1.0 / 60;
-    OneOrMore<FilePath> include;
+    OneOrMore<IncludeEntry> include;
     Settings settings;
     Named<MaterialSettings> materials;
     std::vector<PairEntry> pairs;

@@ -67,6 +67,7 @@ struct JointPlan {
     std::size_t first = 0;                // index in ScenePlan::bodies
     std::optional<std::size_t> second{};  // index in ScenePlan::bodies
     JointSettings settings;               // settings without body handles, because handles exist only in a built world
+    std::optional<MimicEntry> mimic{};
     Place place;
 };
 struct TiePlan {
@@ -160,6 +161,9 @@ ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& ov
 /// Plans a scene that was read with the assignments of `overrides`. Messages name `file`.
 ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, const SceneOverrides& overrides);
 
+/// Returns the positions of all copies of a body [m].
+std::vector<Vec3> positions_of(const BodyEntry& entry);
+
 /// Resolves a part of a body to node numbers, in ascending order unless the scene lists them, or to faces in the
 /// orientation of the surface. The faces are those of mesh::faces_of. Throws SceneError if the entry names no part, an
 /// unknown set, or a part without nodes or faces. Such errors list the sets that exist.
@@ -192,6 +196,9 @@ struct PlannedHandles {
 };
 /// Returns a planned anchor in the form that a world takes.
 Anchor anchor_of(const AnchorPlan& anchor, const ScenePlan& plan, const World& world, const PlannedHandles& handles);
+
+/// Returns the index of a joint in a plan. Throws SceneError if the plan has none of this name.
+std::size_t find_joint(const ScenePlan& plan, const std::string& name, const Place& place);
 
 /// Resolves the names and nodes of a tie. The plan must already contain all bodies and colliders. `number`: index of
 /// the tie.

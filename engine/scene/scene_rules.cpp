@@ -153,7 +153,8 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
     static const auto rule =
         Rule<BodyEntry>("body", "A body. The mesh is first rotated about its origin and then moved to the position.")
             .key("name", &BodyEntry::name, {.meaning = "name in messages, output and probes; default: body_NUMBER"})
-            .key("mesh", &BodyEntry::mesh, {.meaning = "tetrahedral mesh of the body"})
+            .key("mesh", &BodyEntry::mesh,
+                 {.meaning = "mesh of the body: tetrahedra, or for a rigid body also a closed surface"})
             .key("shape", &BodyEntry::shape,
                  {.meaning = "shape of a rigid body without a mesh; \"dynamics\" may be left out or \"rigid\""})
             .key("material", &BodyEntry::material, {.meaning = "name of one of the materials", .required = true})
@@ -184,6 +185,16 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
                       "predicted cost; otherwise explicit; "
                       "\"explicit\": any deformation, short steps; \"implicit\": small deformation, any step size, for "
                       "stiff bodies; \"rigid\": no deformation, with the mass and inertia of the mesh"})
+            .key("mass", &BodyEntry::mass,
+                 {.meaning = "mass of a rigid body; default: by density. It scales the inertia of the mesh unless "
+                             "\"center_of_mass\" and \"inertia\" are given, too",
+                  .unit = "kg",
+                  .limits = above(0)})
+            .key("center_of_mass", &BodyEntry::center_of_mass,
+                 {.meaning = "centre of mass of a rigid body in the frame of the mesh", .unit = "m"})
+            .key("inertia", &BodyEntry::inertia,
+                 {.meaning = "inertia tensor about the centre of mass in the frame of the mesh, by rows",
+                  .unit = "kg m^2"})
             .key("collision_group", &BodyEntry::collision_group, group_doc)
             .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
             .key("element", &BodyEntry::element, {.meaning = "type of the elements that carry the stress"})
@@ -376,6 +387,20 @@ const Rule<Settings>& rule_of<Settings>() {
 }
 
 template <>
+const Rule<IncludeEntry>& rule_of<IncludeEntry>() {
+    static const auto rule =
+        Rule<IncludeEntry>("include", "A scene whose objects are added with other names and at another place.")
+            .key("scene", &IncludeEntry::scene, {.meaning = "scene file", .required = true})
+            .key("name", &IncludeEntry::name,
+                 {.meaning = "name that stands in front of the names of all objects and materials, as in NAME/OBJECT, "
+                             "and NAME_PROBE for probes",
+                  .required = true})
+            .key("position", &IncludeEntry::position, {.meaning = "position of the frame of the scene", .unit = "m"})
+            .key("rotation", &IncludeEntry::rotation, {.meaning = "rotation of the frame of the scene"});
+    return rule;
+}
+
+template <>
 const Rule<SceneFile>& rule_of<SceneFile>() {
     static const auto rule =
         Rule<SceneFile>(
@@ -389,7 +414,7 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
                 {.meaning =
                      "scene files to read before this file. Their materials and the entries of their lists, such as "
                      "bodies, springs or probes, are added to those of this file; where both files set the same single "
-                     "value, this file takes precedence"})
+                     "value, this file takes precedence. Of a scene with a name, only the objects are added"})
             .key("seconds", &SceneFile::seconds,
                  {.meaning = "simulated time of a run; default: 2", .unit = "s", .limits = above(0)})
             .key("frame_step", &SceneFile::frame_step,

@@ -72,6 +72,8 @@ const Rule<MotorEntry>& rule_of<MotorEntry>();
 template <>
 const Rule<JointPassive>& rule_of<JointPassive>();
 template <>
+const Rule<MimicEntry>& rule_of<MimicEntry>();
+template <>
 const Rule<JointEntry>& rule_of<JointEntry>();
 template <>
 const Rule<TieEntry>& rule_of<TieEntry>();
@@ -90,11 +92,28 @@ const Rule<SpringEntry>& rule_of<SpringEntry>();
 template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();
 template <>
+const Rule<IncludeEntry>& rule_of<IncludeEntry>();
+template <>
 const Rule<MaterialSettings>& rule_of<MaterialSettings>();
 template <>
 const Rule<Settings>& rule_of<Settings>();
 template <>
 const Rule<SceneFile>& rule_of<SceneFile>();
+
+/// An included scene: the path of its file, or an object.
+template <>
+struct Value<IncludeEntry> {
+    static void read(const Json& json, const Place& place, const KeyDoc& doc, IncludeEntry& out) {
+        out.place = place;
+        if (json.is_string())
+            Value<FilePath>::read(json, place, doc, out.scene);
+        else
+            rule_of<IncludeEntry>().read(json, place, out);
+    }
+    static Json schema(SchemaBook& book, const KeyDoc&) {
+        return either_schema(text_schema(), rule_schema(book, rule_of<IncludeEntry>()));
+    }
+};
 
 /// Documentation of the keys "set", "box" and "nodes" of an entry that derives from PartEntry.
 extern const KeyDoc part_set_doc, part_box_doc, part_nodes_doc;

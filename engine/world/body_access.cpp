@@ -4,6 +4,7 @@
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/world_state.h"
 #include "systems/dynamics/motion/move_colliders.h"
+#include "systems/dynamics/rigid/rigid_motion.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -97,6 +98,12 @@ std::vector<ColliderHandle> World::colliders() const {
 Twist World::velocity(BodyHandle body) const {
     state_->settle();
     const auto row = static_cast<std::size_t>(state_->model.row(body, "velocity"));
+    if (state_->model.is_rigid(row)) {
+        const RigidBodyTable& table = state_->model.rigid_bodies;
+        const auto r = static_cast<std::size_t>(state_->model.bodies.rigid[row].begin);
+        return {table.momentum[r] / table.mass[r],
+                spin_of(table.rotation[r], table.moments[r], table.angular_momentum[r])};
+    }
     const NodeMotion motion = motion_of_nodes(state_->model, row, center_of_mass(body));
     return {motion.momentum / mass(body), motion.inertia.inverse() * motion.angular_momentum};
 }

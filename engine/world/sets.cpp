@@ -59,7 +59,8 @@ void Sets::add(BodyHandle body, const std::string& name, MeshSet set) {
         refuse(body_title(record), "set", '"' + name + "\", which is already the name of a set", "a different name");
     if (set.empty()) refuse(body_title(record), "set", "the empty set \"" + name + '"', "at least one node");
     const Index nodes = state.model.bodies.nodes[static_cast<std::size_t>(state.model.row(body, "add_set"))].size();
-    mesh::require_set(body_title(record), name, set, static_cast<std::size_t>(nodes), record.tetrahedra);
+    mesh::require_set(body_title(record), name, set, static_cast<std::size_t>(nodes), record.tetrahedra,
+                      record.surface);
     mesh::tidy(set);
     record.sets.emplace(name, std::move(set));
 }

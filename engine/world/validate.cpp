@@ -11,6 +11,7 @@
 #include "engine/mesh/sets.h"
 #include "engine/world/complaint.h"
 #include "systems/collision/build_surface.h"
+#include "systems/dynamics/rigid/rigid_motion.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -95,7 +96,8 @@ void require_labels(const Mesh& mesh, const std::map<int, MaterialHandle>& mater
 
 /// Checks the sets of a mesh, and the sets that have a material of their own.
 void require_sets(const Mesh& mesh, const std::map<std::string, MaterialHandle>& materials, const std::string& object) {
-    for (const auto& [name, set] : mesh.sets) mesh::require_set(object, name, set, mesh.nodes.size(), mesh.tetrahedra);
+    for (const auto& [name, set] : mesh.sets)
+        mesh::require_set(object, name, set, mesh.nodes.size(), mesh.tetrahedra, mesh.triangles);
     std::vector<const std::string*> set_of(materials.empty() ? 0 : mesh.tetrahedra.size());
     for (const auto& [name, material] : materials) {
         const auto found = mesh.sets.find(name);
@@ -288,9 +290,10 @@ void require_start(const BodySettings& body, const std::string& object) {
         require(*body.contact_distance >= 0, object, "contact_distance", *body.contact_distance, "a length >= 0 (m)");
 }
 
-/// Checks that the mesh is valid for a body.
-void require_mesh(const Mesh& mesh, const std::string& object) {
-    if (mesh.tetrahedra.empty()) refuse(object, "mesh", "no tetrahedra", "at least one tetrahedron");
+/// Checks that the mesh is valid for a body. `may_cross`: true if the shells of a surface may cross each other.
+void require_mesh(const Mesh& mesh, bool may_cross, const std::string& object) {
+    if (mesh.tetrahedra.empty() && mesh.triangles.empty())
+        refuse(object, "mesh", "no tetrahedra", "at least one tetrahedron, or the triangles of a surface");
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if (!mesh.nodes[n].allFinite())
             refuse(object, "mesh", "node " + std::to_string(n) + " at " + shown(mesh.nodes[n]),
@@ -300,15 +303,52 @@ void require_mesh(const Mesh& mesh, const std::string& object) {
             if (corner < 0 || corner >= static_cast<Index>(mesh.nodes.size()))
                 refuse(object, "mesh", "tetrahedron " + std::to_string(e) + " with node " + std::to_string(corner),
                        "node indices from 0 to " + std::to_string(static_cast<Index>(mesh.nodes.size()) - 1));
-    mesh::require_positive(mesh, object);
-    require_apart(mesh, object);
+    if (!mesh.tetrahedra.empty()) {
+        mesh::require_positive(mesh, object);
+        require_apart(mesh, object);
+    }
+    if (mesh.triangles.empty()) return;
+    if (!mesh.tetrahedra.empty()) refuse(object, "mesh", "both tetrahedra and triangles", "one of the two");
+    const SurfaceMesh surface{mesh.nodes, mesh.triangles};
+    ShapeCheck{object}(surface);
+    mesh::require_shells(surface, object, may_cross);
+}
+
+/// Checks the given mass properties of a body.
+void require_mass(const BodySettings& body, bool rigid, const std::string& object) {
+    if (!body.mass && !body.center_of_mass && !body.inertia) return;
+    const char* const given = body.mass ? "mass" : body.inertia ? "inertia" : "center_of_mass";
+    if (!rigid)
+        refuse(object, given, "a value for a body with the dynamics " + std::string(name_of(body.dynamics)),
+               "the dynamics rigid; other bodies have the mass of their materials");
+    if (body.center_of_mass.has_value() != body.inertia.has_value())
+        refuse(object, body.inertia ? "inertia" : "center_of_mass", "a value without the other of the two",
+               "both center_of_mass and inertia, or neither");
+    if (!body.mass) refuse(object, given, "a value without mass", "also the mass");
+    require(*body.mass > 0, object, "mass", *body.mass, "a mass > 0 (kg)");
+    if (!body.inertia) return;
+    require_finite(object, "center_of_mass", *body.center_of_mass);
+    const Mat3& inertia = *body.inertia;
+    const Real largest = inertia.cwiseAbs().maxCoeff();
+    constexpr Real digits = 1e-6;  // relative error of numbers that were written with six digits
+    if (!inertia.allFinite() || !((inertia - inertia.transpose()).cwiseAbs().maxCoeff() <= digits * largest))
+        refuse(object, "inertia", "a matrix that is not finite and symmetric", "a symmetric matrix (kg m^2)");
+    const Vec3 moments = PrincipalInertia(inertia).moments;  // ascending
+    if (!(moments[0] > 0) || !(moments[2] <= (moments[0] + moments[1]) * (1 + digits)))
+        refuse(object, "inertia", "principal moments " + shown(moments) + " kg m^2",
+               "moments > 0, none larger than the sum of the other two");
 }
 
 }  // namespace
 
 void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known) {
     const std::string object = titled("body", body.name);
-    if (!mesh_is_known) require_mesh(mesh, object);
+    if (!mesh_is_known) require_mesh(mesh, body.inertia.has_value(), object);
+    const bool rigid = body.dynamics == BodyDynamics::rigid;
+    if (!mesh.triangles.empty() && !rigid)
+        refuse(object, "dynamics", std::string(name_of(body.dynamics)),
+               "rigid, because a body that deforms needs a mesh of tetrahedra instead of a surface");
+    require_mass(body, rigid, object);
     if ((body.dynamics == BodyDynamics::rigid || body.dynamics == BodyDynamics::implicit_elastic) && body.self_contact)
         refuse(object, "self_contact", "true for a body with the dynamics " + std::string(name_of(body.dynamics)),
                "false");
@@ -324,6 +364,7 @@ void require_round(const std::string& shape, const BodySettings& body, const std
     if (body.dynamics != BodyDynamics::rigid && body.dynamics != BodyDynamics::automatic)
         refuse(object, "dynamics", std::string(name_of(body.dynamics)),
                "rigid, because a " + shape + " does not deform");
+    require_mass(body, true, object);
     if (body.self_contact) refuse(object, "self_contact", "true for a " + shape, "false");
     if (!body.materials.empty() || !body.materials_of_sets.empty())
         refuse(object, "materials", "materials by label or set", "none, because a " + shape + " has one material");

@@ -224,11 +224,14 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
                   .round_radius = core.radius,
                   .nodes = mesh.nodes,
                   .tetrahedra = mesh.tetrahedra,
-                  .triangles = {},
+                  .triangles = mesh.triangles,
                   .position = body.position,
                   .rotation = rotation_matrix(body.rotation),
                   .velocity = body.velocity,
-                  .angular_velocity = body.angular_velocity};
+                  .angular_velocity = body.angular_velocity,
+                  .mass = body.mass,
+                  .center_of_mass = body.center_of_mass,
+                  .inertia = body.inertia};
     DynamicsEstimate choice;
     std::optional<KnownElements> trial;
     if (core.nodes > 0) {
@@ -285,6 +288,10 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     const BodyHandle added = add_valid_body(*state_, mesh, body);
     revise_choices(*this, *state_, added);
     return added;
+}
+
+BodyHandle World::add_body(const SurfaceMesh& surface, const BodySettings& body) {
+    return add_body(Mesh{.nodes = surface.nodes, .tetrahedra = {}, .triangles = surface.triangles}, body);
 }
 
 BodyHandle World::add_body(const Sphere& sphere, const BodySettings& body) {

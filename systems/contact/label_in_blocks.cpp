@@ -68,8 +68,7 @@ private:
 void join_all(Executor& executor, std::span<const JointBlock> joints, SharedUnionFind& sets) {
     parallel_for(executor, joints.size(), std::size_t{1} << least_shift, [&](std::size_t begin, std::size_t end) {
         for (std::size_t j = begin; j < end; ++j)
-            if (joints[j].first_node != no_index && joints[j].second_node != no_index)
-                sets.join(joints[j].first_node, joints[j].second_node);
+            joints[j].join_nodes([&](Index first, Index second) { sets.join(first, second); });
     });
 }
 

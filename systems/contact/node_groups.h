@@ -182,9 +182,7 @@ struct NodeGroups {
         }
     }
     /// A node that impulses of the joint `joint` can move.
-    Index node_of_joint(std::size_t joint) const {
-        return joints[joint].first_node == no_index ? joints[joint].second_node : joints[joint].first_node;
-    }
+    Index node_of_joint(std::size_t joint) const { return joints[joint].moving_node(); }
     /// The leader of a node that impulses of the cable `cable` can move.
     Index node_of_cable(std::size_t cable, std::span<const Real> inverse_mass) const {
         Index found = no_index;

@@ -36,8 +36,7 @@ Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real
                           const NodeGroups& groups, UnionFind& sets, std::span<Index> contact_region) {
     sets.start(inverse_mass.size());
     for (const JointBlock& joint : groups.joints)
-        if (joint.first_node != no_index && joint.second_node != no_index)
-            sets.join(joint.first_node, joint.second_node);
+        joint.join_nodes([&](Index first, Index second) { sets.join(first, second); });
     groups.join_cables(inverse_mass, sets);
     constexpr std::size_t ahead = 12;  // number of contacts by which prefetching is ahead
     const auto fetch = [&](const Stencil& next) {

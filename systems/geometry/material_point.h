@@ -18,6 +18,10 @@ struct MaterialPoint {
 /// Returns the point of a tetrahedron at `place`, which may be outside the tetrahedron. `nodes`: node positions [m].
 MaterialPoint point_of_tetrahedron(std::span<const Vec3> nodes, const std::array<Index, 4>& corners, const Vec3& place);
 
+/// Returns the point of a rigid body at `place`, which may be outside the body. The corners are four nodes far from
+/// each other. The nodes must not all lie in one plane.
+MaterialPoint point_of_solid(std::span<const Vec3> nodes, const Vec3& place);
+
 /// Returns the point of the first tetrahedron that contains `place`, or nothing if no tetrahedron contains it.
 std::optional<MaterialPoint> point_inside(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                           const Vec3& place);

@@ -169,7 +169,7 @@ def test_round_bodies_are_rigid(shape: Any) -> None:
 
 def test_a_shape_without_mass_is_no_body() -> None:
     world, _, _ = ball_world()
-    with pytest.raises(TypeError, match="mesh: found Plane.*expected a Mesh, a Sphere, a Capsule or a Cylinder"):
+    with pytest.raises(TypeError, match="mesh: found Plane.*expected a Mesh, SurfaceMesh, Sphere, Capsule or Cylinder"):
         world.add_body(sk.Plane(), RUBBER)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="material: found 3, expected a Material"):
         world.add_body(sk.Sphere(), 3)  # type: ignore[arg-type]
@@ -213,3 +213,31 @@ def test_a_body_of_another_world_is_refused() -> None:
         world.set_collision(ball, floor, False)
     with pytest.raises(KeyError, match="no body 'ball'"):
         other.bodies[ball]
+
+
+def test_a_rigid_body_has_a_surface_and_given_mass_properties() -> None:
+    world = sk.World(threads=1, gravity=(0, 0, 0))
+    box = sk.Mesh.box((0.1, 0.2, 0.3), (1, 1, 1)).boundary()
+    plain = world.add_body(box, sk.Material(density=500), dynamics="rigid")
+    assert plain.mass == pytest.approx(500 * 0.006) and len(plain.tetrahedra) == 0
+    inertia = np.diag([0.02, 0.03, 0.04])
+    given = world.add_body(
+        box,
+        sk.Material(),
+        dynamics="rigid",
+        mass=2,
+        center_of_mass=(0, 0, 0.5),
+        inertia=inertia,
+        position=(1, 0, 0),
+        angular_velocity=(0, 0, 2),
+    )
+    assert given.mass == pytest.approx(2) and given.center_of_mass == pytest.approx((1, 0, 0.5))
+    assert world.report().angular_momentum[2] == pytest.approx(0.08)
+    with pytest.raises(sk.SceneError, match="dynamics.*automatic.*rigid"):
+        world.add_body(box, sk.Material())
+    with pytest.raises(sk.SceneError, match="inertia.*sum of the other two"):
+        world.add_body(
+            box, sk.Material(), dynamics="rigid", mass=1, center_of_mass=(0, 0, 0), inertia=np.diag([1, 1, 3])
+        )
+    with pytest.raises(TypeError, match=r"inertia: found an array of the shape \(3,\), expected \(3, 3\)"):
+        world.add_body(box, sk.Material(), dynamics="rigid", mass=1, inertia=[1, 1, 1])

@@ -19,7 +19,7 @@ def test_the_package_imports_without_a_warning() -> None:
 
 
 def test_the_import_loads_no_optional_package() -> None:
-    optional = {"h5py", "meshio", "pyvista", "IPython", "gmsh", "gymnasium", "matplotlib", "pandas", "scipy"}
+    optional = {"h5py", "meshio", "pyvista", "IPython", "gmsh", "gymnasium", "mujoco", "matplotlib", "pandas", "scipy"}
     done = run("import sys, skerry; print(*{name.partition('.')[0] for name in sys.modules})")
     assert done.returncode == 0
     assert not optional & set(done.stdout.split())

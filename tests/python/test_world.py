@@ -87,7 +87,7 @@ def test_bodies_that_share_a_name_are_found_by_number() -> None:
     world, ball, _ = ball_world()
     given = {"name": "ball", "position": (1.0, 0.0, 0.0)}
     settings = type("BodySettings", (), given)()
-    world._core.add_round_body(sk.Sphere(radius=0.1), world.add_material()._handle, settings)
+    world._core.add_rigid_body(sk.Sphere(radius=0.1), world.add_material()._handle, settings)
     with pytest.raises(KeyError, match="2 bodies have the name 'ball'; use their numbers"):
         world.bodies["ball"]
     first, second = world.bodies.values()

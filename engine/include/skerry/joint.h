@@ -44,14 +44,24 @@ struct JointPassive {
     bool operator==(const JointPassive&) const = default;
 };
 
+/// Coupling of the coordinate of a hinge or slider to that of another joint, its leader: q = ratio q_leader + offset.
+/// It acts in both directions: forces on one joint move the other one.
+struct JointMimic {
+    JointHandle leader{};  // another hinge or slider, which must not mimic this joint, directly or through others
+    Real ratio = 1;        // not 0; [m/rad] or [rad/m] between a slider and a hinge
+    Real offset = 0;       // [rad or m]
+
+    bool operator==(const JointMimic&) const = default;
+};
+
 /// Limits of the coordinate of a joint.
 struct JointLimits {
     std::optional<Real> lower{}, upper{};  // no value: no limit [rad or m]
 };
 
 /// A joint between two rigid bodies, or between a rigid body and the world, in their present poses. The coordinate of a
-/// joint is zero in these poses and measures the motion of the first body relative to the second. For a hinge it is the
-/// angle about the axis, counting full revolutions [rad]. For a slider it is the displacement along the axis [m].
+/// joint measures the motion of the first body relative to the second. For a hinge it is the angle about the axis,
+/// counting full revolutions [rad]. For a slider it is the displacement along the axis [m].
 struct JointSettings {
     JointKind kind = JointKind::ball;
     BodyHandle first{};  // handle of a rigid body
@@ -59,6 +69,7 @@ struct JointSettings {
     std::optional<BodyHandle> second{};
     Vec3 point = Vec3::Zero();             // position of the joint in the world [m]
     Vec3 axis = {0, 0, 1};                 // axis of a hinge or slider in the world; the length must not be zero
+    Real coordinate = 0;                   // coordinate of a hinge or slider in the present poses [rad or m]
     std::optional<Real> lower{}, upper{};  // limits of the joint coordinate, lower <= upper
     std::optional<JointMotor> motor{};
     JointPassive passive{};
@@ -80,6 +91,9 @@ struct JointState {
     // Parts of the moment (hinge) or force (slider) along the axis: of the motor, of spring, damper and friction
     // together, and of the limits [N m or N].
     Real motor = 0, passive = 0, limit = 0;
+    // Moment or force along the axis that makes the joint mimic its leader; `force` and `moment` do not contain it. The
+    // leader gets -ratio times as much [N m or N].
+    Real mimic = 0;
     // Position error [m]: distance between the two points that the joint should keep together. For a slider, only the
     // part of this distance normal to the axis counts.
     Real error = 0;
@@ -110,7 +124,11 @@ public:
     void set_limits(JointHandle joint, std::optional<Real> lower, std::optional<Real> upper);
     /// Sets spring, damper and friction of a hinge or a slider.
     void set_passive(JointHandle joint, const JointPassive& passive);
+    /// Makes a hinge or a slider mimic another joint, or ends this if no mimic is given. A deviation is corrected at
+    /// the bounded speed that set_limits describes. Removing the leader ends the mimic.
+    void set_mimic(JointHandle joint, const std::optional<JointMimic>& mimic);
     /// Return the present settings.
+    std::optional<JointMimic> mimic(JointHandle joint) const;
     std::optional<JointMotor> motor(JointHandle joint) const;
     JointLimits limits(JointHandle joint) const;
     JointPassive passive(JointHandle joint) const;

@@ -36,6 +36,9 @@ struct Mesh {
     // counted from 0 in their order. An empty list means that the numbers equal the indices in `nodes`.
     std::vector<Index> file_number{};
     std::map<std::string, MeshSet> sets{};  // sets by name
+    // For a rigid body without tetrahedra: the triangles of its surface, see World::add_body(const SurfaceMesh&, ...).
+    // With tetrahedra the list must be empty.
+    std::vector<std::array<Index, 3>> triangles{};
 };
 
 /// A triangle surface, either closed or with a boundary. Triangles are counter-clockwise as seen from outside.
@@ -123,6 +126,10 @@ Mesh table(const TableShape& shape);
 ///
 /// Throws SceneError that names the file, the place in the file, and the found and the expected text.
 Mesh read(const std::string& path, std::vector<std::string>* notes = nullptr);
+
+/// Reads the mesh of a rigid body: as `read`, but from a file without tetrahedra only the surface (Mesh::triangles), as
+/// `read_surface`. Throws SceneError.
+Mesh read_rigid(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 /// Reads a triangle surface from a file in one of the formats of `read`, or in Wavefront .obj or .stl format. The
 /// surface of a tetrahedral mesh is its boundary. Polygons are split into triangles that share their first corner.

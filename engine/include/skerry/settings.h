@@ -57,8 +57,8 @@ struct MaterialSettings {
 
 /// Kind of motion of a body. Rigid and implicit bodies do not limit the step and have no self-contact.
 /// - explicit_elastic: the body deforms, and the step must be stable for its stiffest element.
-/// - rigid: the body does not deform. It has the mass and the inertia of its mesh. From its materials it uses only
-///   density, friction and restitution (docs/methods/rigid_bodies.md).
+/// - rigid: the body does not deform. It has the mass and the inertia of its mesh, or given ones. From its materials it
+///   uses only density, friction and restitution (docs/methods/rigid_bodies.md).
 /// - implicit_elastic: the body deforms by backward Euler (see Settings::theta), which is stable at any step length. It
 ///   is meant for stiff bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by
 ///   Newton's method (docs/methods/implicit_bodies.md).
@@ -96,6 +96,12 @@ struct BodySettings {
     std::optional<Real> contact_distance{};
     bool self_contact = false;
     BodyDynamics dynamics = BodyDynamics::automatic;
+    // Mass properties of a rigid body. If none are given, they follow from the shape and the densities. `mass` alone
+    // scales the densities. `center_of_mass` and `inertia` require each other and `mass`. They are in the frame of the
+    // mesh, and the inertia tensor is about the centre of mass.
+    std::optional<Real> mass{};            // > 0 [kg]
+    std::optional<Vec3> center_of_mass{};  // [m]
+    std::optional<Mat3> inertia{};         // symmetric and positive definite [kg m^2]
     // Each object has a set of collision groups and a mask, both as bits. Two objects can touch only if each of the two
     // masks contains a group of the other object.
     std::uint32_t collision_group = 1;

@@ -66,6 +66,10 @@ public:
     // Consecutive removals are carried out together when the tables are needed next.
     MaterialHandle add_material(const MaterialSettings& material);
     BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
+    /// Adds a rigid body from the triangles of its surface; `body.dynamics` must be rigid. The surface consists of one
+    /// or several closed shells, for example one for each convex part of a robot link. Where shells overlap, their
+    /// volumes count twice, so give the mass properties of such a body. A shell that is inside out bounds a void.
+    BodyHandle add_body(const SurfaceMesh& surface, const BodySettings& body);
     /// Adds a rigid sphere. Contacts and queries use the exact sphere. Its nodes, faces and tetrahedra are for output
     /// only (mesh::sphere_picture), and the first node is the centre. `body.dynamics` must be rigid or automatic, and
     /// the sphere is rigid. It cannot be attached or become another kind of body.

@@ -15,6 +15,7 @@ std::pair<Index, Real> nearest_node(std::span<const Vec3> nodes, const Vec3& pla
 
 std::optional<MaterialPoint> follow_point(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                           const Vec3& place, Real reach) {
+    if (tetrahedra.empty()) return point_of_solid(nodes, place);
     if (const std::optional<MaterialPoint> inside = point_inside(nodes, tetrahedra, place)) return inside;
     const auto [node, distance] = nearest_node(nodes, place);
     if (!(distance <= reach)) return {};

@@ -18,7 +18,7 @@
 namespace skerry {
 namespace {
 
-constexpr std::uint8_t vtk_tetra = 10;
+constexpr std::uint8_t vtk_triangle = 5, vtk_tetra = 10;
 constexpr std::size_t least_digits = 4;  // frame numbers are padded with zeros to this number of digits
 constexpr std::pair<const char*, const char*> kinds[] = {
     {"bodies", ".vtu"}, {"contacts", ".vtp"}, {"colliders", ".vtp"}};
@@ -221,12 +221,13 @@ void VtkSeries::write_files(const Frame& frame) {
 }
 
 void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const {
-    std::size_t points = 0, cells = 0;
+    std::size_t points = 0, cells = 0, corners = 0;
     for (const BodyFrame& body : frame.bodies) {
         SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.position.size());
-        SKERRY_CHECK(body.stress.size() == body.tetrahedra.size() && body.strain.size() == body.tetrahedra.size());
+        SKERRY_CHECK(body.stress.size() == body.count_cells() && body.strain.size() == body.count_cells());
         points += body.position.size();
-        cells += body.tetrahedra.size();
+        cells += body.count_cells();
+        corners += body.count_cells() * body.corners_of_cell();
     }
     const auto of_nodes = [&](auto per_node) {
         return [&frame, per_node](auto put) {
@@ -237,7 +238,7 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
     const auto of_cells = [&](auto per_cell) {
         return [&frame, per_cell](auto put) {
             for (const BodyFrame& body : frame.bodies)
-                for (std::size_t cell = 0; cell < body.tetrahedra.size(); ++cell) per_cell(put, body, cell);
+                for (std::size_t cell = 0; cell < body.count_cells(); ++cell) per_cell(put, body, cell);
         };
     };
 
@@ -251,17 +252,24 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
                        of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put_vector(put, b.position[n]); }));
     file.close("Points");
     file.open("Cells");
-    file.array<std::int32_t>("connectivity", 1, 4 * cells, [&](auto put) {
+    file.array<std::int32_t>("connectivity", 1, corners, [&](auto put) {
         Index first = 0;
         for (const BodyFrame& body : frame.bodies) {
-            for (const auto& tetrahedron : body.tetrahedra)
-                for (const Index node : tetrahedron) put(first + node);
+            const auto put_cells = [&](const auto& rows) {
+                for (const auto& cell : rows)
+                    for (const Index node : cell) put(first + node);
+            };
+            body.tetrahedra.empty() ? put_cells(body.surface) : put_cells(body.tetrahedra);
             first += static_cast<Index>(body.position.size());
         }
     });
-    offsets(file, cells, 4);
-    file.array<std::uint8_t>("types", 1, cells,
-                             of_cells([](auto& put, const BodyFrame&, std::size_t) { put(vtk_tetra); }));
+    Index end = 0;  // index after the last corner of a cell
+    file.array<std::int32_t>("offsets", 1, cells, of_cells([&end](auto& put, const BodyFrame& b, std::size_t) {
+                                 put(end += static_cast<Index>(b.corners_of_cell()));
+                             }));
+    file.array<std::uint8_t>("types", 1, cells, of_cells([](auto& put, const BodyFrame& b, std::size_t) {
+                                 put(b.tetrahedra.empty() ? vtk_triangle : vtk_tetra);
+                             }));
     file.close("Cells");
     file.open("PointData");
     file.array<float>("displacement", 3, points, of_nodes([this](auto& put, const BodyFrame& b, std::size_t n) {

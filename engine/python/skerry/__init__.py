@@ -17,6 +17,7 @@ from ._results import (
     contact_dtype,
     hit_dtype,
 )
+from ._robot import PlacedRobot, Robot, RobotJoint, RobotLink, load_robot
 from ._rollout import RolloutResult, rollout
 from ._scene import ContactProbe, Scene, load_scene, scene_schema
 from ._sets import MeshSet
@@ -175,6 +176,7 @@ __all__ = [
     "PairForces",
     "Pipe",
     "PipeState",
+    "PlacedRobot",
     "Plane",
     "PointProbe",
     "Pose",
@@ -185,6 +187,9 @@ __all__ = [
     "ReactionProbe",
     "Recorder",
     "RelaxReport",
+    "Robot",
+    "RobotJoint",
+    "RobotLink",
     "RolloutResult",
     "Scene",
     "SceneError",
@@ -222,6 +227,7 @@ __all__ = [
     "__version__",
     "contact_dtype",
     "hit_dtype",
+    "load_robot",
     "load_scene",
     "materials",
     "mooney_rivlin",

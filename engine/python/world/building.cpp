@@ -32,18 +32,18 @@ BodyHandle add_body(WorldObject& object, const Mesh& mesh, const MaterialHandle&
     return without_gil([&] { return object.world.add_body(mesh, settings); });
 }
 
-/// Adds a sphere, a capsule or a cylinder.
-BodyHandle add_round_body(WorldObject& object, nb::handle shape, const MaterialHandle& material, nb::handle given) {
+/// Adds a sphere, a capsule, a cylinder or a body of a surface.
+BodyHandle add_rigid_body(WorldObject& object, nb::handle shape, const MaterialHandle& material, nb::handle given) {
     Use use(object);
     require_no_views(object, "add_body");
     const BodySettings settings = body_settings(material, given);
     return std::visit(
         [&]<class Given>(const Given& body) -> BodyHandle {
             if constexpr (std::is_same_v<Given, Sphere> || std::is_same_v<Given, Capsule> ||
-                          std::is_same_v<Given, Cylinder>)
+                          std::is_same_v<Given, Cylinder> || std::is_same_v<Given, SurfaceMesh>)
                 return object.world.add_body(body, settings);
             else
-                throw nb::type_error("add_body: expected a Mesh, a Sphere, a Capsule or a Cylinder");
+                throw nb::type_error("add_body: expected a Mesh, SurfaceMesh, Sphere, Capsule or Cylinder");
         },
         read_shape(shape));
 }
@@ -127,7 +127,7 @@ void bind_building(WorldClass& type) {
                  return object.world.add_material(settings);
              })
         .def("add_body", &add_body)
-        .def("add_round_body", &add_round_body)
+        .def("add_rigid_body", &add_rigid_body)
         .def("add_collider", &add_collider)
         .def("attach", &attach)
         .def("remove", &remove<BodyHandle>)

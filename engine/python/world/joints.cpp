@@ -32,6 +32,7 @@ nb::dict values_of(const JointState& state) {
     values["motor"] = state.motor;
     values["passive"] = state.passive;
     values["limit"] = state.limit;
+    values["mimic"] = state.mimic;
     values["error"] = state.error;
     return values;
 }
@@ -39,6 +40,12 @@ nb::dict values_of(const JointState& state) {
 nb::object motor_of(World& world, const JointHandle& joint) {
     const std::optional<JointMotor> motor = Joints(world).motor(joint);
     return motor ? object_of(*motor) : nb::none();
+}
+
+nb::object mimic_of(World& world, const JointHandle& joint) {
+    const std::optional<JointMimic> mimic = Joints(world).mimic(joint);
+    if (!mimic) return nb::none();
+    return nb::make_tuple(mimic->leader, mimic->ratio, mimic->offset);
 }
 
 nb::tuple limits_of(World& world, const JointHandle& joint) {
@@ -71,6 +78,14 @@ void bind_joints(WorldClass& type) {
              guarded([](World& world, const JointHandle& joint) { return values_of(Joints(world).state(joint)); }))
         .def("set_motor", &set_motor, nb::arg("joint"), nb::arg("motor").none())
         .def("set_passive", &set_passive, nb::arg("joint"), nb::arg("passive"))
+        .def("set_mimic",
+             guarded([](World& world, const JointHandle& joint, std::optional<JointHandle> leader, Real ratio,
+                        Real offset) {
+                 Joints(world).set_mimic(
+                     joint, leader ? std::optional(JointMimic{*leader, ratio, offset}) : std::optional<JointMimic>());
+             }),
+             nb::arg("joint"), nb::arg("leader").none(), nb::arg("ratio"), nb::arg("offset"))
+        .def("mimic", guarded(mimic_of))
         .def("motor", guarded(motor_of))
         .def("limits", guarded(limits_of))
         .def("passive",

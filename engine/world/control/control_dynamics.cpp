@@ -49,6 +49,11 @@ void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
     if (model.bodies.core_nodes[body] > 0)
         refuse_change(model, body, "dynamics", std::string(name_of(next)),
                       "rigid, because a " + std::string(model.round_name(body)) + " does not deform");
+    if (model.shares_mass(body))
+        refuse_change(model, body, "dynamics", std::string(name_of(next)),
+                      std::string("rigid, because ") + (model.body_records[body].tetrahedra.empty()
+                                                            ? "a body without tetrahedra cannot deform"
+                                                            : "the mass of the body is given"));
     if (next == BodyDynamics::implicit_elastic &&
         sets_losses(model, model.bodies.material[body], model.body_records[body].tetrahedron_material))
         refuse_losses(model.body_records[body].name);

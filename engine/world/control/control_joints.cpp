@@ -88,6 +88,8 @@ void validate_joint(const JointSettings& joint) {
     require_finite("joint", "point", joint.point);
     require_finite("joint", "axis", joint.axis);
     if (!(joint.axis.norm() > 0)) refuse_joint("axis", "a vector of length 0", "a vector that is not zero");
+    if (!std::isfinite(joint.coordinate))
+        refuse_joint("coordinate", short_text(joint.coordinate), "a finite coordinate (rad or m)");
     if (has_axis(joint.kind)) {
         if (joint.motor) validate_motor(*joint.motor);
         validate_limits(joint.lower, joint.upper);
@@ -96,6 +98,8 @@ void validate_joint(const JointSettings& joint) {
     }
     const std::string kind(name_of(joint.kind));
     if (joint.motor) refuse_joint("motor", "a motor on a " + kind + " joint", "a motor on a hinge or slider");
+    if (joint.coordinate != 0)
+        refuse_joint("coordinate", "a coordinate of a " + kind + " joint", "a coordinate of a hinge or slider");
     if (joint.lower || joint.upper)
         refuse_joint("lower, upper", "limits on a " + kind + " joint", "limits on a hinge or slider");
     if (joint.passive != JointPassive{})
@@ -203,14 +207,23 @@ JointHandle Joints::add(const JointSettings& joint) {
     table.first[row] = first;
     table.second[row] = second;
     table.first_frame[row] = frame_on(model, first, joint.point, axes);
-    table.second_frame[row] = frame_on(model, second, joint.point, axes);
+    // The frame on the second body is where that on the first body is at coordinate 0.
+    if (joint.kind == JointKind::hinge)
+        table.second_frame[row] =
+            frame_on(model, second, joint.point, Eigen::AngleAxis<Real>(-joint.coordinate, axis) * axes);
+    else
+        table.second_frame[row] = frame_on(model, second, joint.point - joint.coordinate * axis, axes);
     table.lower[row] = joint.lower.value_or(-infinity);
     table.upper[row] = joint.upper.value_or(infinity);
     table.motor[row] = row_of(joint.motor);
     table.motor_keys[row] = {};
     set_keys(table, row, joint.motor);
     table.passive[row] = row_of(joint.passive);
-    table.coordinate[row] = table.step[row] = 0;
+    table.leader[row] = no_index;
+    table.mimic[row] = {};
+    table.mimic_impulse[row] = 0;
+    table.coordinate[row] = joint.coordinate;
+    table.step[row] = 0;
     table.axis_impulse[row] = {};
     table.impulse[row] = table.moment[row] = Vec3::Zero();
     table.parts[row] = 0;
@@ -279,6 +292,7 @@ JointState joint_state(const Model& model, JointHandle joint) {
     const AxisImpulses& parts = model.joints.axis_impulse[j];
     now.motor = parts.motor / joints.step[j];
     now.passive = parts.passive / joints.step[j];
+    now.mimic = joints.mimic_impulse[j] / joints.step[j];
     now.limit = (along.z() - parts.motor - parts.passive) / joints.step[j];
     return now;
 }
@@ -330,6 +344,45 @@ void Joints::set_passive(JointHandle joint, const JointPassive& passive) {
     if (model.joints.passive[row] == row_of(passive)) return;
     model.joints.passive[row] = row_of(passive);
     wake_both(model, row);
+}
+
+void Joints::set_mimic(JointHandle joint, const std::optional<JointMimic>& mimic) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("set_mimic");
+    Model& model = state.model;
+    JointTable& table = model.joints;
+    const auto row = static_cast<std::size_t>(model.row(joint, "set_mimic"));
+    if (this->mimic(joint) == mimic) return;
+    Index leader = no_index;
+    if (mimic) {
+        leader = model.row(mimic->leader, "set_mimic");
+        for (const std::size_t one : {row, static_cast<std::size_t>(leader)})
+            if (!has_axis(table.kind[one]))
+                refuse_joint("mimic", "a " + std::string(name_of(table.kind[one])) + " joint", "a hinge or a slider");
+        if (!std::isfinite(mimic->ratio) || mimic->ratio == 0)
+            refuse_joint("mimic.ratio", short_text(mimic->ratio), "a finite number that is not 0");
+        if (!std::isfinite(mimic->offset))
+            refuse_joint("mimic.offset", short_text(mimic->offset), "a finite coordinate (rad or m)");
+        for (Index at = leader; at != no_index; at = table.leader[static_cast<std::size_t>(at)])
+            if (at == static_cast<Index>(row))
+                refuse_joint("mimic.leader", "a joint that mimics this joint, directly or through others",
+                             "a joint that does not");
+    }
+    wake_both(model, row);
+    if (leader != no_index) wake_both(model, static_cast<std::size_t>(leader));
+    table.leader[row] = leader;
+    table.mimic[row] = mimic ? MimicRow{mimic->ratio, mimic->offset} : MimicRow{};
+    table.mimic_impulse[row] = 0;
+    model.links_open = true;
+}
+
+std::optional<JointMimic> Joints::mimic(JointHandle joint) const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    const auto row = static_cast<std::size_t>(model.row(joint, "mimic"));
+    const Index leader = model.joints.leader[row];
+    if (leader == no_index) return {};
+    return JointMimic{model.joint_map.handle_of_slot(model.joints.slot[static_cast<std::size_t>(leader)]),
+                      model.joints.mimic[row].ratio, model.joints.mimic[row].offset};
 }
 
 std::optional<JointMotor> Joints::motor(JointHandle joint) const {

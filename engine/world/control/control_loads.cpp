@@ -141,9 +141,10 @@ LoadHandle Loads::add(const ForceLoad& load) {
     require_different_nodes(object, load.nodes, nodes.size());
     LoadRow row{.kind = LoadKind::force, .body = body, .vector = load.force, .node = load.nodes};
     Real whole = 0;
-    for (const Index node : load.nodes) whole += model.nodes.mass[nodes.begin + node];
+    const auto mass = [&](Index node) { return model.weight_of_node(static_cast<std::size_t>(nodes.begin + node)); };
+    for (const Index node : load.nodes) whole += mass(node);
     if (!(whole > 0)) refuse(object, "nodes", "nodes without mass", "at least one node with a mass");
-    for (const Index node : load.nodes) row.weight.push_back(model.nodes.mass[nodes.begin + node] / whole);
+    for (const Index node : load.nodes) row.weight.push_back(mass(node) / whole);
     return append_load(*world_, row, load.scale);
 }
 

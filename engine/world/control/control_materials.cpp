@@ -5,6 +5,7 @@
 #include "engine/world/control/control.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/material_row.h"
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 
@@ -83,6 +84,8 @@ void restart(WorldState& world, std::size_t body) {
                                                             static_cast<std::size_t>(nodes.size()));
     as_new.mesh_shape = record.mesh_shape;
     as_new.tetrahedra = record.tetrahedra;
+    if (record.tetrahedra.empty()) as_new.triangles = record.surface;
+    if (model.has_frame(body)) keep_given_mass(model, body, as_new);
     restart_elements(model, static_cast<Index>(body), as_new, world.scratch.stiffness_sum);
     validate_step(model, static_cast<Index>(body), record.name);
 }

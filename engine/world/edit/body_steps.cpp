@@ -10,6 +10,7 @@
 #include "engine/world/kernels.h"
 #include "systems/dynamics/clusters/arm_guards.h"
 #include "systems/dynamics/elements/build_elements.h"
+#include "systems/dynamics/rigid/rigid_motion.h"
 #include "systems/dynamics/stability/find_relaxation.h"
 #include "systems/dynamics/stability/frame_masses.h"
 #include "systems/dynamics/stability/mass_forms.h"
@@ -87,8 +88,81 @@ RoundMass round_mass(const Model& model, const NewBody& body) {
             std::numbers::pi * density * radius * radius * length};
 }
 
+namespace {
+
+/// Integrates the mass properties of a body from its shape and its densities.
+MassProperties mass_of_shape(const Model& model, const NewBody& body) {
+    if (body.is_cylinder()) {
+        const Real mass = round_mass(model, body).sum(), radius = body.rim_radius(), half = body.half_height(),
+                   across = mass * (radius * radius / 4 + half * half / 3);
+        return {mass, body.nodes[0], {across, across, mass * radius * radius / 2}, Mat3::Identity()};
+    }
+    if (body.core_nodes > 0) {
+        const auto [ball, shaft] = round_mass(model, body);
+        const Real radius = body.round_radius, length = body.axis_length();
+        const Real axial = ball * radius * radius * 2 / 5 + shaft * radius * radius / 2;
+        const Real across = ball * radius * radius * 2 / 5 + ball * length * (length / 4 + radius * 3 / 8) +
+                            shaft * (radius * radius / 4 + length * length / 12);
+        const Vec3 center = (body.nodes[0] + body.nodes[static_cast<std::size_t>(body.core_nodes) - 1]) / 2;
+        return {ball + shaft, center, {across, across, axial}, Mat3::Identity()};
+    }
+    // By the divergence theorem, integrals over the inside of a surface are sums over the tetrahedra that a fixed point
+    // forms with the triangles. The volumes of these tetrahedra have signs.
+    std::vector<std::array<Index, 4>> fan;
+    for (const auto& [a, b, c] : body.triangles) fan.push_back({0, a, b, c});
+    const std::span<const std::array<Index, 4>> tetrahedra = fan.empty() ? body.tetrahedra : fan;
+    std::vector<Real> density = densities(model, body);
+    density.resize(tetrahedra.size(), model.materials.constants[static_cast<std::size_t>(body.material)].density);
+    MassProperties found;
+    std::vector<Real> mass(tetrahedra.size());
+    const auto corner = [&](std::size_t t, std::size_t k) -> const Vec3& {
+        return body.nodes[static_cast<std::size_t>(tetrahedra[t][k])];
+    };
+    for (std::size_t t = 0; t < mass.size(); ++t) {
+        mass[t] = density[t] * six_volumes(tetrahedra[t], body.shape_of_masses()) / 6;
+        found.mass += mass[t];
+        found.center += mass[t] / 4 * (corner(t, 0) + corner(t, 1) + corner(t, 2) + corner(t, 3));
+    }
+    found.center /= found.mass;
+    // Integral of density times x x^T over the body, with the position x relative to the centre of mass [kg m^2]. A
+    // tetrahedron of mass m with corners x_k adds m/20 (sum of x_k x_k^T + (sum of x_k)(sum of x_k)^T).
+    Mat3 second = Mat3::Zero();
+    for (std::size_t t = 0; t < mass.size(); ++t) {
+        Mat3 squares = Mat3::Zero();
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3 x = corner(t, k) - found.center;
+            squares += x * x.transpose();
+            sum += x;
+        }
+        second += mass[t] / 20 * (squares + sum * sum.transpose());
+    }
+    const Mat3 inertia = second.trace() * Mat3::Identity() - second;
+    const PrincipalInertia principal(inertia);
+    found.moments = principal.moments;
+    found.axes = principal.axes;
+    return found;
+}
+
+}  // namespace
+
+MassProperties mass_properties(const Model& model, const NewBody& body) {
+    if (body.inertia) {
+        const PrincipalInertia principal(*body.inertia);
+        return {*body.mass, *body.center_of_mass, principal.moments, principal.axes};
+    }
+    MassProperties found = mass_of_shape(model, body);
+    if (body.mass) {
+        found.moments *= *body.mass / found.mass;
+        found.mass = *body.mass;
+    }
+    return found;
+}
+
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
+    // All nodes of a body without tetrahedra can move. They get their masses from the mass of the body (share_mass).
+    if (body.tetrahedra.empty()) std::ranges::fill(rows_of(nodes.mass, range), Real(1));
     add_lumped_mass(body.tetrahedra, body.shape_of_masses(), densities(model, body), rows_of(nodes.mass, range));
     // A round body is drawn with a mesh that lies inside the exact shape and has less volume. The masses of its nodes
     // are scaled to the mass of the exact shape.

@@ -205,7 +205,6 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.element_nodes[b] = rows.elements.nodes;
     bodies.tetrahedron_blocks[b] = rows.tetrahedra;
     bodies.rigid[b] = {static_cast<Index>(model.rigid_bodies.size()), static_cast<Index>(model.rigid_bodies.size())};
-    if (body.has_frame()) append_rigid_body(model, row, body);
     const bool implicit = body.dynamics == BodyDynamics::implicit_elastic;
     bodies.implicit[b] = append_implicit_nodes(model, implicit ? nodes.size() : 0);
     bodies.tetrahedron_count[b] = static_cast<Index>(body.tetrahedra.size());
@@ -222,7 +221,9 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
          .element_tetrahedra = std::move(rows.covered),
          .start = {body.position, body.rotation},
          .built = body.rotation,
-         .mesh_shape = {body.mesh_shape.begin(), body.mesh_shape.end()}});
+         .mesh_shape = {body.mesh_shape.begin(), body.mesh_shape.end()},
+         .given_mass = body.given_mass()});
+    if (body.has_frame()) append_rigid_body(model, row, body);
     if (implicit) model.stiffen(b);
     model.settled = false;
     model.append_outline(b);

@@ -123,8 +123,9 @@ void erase_attachment(Model& model, Index row) {
                 held_elsewhere |= table.node[static_cast<std::size_t>(j)] == node;
         }
         const auto n = static_cast<std::size_t>(node);
-        if (held_elsewhere || model.nodes.mass[n] <= 0) continue;
-        model.nodes.inverse_mass[n] = 1 / model.nodes.mass[n];
+        const Real inverse_mass = model.free_inverse_mass(n);
+        if (held_elsewhere || !(inverse_mass > 0)) continue;
+        model.nodes.inverse_mass[n] = inverse_mass;
         --model.bodies.pinned_count[body];
     }
     std::vector<Index> row_now;

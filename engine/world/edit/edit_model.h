@@ -38,6 +38,10 @@ struct NewBody {
     Vec3 position;
     Mat3 rotation;
     Vec3 velocity, angular_velocity;
+    // mass properties as given, see BodySettings
+    std::optional<Real> mass = {};
+    std::optional<Vec3> center_of_mass = {};
+    std::optional<Mat3> inertia = {};
 
     /// True for rigid and implicit bodies, which have a row of RigidBodyTable and no rows of elements.
     bool has_frame() const { return dynamics != BodyDynamics::explicit_elastic; }
@@ -47,6 +51,7 @@ struct NewBody {
     /// Half height and rim radius of a cylinder [m].
     Real half_height() const { return (nodes[1] - nodes[0]).norm(); }
     Real rim_radius() const { return (nodes[2] - nodes[1]).norm(); }
+    GivenMass given_mass() const { return inertia ? GivenMass::all : mass ? GivenMass::mass : GivenMass::none; }
     std::span<const Vec3> shape_of_masses() const { return mesh_shape.empty() ? nodes : mesh_shape; }
     Index material_of(std::size_t of_tetrahedron) const {
         return tetrahedron_material.empty() ? material : tetrahedron_material[of_tetrahedron];
@@ -97,6 +102,15 @@ struct RoundMass {
     Real sum() const { return ball + shaft; }
 };
 RoundMass round_mass(const Model& model, const NewBody& body);
+/// Mass properties of a rigid body in the frame of its mesh. Those that are not given follow from its shape: a set of
+/// tetrahedra, the inside of a closed surface, or a sphere, capsule or cylinder along z.
+struct MassProperties {
+    Real mass = 0;               // [kg]
+    Vec3 center = Vec3::Zero();  // [m]
+    Vec3 moments;                // principal moments of inertia [kg m^2]
+    Mat3 axes;                   // rotation from the frame of the principal axes to the mesh frame
+};
+MassProperties mass_properties(const Model& model, const NewBody& body);
 /// Adds the lumped masses of the tetrahedra to the node masses. Sets the inverse masses of these nodes, so that they
 /// can move.
 void set_masses(Model& model, const NewBody& body, Range nodes);

@@ -36,6 +36,7 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
     }
     if (ranges.empty()) return;
     AnyTable(table).erase(ranges);
+    if constexpr (requires { table.rows_moved(row_now); }) table.rows_moved(row_now);
     map.rows_moved(row_now);
 }
 

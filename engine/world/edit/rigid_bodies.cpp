@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <utility>
 
 #include "components/any_table.h"
 #include "systems/dynamics/implicit/free_large_step.h"
@@ -10,62 +11,6 @@
 namespace skerry {
 
 namespace {
-
-/// Mass properties of a solid in the frame of its mesh. The solid is a set of tetrahedra, or a sphere, capsule or
-/// cylinder along z.
-struct MassProperties {
-    Real mass = 0;               // [kg]
-    Vec3 center = Vec3::Zero();  // [m]
-    Vec3 moments;                // principal moments of inertia [kg m^2]
-    Mat3 axes;                   // rotation from the frame of the principal axes to the mesh frame
-};
-
-MassProperties mass_properties(const Model& model, const NewBody& body) {
-    if (body.is_cylinder()) {
-        const Real mass = round_mass(model, body).sum(), radius = body.rim_radius(), half = body.half_height(),
-                   across = mass * (radius * radius / 4 + half * half / 3);
-        return {mass, body.nodes[0], {across, across, mass * radius * radius / 2}, Mat3::Identity()};
-    }
-    if (body.core_nodes > 0) {
-        const auto [ball, shaft] = round_mass(model, body);
-        const Real radius = body.round_radius, length = body.axis_length();
-        const Real axial = ball * radius * radius * 2 / 5 + shaft * radius * radius / 2;
-        const Real across = ball * radius * radius * 2 / 5 + ball * length * (length / 4 + radius * 3 / 8) +
-                            shaft * (radius * radius / 4 + length * length / 12);
-        const Vec3 center = (body.nodes[0] + body.nodes[static_cast<std::size_t>(body.core_nodes) - 1]) / 2;
-        return {ball + shaft, center, {across, across, axial}, Mat3::Identity()};
-    }
-    const std::vector<Real> density = densities(model, body);
-    MassProperties found;
-    std::vector<Real> mass(body.tetrahedra.size());
-    const auto corner = [&](std::size_t t, std::size_t k) -> const Vec3& {
-        return body.nodes[static_cast<std::size_t>(body.tetrahedra[t][k])];
-    };
-    for (std::size_t t = 0; t < mass.size(); ++t) {
-        mass[t] = density[t] * six_volumes(body.tetrahedra[t], body.shape_of_masses()) / 6;
-        found.mass += mass[t];
-        found.center += mass[t] / 4 * (corner(t, 0) + corner(t, 1) + corner(t, 2) + corner(t, 3));
-    }
-    found.center /= found.mass;
-    // Integral of density times x x^T over the body, with the position x relative to the centre of mass [kg m^2]. A
-    // tetrahedron of mass m with corners x_k adds m/20 (sum of x_k x_k^T + (sum of x_k)(sum of x_k)^T).
-    Mat3 second = Mat3::Zero();
-    for (std::size_t t = 0; t < mass.size(); ++t) {
-        Mat3 squares = Mat3::Zero();
-        Vec3 sum = Vec3::Zero();
-        for (std::size_t k = 0; k < 4; ++k) {
-            const Vec3 x = corner(t, k) - found.center;
-            squares += x * x.transpose();
-            sum += x;
-        }
-        second += mass[t] / 20 * (squares + sum * sum.transpose());
-    }
-    const Mat3 inertia = second.trace() * Mat3::Identity() - second;
-    const PrincipalInertia principal(inertia);
-    found.moments = principal.moments;
-    found.axes = principal.axes;
-    return found;
-}
 
 void write_masses(const MassProperties& found, std::size_t r, RigidBodyTable& table) {
     table.mass[r] = found.mass;
@@ -133,6 +78,27 @@ void give_nodes_velocity(Model& model, std::size_t body) {
     }
 }
 
+/// Distributes the mass of a body among its nodes (Model::shares_mass). Sums over node masses then give the mass and
+/// the centre of mass exactly. The mass of a node depends linearly on its position, so it may be negative if the centre
+/// of mass is outside of the body.
+void share_mass(Model& model, std::size_t body) {
+    const std::size_t r = rigid_row(model, body);
+    const RigidBodyTable& table = model.rigid_bodies;
+    const Range nodes = model.bodies.nodes[body];
+    const std::span<const Vec3> rest = rows_of(std::as_const(model.nodes).rest_position, nodes);
+    const Real count = static_cast<Real>(rest.size());
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& x : rest) middle += x / count;
+    Mat3 spread = Mat3::Zero();
+    for (const Vec3& x : rest) spread += (x - middle) * (x - middle).transpose() / count;
+    const Vec3 slope = spread.ldlt().solve(table.rest_center[r] - middle);
+    for (Index n = nodes.begin; n < nodes.end; ++n) {
+        model.nodes.mass[n] = table.mass[r] / count * (1 + slope.dot(model.nodes.rest_position[n] - middle));
+        if (model.nodes.inverse_mass[n] > 0)
+            model.nodes.inverse_mass[n] = model.free_inverse_mass(static_cast<std::size_t>(n));
+    }
+}
+
 }  // namespace
 
 void append_rigid_body(Model& model, Index row, const NewBody& body) {
@@ -148,7 +114,22 @@ void append_rigid_body(Model& model, Index row, const NewBody& body) {
     table.center[r] = body.position + body.rotation * found.center;
     table.rotation[r] = body.rotation * found.axes;
     set_motion(table, r, body.velocity, body.angular_velocity);
-    model.bodies.rigid[static_cast<std::size_t>(row)] = {static_cast<Index>(r), static_cast<Index>(r) + 1};
+    const auto b = static_cast<std::size_t>(row);
+    model.bodies.rigid[b] = {static_cast<Index>(r), static_cast<Index>(r) + 1};
+    if (!model.shares_mass(b)) return;
+    share_mass(model, b);
+    give_nodes_velocity(model, b);
+}
+
+void keep_given_mass(const Model& model, std::size_t body, NewBody& as_new) {
+    const RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = rigid_row(model, body);
+    const GivenMass given = model.body_records[body].given_mass;
+    if (given == GivenMass::none) return;
+    as_new.mass = table.mass[r];
+    if (given == GivenMass::mass) return;
+    as_new.center_of_mass = table.rest_center[r];
+    as_new.inertia = table.axes[r] * table.moments[r].asDiagonal() * table.axes[r].transpose();
 }
 
 void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new) {
@@ -159,6 +140,7 @@ void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new) {
     write_masses(mass_properties(model, as_new), r, table);
     table.rotation[r] = from_mesh * table.axes[r];
     set_motion(table, r, velocity, turn);
+    if (model.shares_mass(body)) share_mass(model, body);
 }
 
 void follow_weight(Model& model, std::size_t body) {
@@ -201,9 +183,9 @@ NearestFrame nearest_frame(std::span<const Vec3> rest_position, std::span<const 
 
 /// Fits a rigid motion to the node positions of a body, weighted with the masses of the nodes.
 NearestFrame nearest_frame(const Model& model, std::size_t body, std::span<const Vec3> position) {
-    const std::span<const Real> mass = rows_of(model.nodes.mass, model.bodies.nodes[body]);
+    const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
     return nearest_frame(rows_of(model.nodes.rest_position, model.bodies.nodes[body]), position,
-                         [&](std::size_t n) { return mass[n]; });
+                         [&](std::size_t n) { return model.weight_of_node(first + n); });
 }
 
 }  // namespace
@@ -342,9 +324,10 @@ NodeMotion motion_of_nodes(const Model& model, std::size_t body, const Vec3& cen
     Mat3 second = Mat3::Zero();
     for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {
         const Vec3 arm = model.nodes.position[n] - center;
-        motion.momentum += model.nodes.mass[n] * model.nodes.velocity[n];
-        motion.angular_momentum += model.nodes.mass[n] * arm.cross(model.nodes.velocity[n]);
-        second += model.nodes.mass[n] * arm * arm.transpose();
+        const Real mass = model.weight_of_node(static_cast<std::size_t>(n));
+        motion.momentum += mass * model.nodes.velocity[n];
+        motion.angular_momentum += mass * arm.cross(model.nodes.velocity[n]);
+        second += mass * arm * arm.transpose();
     }
     motion.inertia = second.trace() * Mat3::Identity() - second;
     return motion;
@@ -402,6 +385,15 @@ void follow_large_velocities(Model& model, std::size_t body, const Vec3& velocit
     give_nodes_velocity(model, body);
 }
 
+/// Centre of mass of the nodes of a body, with the masses that Model::weight_of_node returns.
+Vec3 middle_of_nodes(const Model& model, std::size_t body) {
+    if (!model.shares_mass(body)) return model.rigid_bodies.center[rigid_row(model, body)];
+    const std::span<const Vec3> position = rows_of(model.nodes.position, model.bodies.nodes[body]);
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& x : position) middle += x / static_cast<Real>(position.size());
+    return middle;
+}
+
 }  // namespace
 
 void follow_node_velocities(Model& model, std::size_t body) {
@@ -411,8 +403,10 @@ void follow_node_velocities(Model& model, std::size_t body) {
     }
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
-    const NodeMotion motion = motion_of_nodes(model, body, table.center[r]);
-    const Vec3 velocity = motion.momentum / table.mass[r], turn = motion.inertia.inverse() * motion.angular_momentum;
+    const Vec3 middle = middle_of_nodes(model, body);
+    const NodeMotion motion = motion_of_nodes(model, body, middle);
+    const Vec3 turn = motion.inertia.inverse() * motion.angular_momentum,
+               velocity = motion.momentum / table.mass[r] + turn.cross(table.center[r] - middle);
     set_motion(table, r, velocity, turn);
     const Deformation deformation(model, body);
     if (deformation.any()) {

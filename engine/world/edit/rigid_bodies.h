@@ -12,6 +12,8 @@ namespace skerry {
 /// Appends the row of RigidBodyTable for a body whose nodes are already in the tables.
 void append_rigid_body(Model& model, Index row, const NewBody& body);
 
+/// Copies the given mass properties of a body to `as_new`.
+void keep_given_mass(const Model& model, std::size_t body, NewBody& as_new);
 /// Computes mass and inertia of a body again after densities have changed. The velocity and angular velocity of the
 /// body do not change.
 void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new);
@@ -43,7 +45,7 @@ void follow_attachments(Model& model, std::size_t body);
 /// shape. The velocity and angular velocity of the body do not change.
 void follow_weight(Model& model, std::size_t body);
 
-/// Momenta and inertia of the nodes of a body, treated as point masses, about a given centre.
+/// Momenta and inertia of the nodes of a body, treated as point masses (Model::weight_of_node), about a given centre.
 struct NodeMotion {
     Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  // [kg m/s, kg m^2/s]
     Mat3 inertia = Mat3::Zero();                                    // kg m^2

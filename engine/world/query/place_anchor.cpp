@@ -38,7 +38,10 @@ AnchorRow point_of_body(WorldState& world, std::size_t body, const Vec3& point, 
     const Model& model = world.model;
     const BodyRecord& record = model.body_records[body];
     const std::span<const Vec3> nodes = rows_of(model.nodes.position, model.bodies.nodes[body]);
-    if (model.is_rigid(body)) return point_of_rigid_body(nodes, record.tetrahedra, point);
+    if (model.is_rigid(body)) {
+        if (!record.tetrahedra.empty()) return point_of_rigid_body(nodes, record.tetrahedra, point);
+        return row_of(point_of_solid(nodes, point));
+    }
     if (const std::optional<MaterialPoint> inside = point_inside(nodes, record.tetrahedra, point))
         return row_of(*inside);
     const Real reach = model.bodies.mean_edge[body];

@@ -77,6 +77,12 @@ void check_joints(const SavedFile& file, const Model& model) {
                 "a lower limit <= the upper limit");
         require(table.motor[j].most >= 0 && table.motor[j].most_speed >= 0, "motor", "a negative strength or speed",
                 "a strength and a speed >= 0");
+        for (std::size_t at = j, passed = 0; table.leader[at] != no_index;
+             at = static_cast<std::size_t>(table.leader[at]))
+            require(table.leader[at] >= 0 && static_cast<std::size_t>(table.leader[at]) < table.size() &&
+                        passed++ < table.size(),
+                    "leader", "a row that does not exist, or a joint that mimics itself", "the row of another joint");
+        require(table.leader[j] == no_index || table.mimic[j].ratio != 0, "mimic", "the ratio 0", "another ratio");
         const JointPassiveRow& passive = table.passive[j];
         require(passive.stiffness >= 0 && passive.damping >= 0 && passive.friction >= 0, "passive",
                 "a negative stiffness, damping or friction", "numbers >= 0");

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/mesh/require_positive.h"
 #include "engine/world/save/checks.h"
 #include "systems/collision/inputs/contact_key.h"
 
@@ -332,9 +333,29 @@ void check_implicit_nodes(const SavedFile& file, const ImplicitNodeTable& table)
 
 }  // namespace
 
+void check_masses(const SavedFile& file, const Model& model) {
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
+        const BodyRecord& record = model.body_records[b];
+        const std::string row = " at row " + std::to_string(b);
+        if (record.given_mass != GivenMass::none && !model.is_rigid(b))
+            file.complain("records/given_mass", "a given mass" + row, "0 for a body that is not rigid");
+        if (!model.shares_mass(b))
+            expect_between(file, "nodes/mass", rows_of(model.nodes.mass, model.bodies.nodes[b]), 0.0, infinity);
+        else if (record.tetrahedra.empty()) {
+            const std::span<const Vec3> nodes = rows_of(model.nodes.rest_position, model.bodies.nodes[b]);
+            try {
+                mesh::require_shells({{nodes.begin(), nodes.end()}, record.surface}, record.name,
+                                     record.given_mass == GivenMass::all);
+            } catch (const SceneError& error) {
+                file.complain("meshes/surface", error.what() + row, "a valid surface");
+            }
+        }
+    }
+}
+
 void check_model(const SavedFile& file, Model& model) {
     check_sizes(file, model);
-    expect_between(file, "nodes/mass", model.nodes.mass, 0.0, infinity);
+    expect_between(file, "nodes/mass", model.nodes.mass, -infinity, infinity);
     expect_between(file, "nodes/inverse_mass", model.nodes.inverse_mass, 0.0, infinity);
     check_bodies(file, model);
     check_rows_of_bodies(file, model);

@@ -43,6 +43,7 @@ void list_records(SavedRows& saved, Archive& archive) {
     archive.column("records/body_element", saved.body_element);
     archive.column("records/body_asked", saved.body_asked);
     archive.column("records/body_settled", saved.body_settled);
+    archive.column("records/given_mass", saved.given_mass);
     archive.column("records/choice_reason", saved.choice_reason);
     archive.column("records/choice_estimate", saved.choice_estimate);
     archive.column("records/collider_settled", saved.collider_settled);

@@ -120,6 +120,7 @@ void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
     check_clock(file, world.clock, world.scratch.parameters.kick);
     check_model(file, model);
     put_records(saved, file, model);
+    check_masses(file, model);
     // If a material law has no rotated frame, a step writes neither rotation nor rotation_next, but swaps these two
     // columns. Their values must therefore be equal.
     model.elements.rotation_next = model.elements.rotation;

@@ -257,6 +257,7 @@ SavedRows rows_to_save(const WorldState& world) {
         saved.body_element.push_back(record.element);
         saved.body_asked.push_back(record.requested_element);
         saved.body_settled.push_back(record.settled);
+        saved.given_mass.push_back(record.given_mass);
         const DynamicsEstimate& e = record.choice;
         saved.choice_reason.push_back(e.reason);
         saved.choice_estimate.push_back({e.explicit_step, e.implicit_step, e.deforming_step, e.explicit_cost,
@@ -315,6 +316,7 @@ void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
     expect_rows(file, "records/body_element", saved.body_element.size(), bodies, "bodies");
     expect_rows(file, "records/body_asked", saved.body_asked.size(), bodies, "bodies");
     expect_rows(file, "records/body_settled", saved.body_settled.size(), bodies, "bodies");
+    expect_rows(file, "records/given_mass", saved.given_mass.size(), bodies, "bodies");
     expect_rows(file, "records/choice_reason", saved.choice_reason.size(), bodies, "bodies");
     expect_rows(file, "records/choice_estimate", saved.choice_estimate.size(), bodies, "bodies");
     expect_rows(file, "records/body_start", saved.body_start.size(), bodies, "bodies");
@@ -337,14 +339,15 @@ void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
         const MeshParts parts = parts_of(meshes, static_cast<std::size_t>(m));
         const Range nodes = model.bodies.nodes[b];
         const bool deforms = model.bodies.kind[b] == BodyKind::deformable;
-        if (parts.nodes.size() != static_cast<std::size_t>(nodes.size()) || deforms == parts.tetrahedra.empty() ||
+        if (parts.nodes.size() != static_cast<std::size_t>(nodes.size()) ||
+            (parts.tetrahedra.empty() ? deforms && !model.is_rigid(b) : !deforms) ||
             static_cast<Index>(parts.tetrahedra.size()) != model.bodies.tetrahedron_count[b])
             file.complain("meshes/of_body",
                           "a mesh with " + std::to_string(parts.nodes.size()) + " nodes and " +
                               std::to_string(parts.tetrahedra.size()) + " tetrahedra for " + body,
                           std::to_string(nodes.size()) + " nodes and " +
                               std::to_string(model.bodies.tetrahedron_count[b]) +
-                              " tetrahedra, as in bodies (no tetrahedra only for a mesh collider)");
+                              " tetrahedra, as in bodies (no tetrahedra only for a rigid body or a mesh collider)");
         check_cover(parts, static_cast<std::size_t>(model.bodies.blocks[b].size()) * element_lanes, body, file);
         std::ranges::copy(parts.nodes, model.nodes.rest_position.begin() + nodes.begin);
         BodyRecord& record = model.body_records.emplace_back();
@@ -352,6 +355,7 @@ void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
         record.element = saved.body_element[b];
         record.requested_element = saved.body_asked[b];
         record.settled = saved.body_settled[b] != 0;
+        record.given_mass = saved.given_mass[b];
         const std::array<Real, 7>& e = saved.choice_estimate[b];
         if (std::ranges::any_of(e, [](Real value) { return !(value >= 0); }))
             file.complain("records/choice_estimate", "a negative number or NaN for " + body, "numbers >= 0");

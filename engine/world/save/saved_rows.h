@@ -47,6 +47,7 @@ struct SavedRows {
     std::uint32_t world = 0;  // world number that is part of all handles of this world
     Column<ElementKind> body_element, body_asked;
     Column<std::uint8_t> body_settled, collider_settled;
+    Column<GivenMass> given_mass;
     Column<DynamicsReason> choice_reason;  // reason of BodyRecord::choice
     // all members of BodyRecord::choice except the reason, in the order of their declaration
     Column<std::array<Real, 7>> choice_estimate;

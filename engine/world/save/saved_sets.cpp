@@ -70,7 +70,7 @@ void put_sets(const SavedSets& saved, const SavedFile& file, Model& model) {
         const Index nodes = model.bodies.nodes[static_cast<std::size_t>(body)].size();
         try {
             mesh::require_set("body " + std::to_string(body), name, set, static_cast<std::size_t>(nodes),
-                              record.tetrahedra);
+                              record.tetrahedra, record.surface);
         } catch (const SceneError& error) {
             file.complain("sets", std::string("an invalid set (") + error.what() + ")", "numbers of the body");
         }

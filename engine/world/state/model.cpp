@@ -100,19 +100,37 @@ std::optional<Model::RoundShape> Model::round_shape(std::size_t body) const {
     if (core == 0) return std::nullopt;
     const Real radius = bodies.round_radius[body];
     const auto first = static_cast<std::size_t>(bodies.nodes[body].begin);
-    const Vec3& middle = nodes.position[first];
+    const Vec3 middle =
+        core == 2 ? Vec3((nodes.position[first] + nodes.position[first + 1]) / 2) : nodes.position[first];
     if (core == 1)
         return RoundShape{{ColliderShape::sphere, {radius, 0, 0}},
                           {middle, Mat3::Identity(), Vec3::Zero(), Vec3::Zero()}};
     const auto r = static_cast<std::size_t>(bodies.rigid[body].begin);
-    const RigidMotion place{rigid_bodies.center[r], rigid_bodies.rotation[r] * rigid_bodies.axes[r].transpose(),
-                            Vec3::Zero(), Vec3::Zero()};
+    const RigidMotion place{middle, rigid_bodies.rotation[r] * rigid_bodies.axes[r].transpose(), Vec3::Zero(),
+                            Vec3::Zero()};
     const Real length = (nodes.rest_position[first + 1] - nodes.rest_position[first]).norm();
     if (core == cylinder_core_nodes) {
         const Real of_rim = (nodes.rest_position[first + 2] - nodes.rest_position[first + 1]).norm();
         return RoundShape{{ColliderShape::cylinder, {of_rim, length, 0}}, place};
     }
     return RoundShape{{ColliderShape::capsule, {radius, length / 2, 0}}, place};
+}
+
+bool Model::shares_mass(std::size_t body) const {
+    const BodyRecord& record = body_records[body];
+    return is_rigid(body) && (record.tetrahedra.empty() || record.given_mass != GivenMass::none);
+}
+
+Real Model::weight_of_node(std::size_t node) const {
+    const auto body = static_cast<std::size_t>(nodes.body[node]);
+    if (!shares_mass(body)) return nodes.mass[node];
+    const auto r = static_cast<std::size_t>(bodies.rigid[body].begin);
+    return rigid_bodies.mass[r] / static_cast<Real>(bodies.nodes[body].size());
+}
+
+Real Model::free_inverse_mass(std::size_t node) const {
+    const Real mass = weight_of_node(node);
+    return mass > 0 ? 1 / mass : 0;
 }
 
 const char* Model::round_name(std::size_t body) const {

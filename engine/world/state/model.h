@@ -51,6 +51,11 @@ namespace skerry {
 /// Slot of the attachments that move mesh colliders. Users have no handles to these attachments.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;
 
+/// Mass properties of a body that its settings give: none, only the mass, or the mass, its centre and the inertia.
+enum class GivenMass : std::uint8_t { none, mass, all };
+template <>
+inline constexpr std::uint64_t value_count<GivenMass> = 3;
+
 /// Data of a body that are not stored in tables. They serve users and files.
 struct BodyRecord {
     std::string name;
@@ -74,6 +79,7 @@ struct BodyRecord {
     // For a rigid body that is frozen in a deformed shape: node positions of the mesh, in the frame of the mesh [m].
     // NodeTable::rest_position contains the frozen shape. For all other bodies the list is empty.
     std::vector<Vec3> mesh_shape{};
+    GivenMass given_mass = GivenMass::none;
     DynamicsEstimate choice{};  // estimate behind the choice, for a body added as `automatic`
     FieldCache fields{};
 };
@@ -212,6 +218,14 @@ struct Model {
     bool is_held(std::size_t body) const {
         return has_frame(body) && rigid_bodies.holder[static_cast<std::size_t>(bodies.rigid[body].begin)] != no_index;
     }
+    /// True for a rigid body whose nodes share its mass so that sums over node masses give its mass and centre of mass:
+    /// a body without tetrahedra, or with given mass properties. Single nodes may then have masses <= 0.
+    bool shares_mass(std::size_t body) const;
+    /// Mass of a node. If the nodes share the mass of a rigid body: an equal part of this mass, which is positive [kg].
+    Real weight_of_node(std::size_t node) const;
+    /// Inverse of weight_of_node; 0 for a node that belongs to no tetrahedron of its body. It is the inverse mass of a
+    /// node that no attachment holds [1/kg].
+    Real free_inverse_mass(std::size_t node) const;
     bool node_has_frame(std::size_t node) const {
         return rigid_bodies.size() > 0 && has_frame(static_cast<std::size_t>(nodes.body[node]));
     }

@@ -82,6 +82,11 @@ void note_changed_seams(Model& model) {
     model.links.first.clear();
     model.links.second.clear();
     model.for_each_joining([&](const char*, auto& table, auto&) { add_links(table, model.links); });
+    for (std::size_t j = 0; j < model.joints.size(); ++j) {
+        if (model.joints.leader[j] == no_index) continue;
+        model.links.first.push_back(model.joints.first[j]);
+        model.links.second.push_back(model.joints.first[static_cast<std::size_t>(model.joints.leader[j])]);
+    }
 }
 
 }  // namespace skerry

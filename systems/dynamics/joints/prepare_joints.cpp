@@ -47,6 +47,45 @@ AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, const
     return axis;
 }
 
+/// Block for the axis of joint `j` in a mimic row, and the coordinate of the joint.
+struct MimicAxis {
+    JointBlock block;
+    Real coordinate;
+
+    MimicAxis(const JointInputs& joints, std::size_t j, bool leads, Real coefficient) {
+        const JointPlace first = joints.place(joints.first[j], joints.first_frame[j]),
+                         second = joints.place(joints.second[j], joints.second_frame[j]);
+        coordinate = joint_coordinate(joints.kind[j], first, second, joints.coordinate[j]);
+        block = {.joint = static_cast<Index>(j),
+                 .turning = joints.kind[j] == JointKind::hinge,
+                 .first = joints.rigid(joints.first[j]),
+                 .second = joints.rigid(joints.second[j]),
+                 .first_node = joints.moving_node(joints.first[j]),
+                 .second_node = joints.moving_node(joints.second[j]),
+                 .point = first.point,
+                 .frame = second.axes,
+                 .error = Vec3::Zero(),
+                 .axis = {},
+                 .mimic = {.coefficient = coefficient, .leads = leads}};
+    }
+};
+
+/// Appends the two blocks of the row by which joint `j` mimics its leader.
+void add_mimic(const JointInputs& joints, std::size_t j, Real kick, JointBlockTable& blocks) {
+    const auto leader = static_cast<std::size_t>(joints.leader[j]);
+    const MimicRow& mimic = joints.mimic[j];
+    MimicAxis own(joints, j, false, 1), other(joints, leader, true, -mimic.ratio);
+    own.block.mimic.other_node = other.block.own_node();
+    other.block.mimic.other_node = own.block.own_node();
+    if (own.block.moving_node() == no_index) return;
+    own.block.error.z() = own.coordinate - mimic.ratio * other.coordinate - mimic.offset;
+    const Real impulse = joints.step[j] > 0 ? kick / joints.step[j] * joints.mimic_impulse[j] : 0;
+    for (const JointBlock& block : {own.block, other.block}) {
+        blocks.block.push_back(block);
+        blocks.impulse.push_back({0, 0, block.mimic.coefficient * impulse});
+    }
+}
+
 }  // namespace
 
 JointPlace JointInputs::place(Index body, const JointFrame& frame) const {
@@ -111,6 +150,8 @@ bool prepare_joints(const JointInputs& joints, Real t, Real h, Real kick, JointB
         blocks.block.push_back(block);
         blocks.impulse.push_back(scale * joints.moment[j]);
     }
+    for (std::size_t j = 0; j < joints.size(); ++j)
+        if (joints.leader[j] != no_index && blocks.resting[j] == 0) add_mimic(joints, j, kick, blocks);
     blocks.axis_impulse.assign(blocks.size(), {});
     return joints.size() > 0;
 }
@@ -132,10 +173,16 @@ bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& o
         out.coordinate[j] = blocks.coordinate[j];
         out.impulse[j] = out.moment[j] = Vec3::Zero();
         out.axis_impulse[j] = {};
+        out.mimic_impulse[j] = 0;
         out.step[j] = kick;
     }
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const auto j = static_cast<std::size_t>(blocks.block[i].joint);
+        const MimicShare& mimic = blocks.block[i].mimic;
+        if (mimic.coefficient != 0) {
+            if (!mimic.leads) out.mimic_impulse[j] = blocks.impulse[i].z();
+            continue;
+        }
         (blocks.block[i].turning ? out.moment : out.impulse)[j] = blocks.impulse[i];
         if (!blocks.block[i].axis.locked) out.axis_impulse[j] = blocks.axis_impulse[i];
     }

@@ -26,6 +26,9 @@ struct JointInputs {
     std::span<const JointPassiveRow> passive;
     std::span<const Range> motor_keys;
     std::span<const TimeKey> key;
+    std::span<const Index> leader;
+    std::span<const MimicRow> mimic;
+    std::span<const Real> mimic_impulse;
     std::span<const Real> coordinate;
     std::span<const Vec3> impulse, moment;
     std::span<const Real> step;
@@ -50,6 +53,9 @@ struct JointInputs {
                 .passive = binder.read(joint.passive),
                 .motor_keys = binder.read(joint.motor_keys),
                 .key = binder.read(joint.key),
+                .leader = binder.read(joint.leader),
+                .mimic = binder.read(joint.mimic),
+                .mimic_impulse = binder.read(joint.mimic_impulse),
                 .coordinate = binder.read(joint.coordinate),
                 .impulse = binder.read(joint.impulse),
                 .moment = binder.read(joint.moment),
@@ -109,13 +115,14 @@ struct JointMemory {
     std::span<Real> coordinate;
     std::span<Vec3> impulse, moment;
     std::span<AxisImpulses> axis_impulse;
-    std::span<Real> step;
+    std::span<Real> mimic_impulse, step;
 
     static JointMemory bind(const Binder& binder, JointTable& joint) {
         return {.coordinate = binder.write(joint.coordinate),
                 .impulse = binder.write(joint.impulse),
                 .moment = binder.write(joint.moment),
                 .axis_impulse = binder.write(joint.axis_impulse),
+                .mimic_impulse = binder.write(joint.mimic_impulse),
                 .step = binder.write(joint.step)};
     }
 };

@@ -71,6 +71,7 @@ struct JointLaw {
     Mat3 block;          // block of W
     Mat3 inverse;        // inverse of the locked part of the block
     Real axis_mobility;  // mobility of the axis while the locked rows hold (Schur complement)
+    Real mimic = 0;      // MimicShare::coefficient; if it is not 0, no other member is used
 
     void prepare(const Mat3& of, bool with_axis);
 

@@ -61,6 +61,13 @@ Vec4 BodyOperator::project_in_frame(Index i, const Vec4& impulse) const {
 
 Real BodyOperator::step(Index i, Real relaxation) {
     if (!(mobility(i) > 0)) return 0;
+    if (const JointLaw* law = joint(i); law != nullptr && law->mimic != 0)
+        return solve_mimic(
+            i, relaxation, [&](Index k) { return velocity(k); },
+            [&](Index k, const Vec4& change) {
+                apply(k, change);
+                memory_.impulse[static_cast<std::size_t>(k)] += change;
+            });
     Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
     Vec4 next = answer(i, impulse, velocity(i));
     if (relaxation != 1) next = project(i, impulse + relaxation * (next - impulse));
@@ -186,6 +193,10 @@ Real BodyOperator::squared_residual(Index i) const {
     }
     const Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
     const JointLaw* const law = joint(i);
+    if (law != nullptr && law->mimic != 0) {
+        const Real rate = mimic_rate(i, [&](Index k) { return velocity(k); });
+        return contact(i).inverse_diagonal * rate * rate;
+    }
     if (law == nullptr && part(i).across != 1) {
         // The natural map of the isotropic problem in scaled variables.
         Vec4 r = in_frame(part(i).frame, impulse), u = in_frame(part(i).frame, velocity(i));

@@ -110,6 +110,20 @@ public:
                                                     : &memory_.joint[static_cast<std::size_t>(i - memory_.contacts)];
     }
 
+    /// Rate of the mimic row with the blocks i and i + 1. `velocity_of(k)`: velocity of block k.
+    Real mimic_rate(Index i, auto&& velocity_of) const {
+        Real rate = 0;
+        for (const Index k : {i, i + 1}) rate += joint(k)->mimic * part(k).frame[2].dot(velocity_of(k));
+        return rate;
+    }
+    /// Solves the mimic row with the blocks i and i + 1 while all other impulses stay. `apply(k, change)` changes the
+    /// impulse of block k. Returns the squared energy norm of the change [J]
+    Real solve_mimic(Index i, Real relaxation, auto&& velocity_of, auto&& apply) const {
+        const Real change = -relaxation * mimic_rate(i, velocity_of) * contact(i).inverse_diagonal;
+        for (const Index k : {i, i + 1}) apply(k, Vec4(joint(k)->mimic * change * part(k).frame[2]));
+        return contact(i).diagonal * change * change;
+    }
+
 private:
     // Functions that the base class calls.
     bool moves(Index i) const { return contact(i).inverse_diagonal > 0; }

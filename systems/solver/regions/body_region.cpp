@@ -43,9 +43,10 @@ void BodyRegion::take_joint_impulses(const RegionStage& stage) const {
 void BodyRegion::hold_joints(const RegionStage& stage, BodyOperator& op, RegionOutcome& outcome) const {
     if (joint.empty() || outcome.status == RegionStatus::not_finite) return;
     Real off = 0;  // squared energy norm of the correction [J]
-    for (std::size_t k = 0; k < joint.size(); ++k)
-        off += correct_joint(stage, stage.inputs.joints[static_cast<std::size_t>(joint[k])], memory.velocity,
-                             joint_place(stage, k));
+    for (std::size_t k = 0; k < joint.size(); ++k) {
+        const JointBlock& block = stage.inputs.joints[static_cast<std::size_t>(joint[k])];
+        if (block.mimic.coefficient == 0) off += correct_joint(stage, block, memory.velocity, joint_place(stage, k));
+    }
     const Real small = tolerance * scale;
     if (off <= small * small && !stage.settings.fixed_iterations) return;
     const Index before = outcome.iterations;

@@ -161,7 +161,9 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
     const Mat3 mobility = rigid_coupling(part, part);
     part.mobility = columns_of(mobility);
     part.along_normal = part.steepest = mobility.norm();
-    place.law.prepare(block.frame.transpose() * mobility * block.frame, with_axis);
+    place.law.mimic = block.mimic.coefficient;
+    place.law.axis_free = false;
+    if (place.law.mimic == 0) place.law.prepare(block.frame.transpose() * mobility * block.frame, with_axis);
     place.law.axis = with_axis ? bounds_of(block.axis, place.law.axis_mobility, stage.h, fastest) : AxisBounds{};
 
     Vec3 bias = pull_of(block, stage.h, fastest) +
@@ -176,7 +178,27 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
     contact.normal = part.frame[2];
     contact.offset = padded(offset);
     contact.diagonal = mobility.trace() / 3;
-    contact.inverse_diagonal = 1 / contact.diagonal;
+    contact.inverse_diagonal = contact.diagonal > 0 ? 1 / contact.diagonal : 0;
+}
+
+void load_mimic(const JointPlaceInRegion& first, const JointPlaceInRegion& leader) {
+    constexpr Real rounding = 1e-12;  // of the mobility, relative to its summands
+    Real sum = 0, size = 0;
+    for (const JointPlaceInRegion* a : {&first, &leader})
+        for (const JointPlaceInRegion* b : {&first, &leader}) {
+            const Mat3 coupling = rigid_coupling(a->part, b->part);
+            const Real term =
+                a->law.mimic * b->law.mimic * a->part.frame[2].head<3>().dot(coupling * b->part.frame[2].head<3>());
+            sum += term;
+            size += std::abs(term);
+        }
+    const Vec3 axis = first.part.frame[2].head<3>();
+    const bool moves = sum > rounding * size;
+    first.part.mobility = columns_of(sum * axis * axis.transpose());
+    first.contact.diagonal = moves ? sum : 0;
+    first.contact.inverse_diagonal = moves ? 1 / sum : 0;
+    leader.part.mobility = columns_of(Mat3(Mat3::Zero()));
+    leader.contact.diagonal = leader.contact.inverse_diagonal = 0;
 }
 
 Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,

@@ -20,6 +20,10 @@ struct JointPlaceInRegion {
 void load_joint(const RegionStage& stage, const JointBlock& block, std::span<const Index> rigid,
                 const JointPlaceInRegion& place);
 
+/// Sets the mobility of a mimic row from its two loaded blocks. The row belongs to `first`; the block `leader` counts
+/// as a row that moves nothing.
+void load_mimic(const JointPlaceInRegion& first, const JointPlaceInRegion& leader);
+
 /// Corrects the offset of a joint so that the joint holds at the end of the step, by one Newton step. The error of the
 /// joint block at the end of the step is predicted from the velocities of the region. The part that later steps shall
 /// correct is subtracted. The remaining error divided by h is added to the offset. Returns the squared mass-weighted

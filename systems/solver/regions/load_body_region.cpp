@@ -169,8 +169,14 @@ private:
 
     void load_joint_at(std::size_t k) {
         const JointPlaceInRegion place = region_.joint_place(stage_, k);
-        load_joint(stage_, stage_.inputs.joints[static_cast<std::size_t>(region_.joint[k])], region_.rigid, place);
+        const JointBlock& block = stage_.inputs.joints[static_cast<std::size_t>(region_.joint[k])];
+        load_joint(stage_, block, region_.rigid, place);
         region_.memory.impulse[region_.row.size() + k].setZero();
+        if (block.mimic.coefficient != 0) {
+            region_.sums.separating = false;
+            if (block.mimic.leads) load_mimic(region_.joint_place(stage_, k - 1), place);
+            return;
+        }
         const Vec4 u = add_rigid_velocities(place.part, region_.memory.velocity.data(), place.contact.offset);
         add_joint(place, u, region_.sums);
     }

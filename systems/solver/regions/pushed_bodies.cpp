@@ -74,6 +74,16 @@ Real PushedBodies::sweep_joints(std::span<Vec4> push) const {
         const auto i = static_cast<Index>(at);
         const RigidPart& part = memory_.part[at];
         const JointLaw& law = *op_.joint(i);
+        if (law.mimic != 0) {
+            if (op_.mobility(i) > 0)
+                size += op_.solve_mimic(
+                    i, 1, [&](Index k) { return op_.velocity_at(k, push.data()); },
+                    [&](Index k, const Vec4& change) {
+                        op_.apply_undeformed(k, change, push.data());
+                        impulse[static_cast<std::size_t>(k)] += change;
+                    });
+            continue;
+        }
         const Mat3 frame = matrix_of(part.frame);
         const Vec3 r = frame.transpose() * impulse[at].head<3>();
         const Vec3 u = frame.transpose() * op_.velocity_at(i, push.data()).head<3>();

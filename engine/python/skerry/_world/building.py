@@ -20,6 +20,7 @@ from .._arrays import (
     name_text,
     read_only,
     real,
+    real_array,
     time_table,
     vector,
     whole,
@@ -131,7 +132,7 @@ class Building(CavityBuilding):
 
     def add_body(
         self,
-        mesh: Mesh | Sphere | Capsule | Cylinder,
+        mesh: Mesh | SurfaceMesh | Sphere | Capsule | Cylinder,
         material: Material | MaterialHandle,
         *,
         materials: Mapping[int | str, Material | MaterialHandle] | None = None,
@@ -143,19 +144,25 @@ class Building(CavityBuilding):
         element: ElementKind = "smoothed",
         self_contact: bool = False,
         contact_distance: float | None = None,
+        mass: float | None = None,
+        center_of_mass: VectorLike | None = None,
+        inertia: ArrayLike | None = None,
         collision_group: int = 1,
         collision_mask: int = 0xFFFFFFFF,
         name: str | None = None,
     ) -> Body:
         """Adds a body and returns it.
 
-        mesh: a Mesh; or a Sphere, a Capsule or a Cylinder, which are rigid and touch others with their exact shape.
+        mesh: a Mesh; a Sphere, a Capsule or a Cylinder, which are rigid and touch others with their exact shape; or a
+        SurfaceMesh of closed shells with dynamics="rigid".
         material: a handle, or a record; equal records become one material. materials: materials of the tetrahedra with
         a label, or of a set by its name; sets take precedence. position, rotation: pose of the mesh (3,) [m, rad].
         velocity, angular_velocity: of the body about its centre of mass (3,) [m/s, rad/s]. dynamics: "explicit",
         "implicit", "rigid" or "automatic", which chooses explicit or implicit by their costs. element: kind of the
         elements. self_contact: True: the body can touch itself. contact_distance: default 2 % of the mean edge length
-        of the surface [m]. collision_group, collision_mask: see Body.set_collision_groups(). name: unique in the world,
+        of the surface [m]. mass: of a rigid body [kg], instead of that by density. center_of_mass (3,) [m] and inertia
+        (3, 3) about it [kg m^2]: both in the frame of the mesh; they require the mass, which alone scales the inertia
+        of the shape. collision_group, collision_mask: see Body.set_collision_groups(). name: unique in the world,
         default "body N".
 
         SceneError: a value is out of range, or a body has this name. BufferError: arrays of views() are in use. Ctrl-C
@@ -171,12 +178,15 @@ class Building(CavityBuilding):
             element=element,
             self_contact=flag(self_contact, "self_contact"),
             contact_distance=None if contact_distance is None else real(contact_distance, "contact_distance"),
+            mass=None if mass is None else real(mass, "mass"),
+            center_of_mass=None if center_of_mass is None else vector(center_of_mass, "center_of_mass"),
+            inertia=None if inertia is None else real_array(inertia, "inertia", (3, 3)).tolist(),
             collision_group=whole(collision_group, "collision_group"),
             collision_mask=whole(collision_mask, "collision_mask"),
             name=name,
         )
-        if isinstance(mesh, (Sphere, Capsule, Cylinder)):
-            handle = self._core.add_round_body(mesh, self._material(material), given)
+        if isinstance(mesh, (SurfaceMesh, Sphere, Capsule, Cylinder)):
+            handle = self._core.add_rigid_body(mesh, self._material(material), given)
         elif isinstance(mesh, Mesh):
             given_materials = checked(materials or {}, "materials", Mapping)
             by_label, by_set = {}, {}
@@ -187,7 +197,7 @@ class Building(CavityBuilding):
                     by_label[index_array(key, "label", ()).item()] = self._material(item)
             handle = self._core.add_body(mesh._core, self._material(material), by_label, by_set, given)
         else:
-            raise TypeError(f"mesh: found {mesh!r}, expected a Mesh, a Sphere, a Capsule or a Cylinder")
+            raise TypeError(f"mesh: found {mesh!r}, expected a Mesh, SurfaceMesh, Sphere, Capsule or Cylinder")
         return Body(self._self, handle, given.name)
 
     def add_collider(
@@ -246,6 +256,7 @@ class Building(CavityBuilding):
         *,
         point: VectorLike = (0.0, 0.0, 0.0),
         axis: VectorLike = (0.0, 0.0, 1.0),
+        coordinate: float = 0.0,
         lower: float | None = None,
         upper: float | None = None,
         motor: Motor | None = None,
@@ -255,7 +266,7 @@ class Building(CavityBuilding):
         """Joins two rigid bodies, or a rigid body and the world, in their present poses, and returns the joint.
 
         kind: "ball", "hinge", "slider" or "fixed". point: position of the joint (3,) [m]. axis: axis of a hinge or a
-        slider (3,). lower, upper: limits of its coordinate, which is 0 now [rad or m]. motor: motor on the axis.
+        slider (3,). coordinate: present coordinate; lower, upper: its limits [rad or m]. motor: motor on the axis.
         passive: spring, damper and dry friction on the axis. bodies_touch: True: the two bodies may collide.
         SceneError: a body is not rigid, or a value is out of range."""
         given = Arguments(
@@ -263,6 +274,7 @@ class Building(CavityBuilding):
             kind=kind,
             point=vector(point, "point"),
             axis=vector(axis, "axis"),
+            coordinate=real(coordinate, "coordinate"),
             lower=lower,
             upper=upper,
             motor=motor,

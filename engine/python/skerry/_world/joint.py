@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .._arrays import Vector, checked, real
 from .._settings import JointKind, JointPassive, Motor
@@ -31,6 +31,8 @@ class JointState:
     motor: moment or force along the axis that the motor exerts [N m or N].
     passive: moment or force along the axis of spring, damper and dry friction together [N m or N].
     limit: moment or force along the axis that the limits exert [N m or N].
+    mimic: moment or force along the axis that makes the joint mimic another one, which gets -ratio times as much [N m
+        or N].
     error: distance between the two points that the joint should keep together [m].
     """
 
@@ -46,6 +48,7 @@ class JointState:
     motor: float
     passive: float
     limit: float
+    mimic: float
     error: float
 
 
@@ -90,6 +93,20 @@ class Joint(WorldObject):
         """Spring, damper and dry friction along the axis."""
         passive: JointPassive = self._core.passive(self._handle)
         return passive
+
+    @property
+    def mimic(self) -> tuple[Joint, float, float] | None:
+        """The joint that this joint mimics, the ratio and the offset; None if it mimics none."""
+        values: tuple[Any, float, float] | None = self._core.mimic(self._handle)
+        return None if values is None else (self._world._joint(values[0]), values[1], values[2])
+
+    def set_mimic(self, leader: Joint | None, *, ratio: float = 1.0, offset: float = 0.0) -> None:
+        """Couples the joint to another hinge or slider: coordinate = ratio * leader.coordinate + offset.
+
+        Forces on one of the joints move the other one. None ends the coupling. SceneError: a joint has no axis, the
+        ratio is 0, or the leader mimics this joint."""
+        other = None if leader is None else self._world._own(leader, "leader", Joint)
+        self._core.set_mimic(self._handle, other, real(ratio, "ratio"), real(offset, "offset"))
 
     def set_motor(self, motor: Motor | None) -> None:
         """Sets the motor of a hinge or a slider; None removes it."""

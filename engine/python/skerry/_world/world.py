@@ -9,23 +9,30 @@ import os
 import sys
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from html import escape
 from typing import Any, Self, Unpack
 
+import numpy as np
+
 from .. import _core
-from .._arrays import VectorLike, checked, flag, is_false, real, real_array, whole
+from .._arrays import RotationLike, VectorLike, checked, flag, is_false, name_text, real, real_array, vector, whole
+from .._arrays import rotation as rotation_vector
 from .._arrays import seconds as checked_seconds
 from .._errors import BusyError, Doubt, StepError, scene_error
 from .._recorder import WorldOutput
 from .._results import WorldResults
-from .._settings import Backend, Settings
+from .._robot import Frame, PlacedRobot, Robot, load_robot, plan_robot
+from .._robot import add_robot as add_planned_robot
+from .._robot.description import turn
+from .._settings import Backend, Material, Settings
 from .body import Body
 from .building import Arguments
 from .changes import SettingsChanges
 from .collider import Collider
 from .load import WorldLoads
+from .material import MaterialHandle
 from .objects import WorldObject
 from .page import world_table
 from .relax import RelaxReport
@@ -113,6 +120,42 @@ class World(SurfaceRules, WorldLoads, WorldResults, WorldOutput):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (type(self).from_bytes, (self.to_bytes(),))
+
+    # Robots.
+
+    def add_robot(
+        self,
+        robot: Robot | str | os.PathLike[str],
+        *,
+        material: Material | MaterialHandle | None = None,
+        position: VectorLike = (0.0, 0.0, 0.0),
+        rotation: RotationLike = (0.0, 0.0, 0.0),
+        coordinates: Mapping[str, float] | None = None,
+        fixed: bool | None = None,
+        motors: bool = True,
+        self_collision: bool = True,
+        name: str | None = None,
+    ) -> PlacedRobot:
+        """Adds a robot as rigid bodies and joints, all or none of them.
+
+        robot: the result of load_robot(), or a file for it. material: of the surfaces. position, rotation: pose of the
+        robot (3,) [m, rad]. coordinates: coordinates of joints by name; default: 0, or the nearest value within the
+        limits [rad or m]. fixed: True: the base does not move; False: it is free; None: as the file says. motors:
+        False: without motors. With True they hold the coordinates, or have the speed or the force 0. self_collision:
+        False: links do not collide with each other. With True, only links that a joint joins, and pairs that the file
+        excludes, do not. name: names of the bodies are NAME/LINK, by default with the name of the robot.
+
+        SceneError: an error in the file, or a value is out of range, or a body has one of the names."""
+        given = robot if isinstance(robot, Robot) else load_robot(robot)
+        place = Frame(np.array(vector(position, "position")), turn(rotation_vector(rotation, "rotation")))
+        return add_planned_robot(
+            self,
+            given,
+            plan_robot(given, place, coordinates, fixed=fixed, motors=flag(motors, "motors")),
+            material=Material() if material is None else material,
+            self_collision=flag(self_collision, "self_collision"),
+            name=given.name if name is None else name_text(name, "name"),
+        )
 
     # Running.
 
