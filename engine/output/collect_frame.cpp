@@ -33,7 +33,8 @@ Frame collect_frame(const World& world) {
                 .energy = world.energy(),
                 .bodies = {},
                 .colliders = {},
-                .contacts = world.contacts()};
+                .contacts = world.contacts(),
+                .lines = collect_lines(world)};
     const std::vector<BodyHandle> bodies = world.bodies();
     std::vector<NodeFields> fields(bodies.size());
     parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {

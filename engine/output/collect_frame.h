@@ -1,11 +1,15 @@
 // Copies the state of a world into a frame of output.
 #pragma once
 
+#include <vector>
+
 #include "engine/output/frame.h"
 #include "skerry/world.h"
 
 namespace skerry {
 
 Frame collect_frame(const World& world);
+/// Joints, ties, cables and springs, in this order.
+std::vector<LineFrame> collect_lines(const World& world);
 
 }  // namespace skerry

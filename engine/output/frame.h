@@ -2,10 +2,13 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "components/options.h"
 #include "skerry/report.h"
 #include "skerry/settings.h"
 
@@ -39,6 +42,35 @@ struct ColliderFrame {
     MotionKey pose;
 };
 
+enum class LineKind : std::uint8_t { joint, tie, cable, spring };
+template <>
+struct EnumNames<LineKind> {
+    static constexpr std::array<std::pair<LineKind, std::string_view>, 4> table{{
+        {LineKind::joint, "joint"},
+        {LineKind::tie, "tie"},
+        {LineKind::cable, "cable"},
+        {LineKind::spring, "spring"},
+    }};
+};
+
+/// A joint, tie, cable or spring in one frame of output, as a line through points.
+struct LineFrame {
+    LineKind kind = LineKind::joint;
+    std::uint32_t slot = 0, generation = 0;  // members of its handle
+    std::string name;
+    // Present positions [m]. A cable and a spring have those of their anchors. A tie has those of the nodes that have
+    // not broken off. A hinge and a slider have the ends of a piece of the axis, other joints one point.
+    std::vector<Vec3> points{};
+    // Values by point [N]: tension of the segment from this point (cable), force of the spring, positive in tension,
+    // norm of the force on the node (tie) or on the first body (joint).
+    std::vector<Real> force{};
+
+    /// True if lines connect consecutive points.
+    bool is_joined() const { return kind != LineKind::tie; }
+    /// Identifies the object in all frames.
+    std::tuple<LineKind, std::uint32_t, std::uint32_t> key() const { return {kind, slot, generation}; }
+};
+
 struct Frame {
     Real time = 0;                // [s]
     Vec3 gravity = Vec3::Zero();  // [m/s^2]
@@ -46,6 +78,7 @@ struct Frame {
     std::vector<BodyFrame> bodies;
     std::vector<ColliderFrame> colliders;
     std::span<const Contact> contacts;
+    std::vector<LineFrame> lines{};
 };
 
 /// Number of contact regions. Regions are numbered consecutively from 0. Contacts that belong to no region have the

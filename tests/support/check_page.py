@@ -165,6 +165,9 @@ POINTING = """
     send(PointerEvent, "pointerdown", contact, { pointerType: "touch" });
     send(PointerEvent, "pointerup", contact, { pointerType: "touch" });
     check(!tip.hidden, "a tap tells values");
+    search(/Cable: cable <&>tension [\\d.]+.m?N/);
+    search(/Tie: tieforce on the node [\\d.]+.m?N/);
+    search(/Spring: springforce -[\\d.]+.m?N/);
 """
 
 KEYS = """
@@ -187,6 +190,10 @@ KEYS = """
     key("4");
     check(root.dataset.color === "body", "4 colours by body");
     check(document.querySelectorAll("#color_legend .bodies div").length === 8, "the legend lists all bodies");
+    const count = Number(root.dataset.lines);
+    check(count > 8 && /cable/.test(find("line_legend").textContent), "joints and cables are shown");
+    key("j");
+    check(root.dataset.lines === "0" && find("line_legend").hidden, "J hides them");
     key("c");
     check(document.querySelector("#contacts [aria-checked=true]").dataset.value === "region", "C goes on");
     const frame = () => Number(root.dataset.frame), begun = frame();
@@ -269,7 +276,7 @@ def main(folder):
     check(folder, "page.html", switched, {**ready, "bodies": "8", "color": "body"}, "frame_60.png")
     check(folder, "page.html", "#frame=119&colliders=0&contacts=off", {**ready, "frame": "119", "bodies": "7"},
           "frame_119.png")
-    check(folder, "page.html", "#frame=70", ready, "narrow.png", (520, 1100))
+    check(folder, "page.html", "#time=1.17", {**ready, "frame": "70"}, "narrow.png", (520, 1100))
     # In a small window, whose pictures cost little: on a machine with other work the browser's own time passes between
     # few of them.
     for seconds in [10, 40]:

@@ -137,6 +137,26 @@ def check_colliders(path):
     same("capsule", [capsule[:, 1].min(), capsule[:, 1].max()], [-0.35, -0.05], 1e-9)
 
 
+def check_lines(path, frame):
+    data = read(vtk.vtkXMLPolyDataReader(), path)
+    place, force = points(data), cell_array(data, "force")
+    found = {}
+    for number in range(data.GetNumberOfCells()):
+        cell = data.GetCell(number)
+        ends = [place[cell.GetPointId(k)] for k in range(cell.GetNumberOfPoints())]
+        kind, line = (cell_array(data, name)[number] for name in ["kind", "line"])
+        found.setdefault((line, kind), []).append((ends, force[number]))
+    names = texts(data, "line_names")
+    assert names[:3] == [b"tie", b"cable <&>", b"spring"], f"names of lines, also of those that have gone: {names}"
+    assert len(found) == len(frame["lines"]), "one number a line"
+    for cells, line in zip([found[key] for key in sorted(found, key=lambda key: key[1])],
+                           sorted(frame["lines"], key=lambda line: line["kind"])):
+        ends = line["points"]
+        expected = [[a, b] for a, b in zip(ends, ends[1:])] if line["joined"] and len(ends) > 1 else [[a] for a in ends]
+        same("ends of segments", [cell[0] for cell in cells], expected, 0)
+        same("force", [cell[1] for cell in cells], line["force"][:len(expected)], FLOAT)
+
+
 def main(folder):
     with open(os.path.join(folder, "expected.json")) as file:
         expected = json.load(file)
@@ -151,6 +171,7 @@ def main(folder):
         check_bodies(files["bodies"], frame)
         contacts += check_contacts(files["contacts"], frame)
         check_colliders(files["colliders"])
+        check_lines(files["lines"], frame)
     without = any(not frame["contacts"] for frame in expected["frames"])
     assert contacts > 0 and without, "frames with and without contacts"
     assert not [name for name in os.listdir(folder) if name.endswith(".part")], "no half-written file left"

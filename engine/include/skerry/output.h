@@ -10,11 +10,12 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Writes frames for ParaView. The index file NAME.pvd lists three files for each frame:
+/// Writes frames for ParaView. The index file NAME.pvd lists these files for each frame:
 /// - one .vtu file of all bodies, with displacement, velocity, speed, stress, strain, and the numbers of body and
 ///   material;
 /// - one .vtp file of the contacts, with impulse, force, normal, gap, slip, state and region;
-/// - one .vtp file of the colliders, which is written again only when a collider has changed.
+/// - one .vtp file of the colliders, which is written again only when a collider has changed;
+/// - one .vtp file of joints, ties, cables and springs, with kind and force, if there are any.
 ///
 /// Displacements are measured from the position in which a body was first written. Stress is Cauchy stress [Pa], strain
 /// is Green strain. Both are given by tetrahedron and by node, with components in the order of VTK: XX, YY, ZZ, XY, YZ,
@@ -41,10 +42,10 @@ private:
 };
 
 /// Collects frames and writes one self-contained HTML page that plays the run. The page shows bodies coloured by speed,
-/// stress or strain, contacts by stick or slide, values under the pointer, and plots of stage times and energies. It
-/// can export pictures and videos. It works offline, because three.js is inlined. The frames are kept in memory in the
-/// compressed form of the page. Positions are accurate to 1/32768 of a body's extent, and values are stored as square
-/// roots in 11 bits (docs/decisions/0016-page-stream.md).
+/// stress or strain, contacts by stick or slide, joints, ties, cables and springs by force, values under the pointer,
+/// and plots of stage times and energies. It can export pictures and videos. It works offline, because three.js is
+/// inlined. The frames are kept in memory in the compressed form of the page. Positions are accurate to 1/32768 of a
+/// body's extent, and values are stored as square roots in 11 bits (docs/decisions/0016-page-stream.md).
 class PageWriter {
 public:
     PageWriter(const std::filesystem::path& file, const std::string& title);

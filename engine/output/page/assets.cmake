@@ -16,6 +16,7 @@ set(page_scripts
     view/page_pointers.js
     view/page_bodies.js
     view/page_contacts.js
+    view/page_lines.js
     view/page_colliders.js
     view/page_pick.js
     view/page_labels.js
@@ -40,6 +41,7 @@ set(page_streams
     page/stream/body_stream.cpp
     page/stream/contact_stream.cpp
     page/stream/deflate.cpp
+    page/stream/line_stream.cpp
     page/stream/pack.cpp
 )
 set(pages

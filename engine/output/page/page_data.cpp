@@ -58,6 +58,7 @@ void PageData::add(const Frame& frame) {
         put_floats(out, collider.pose.rotation);
     }
     pack_contacts(frame, out);
+    lines_.put_frame(frame, out);
     frames_.add(out);
 
     const auto count = [&](ContactMotion motion) {

@@ -12,6 +12,7 @@
 #include "engine/output/page/stream/body_stream.h"
 #include "engine/output/page/stream/contact_stream.h"
 #include "engine/output/page/stream/deflate.h"
+#include "engine/output/page/stream/line_stream.h"
 
 namespace skerry {
 
@@ -39,6 +40,7 @@ struct PageRow {
 ///   (BodyStream)
 ///   for each collider: its number as a count; f32 position[3] [m], rotation[3] (axis times angle) [rad]
 ///   contacts (ContactStream)
+///   lines (LineStream)
 class PageData {
 public:
     void add(const Frame& frame);
@@ -52,6 +54,7 @@ public:
     /// Distribution of the values of each displayed field. The number of fields is page_field_count.
     std::span<const Quantile> fields() const { return fields_; }
     const Quantile& force() const { return force_; }
+    const LineStream& lines() const { return lines_; }
     const Vec3& gravity() const { return gravity_; }
 
 private:
@@ -66,6 +69,7 @@ private:
     std::vector<BodyStream> bodies_;
     std::vector<PageCollider> colliders_;
     ContactStream contacts_;
+    LineStream lines_;
     std::vector<PageRow> rows_;
     Deflater frames_;
     std::array<Quantile, page_field_count> fields_;

@@ -39,6 +39,13 @@ Json json_of_colliders(const PageData& data) {
     return list;
 }
 
+Json json_of_lines(const PageData& data) {
+    Json list = Json::array();
+    for (const PageLine& line : data.lines().lines())
+        list.push_back({{"name", line.name}, {"kind", name_of(line.kind)}});
+    return list;
+}
+
 /// Plotted quantities as JSON: one array per quantity, with one value per frame.
 Json json_of_rows(const PageData& data) {
     Json rows;
@@ -100,7 +107,7 @@ Json json_of(const Quantile& quantile) {
 }
 
 std::string describe(const PageData& data, const PageSummary& summary) {
-    const Json json = {{"schema", 2},
+    const Json json = {{"schema", 3},
                        {"title", summary.title},
                        {"gravity", json_of(data.gravity())},
                        {"bodies", data.body_names()},
@@ -110,6 +117,8 @@ std::string describe(const PageData& data, const PageSummary& summary) {
                        {"stress", json_of(data.fields()[1])},
                        {"strain", json_of(data.fields()[2])},
                        {"force", json_of(data.force())},
+                       {"lines", json_of_lines(data)},
+                       {"line_force", json_of(data.lines().force())},
                        {"report", json_of_report(summary)}};
     // Names come from users and may contain any bytes. Bytes that are not UTF-8 become U+FFFD. Every '<' is escaped, so
     // that no name can close the script element.

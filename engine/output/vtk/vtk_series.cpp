@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint8_t vtk_triangle = 5, vtk_tetra = 10;
 constexpr std::size_t least_digits = 4;  // frame numbers are padded with zeros to this number of digits
 constexpr std::pair<const char*, const char*> kinds[] = {
-    {"bodies", ".vtu"}, {"contacts", ".vtp"}, {"colliders", ".vtp"}};
+    {"bodies", ".vtu"}, {"contacts", ".vtp"}, {"colliders", ".vtp"}, {"lines", ".vtp"}};
 
 void put_vector(auto& put, const Vec3& v) {
     put(v.x());
@@ -123,6 +123,9 @@ void VtkSeries::number(const Frame& frame) {
     for (const ColliderFrame& collider : frame.colliders)
         if (collider_number_.try_emplace(collider.handle, static_cast<Index>(collider_number_.size())).second)
             collider_names_.push_back(collider.name);
+    for (const LineFrame& line : frame.lines)
+        if (line_number_.try_emplace(line.key(), static_cast<Index>(line_number_.size())).second)
+            line_names_.push_back(line.name);
 }
 
 void VtkSeries::remove_earlier() {
@@ -182,6 +185,7 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
             colliders_file_ = colliders;
         else if (!colliders_file_.empty())
             list(2, colliders_file_);
+        list(3, frame_file("lines", ".vtp"));
     }
     // Later frames refer to the last file of colliders, until a collider moves away from its present pose.
     if (!colliders_file_.empty()) colliders_changed(now);
@@ -217,6 +221,11 @@ void VtkSeries::write_files(const Frame& frame) {
     entries_.push_back({frame.time, 0, bodies});
     entries_.push_back({frame.time, 1, contacts});
     if (!colliders_file_.empty()) entries_.push_back({frame.time, 2, colliders_file_});
+    if (!line_number_.empty()) {
+        const std::string lines = frame_file("lines", ".vtp");
+        write_lines(frame, lines);
+        entries_.push_back({frame.time, 3, lines});
+    }
     ++frame_count_;
 }
 
@@ -406,14 +415,64 @@ void VtkSeries::write_colliders(const Frame& frame, const std::string& name) con
     file.write(folder_ / name);
 }
 
+void VtkSeries::write_lines(const Frame& frame, const std::string& name) const {
+    struct Cell {
+        const LineFrame* line;
+        Index first, second;  // rows of the end points; equal for a cell that is a point
+        Real force;
+    };
+    std::vector<Cell> vertices, segments;
+    std::vector<Vec3> points;
+    for (const LineFrame& line : frame.lines) {
+        const bool has_segments = line.is_joined() && line.points.size() > 1;
+        for (std::size_t p = 0; p < line.points.size(); ++p) {
+            const auto row = static_cast<Index>(points.size());
+            points.push_back(line.points[p]);
+            if (!has_segments)
+                vertices.push_back({&line, row, row, line.force[p]});
+            else if (p + 1 < line.points.size())
+                segments.push_back({&line, row, row + 1, line.force[p]});
+        }
+    }
+    std::vector<Cell> cells = vertices;  // VTK numbers vertices before lines
+    cells.insert(cells.end(), segments.begin(), segments.end());
+    VtkFile file("PolyData", frame.time, {{"line_names", line_names_}});
+    file.open("Piece", count_attribute("Points", points.size()) + count_attribute("Verts", vertices.size()) +
+                           count_attribute("Lines", segments.size()));
+    file.open("Points");
+    file.array<double>("Points", 3, points.size(), [&](auto put) {
+        for (const Vec3& point : points) put_vector(put, point);
+    });
+    file.close("Points");
+    file.open("Verts");
+    scalars<std::int32_t>(file, "connectivity", vertices, [](const Cell& cell) { return cell.first; });
+    offsets(file, vertices.size(), 1);
+    file.close("Verts");
+    file.open("Lines");
+    file.array<std::int32_t>("connectivity", 1, 2 * segments.size(), [&](auto put) {
+        for (const Cell& cell : segments) {
+            put(cell.first);
+            put(cell.second);
+        }
+    });
+    offsets(file, segments.size(), 2);
+    file.close("Lines");
+    file.open("CellData");
+    scalars<std::uint8_t>(file, "kind", cells, [](const Cell& cell) { return cell.line->kind; });
+    scalars<std::int32_t>(file, "line", cells, [&](const Cell& cell) { return line_number_.at(cell.line->key()); });
+    scalars<float>(file, "force", cells, [](const Cell& cell) { return cell.force; });
+    file.close("CellData");
+    file.close("Piece");
+    file.write(folder_ / name);
+}
+
 void VtkSeries::write_index() const {
-    static constexpr const char* part_names[] = {"bodies", "contacts", "colliders"};
     write_file(folder_ / (name_ + ".pvd"), [&](std::ostream& out) {
         out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
                "byte_order=\"LittleEndian\">\n<Collection>\n";
         for (const auto& [time, part, file] : entries_)
             out << "<DataSet timestep=\"" << number_text(time) << "\" group=\"\" part=\"" << part << "\" name=\""
-                << part_names[part] << "\" file=\"" << escape_markup(file) << "\"/>\n";
+                << kinds[part].first << "\" file=\"" << escape_markup(file) << "\"/>\n";
         out << "</Collection>\n</VTKFile>\n";
     });
 }

@@ -14,9 +14,10 @@ namespace skerry {
 /// True if `file_name` is the name of a file that a series called `name` may write.
 bool is_series_file(std::string_view file_name, std::string_view name);
 
-/// Writes up to three files for each frame: NAME_bodies_0000.vtu, NAME_contacts_0000.vtp and, if a collider was added,
-/// removed or moved, NAME_colliders_0000.vtp. The index NAME.pvd lists the files by time. Bodies and colliders are
-/// numbered in the order of their first appearance, and their numbers never change. The first frame removes the files
+/// Writes up to four files for each frame: NAME_bodies_0000.vtu, NAME_contacts_0000.vtp, NAME_colliders_0000.vtp if a
+/// collider was added, removed or moved, and NAME_lines_0000.vtp if the series has had joints, ties, cables or springs.
+/// The index NAME.pvd lists the files by time. Bodies, colliders and lines are numbered in the order of their first
+/// appearance, and their numbers never change. The first frame removes the files
 /// of an earlier series with the same name, and no other files. Throws SceneError if these files cannot be replaced. If
 /// a frame cannot be written completely, its files are removed.
 class VtkSeries {
@@ -34,7 +35,7 @@ public:
 private:
     struct Entry {
         Real time;         // [s]
-        int part;          // kind of the file: 0 for "bodies", 1 for "contacts", 2 for "colliders"
+        int part;          // index of the kind of file in `kinds`
         std::string file;  // file name without folder; the index is in the same folder
     };
 
@@ -45,6 +46,7 @@ private:
     void write_bodies(const Frame& frame, const std::string& file) const;
     void write_contacts(const Frame& frame, const std::string& file) const;
     void write_colliders(const Frame& frame, const std::string& file) const;
+    void write_lines(const Frame& frame, const std::string& file) const;
     bool colliders_changed(const Frame& frame);
     void measure_patch(const Frame& frame);
     std::string frame_file(const char* what, const char* extension) const;
@@ -56,7 +58,8 @@ private:
     std::size_t frame_count_ = 0;
     std::map<BodyHandle, Index> body_number_;
     std::map<ColliderHandle, Index> collider_number_;
-    std::vector<std::string> body_names_, collider_names_;  // names by number
+    std::map<decltype(LineFrame().key()), Index> line_number_;
+    std::vector<std::string> body_names_, collider_names_, line_names_;  // names by number
     std::vector<std::string> material_names_;
     // Node positions of each body in its first frame, from which displacements are measured [m].
     std::map<BodyHandle, std::vector<Vec3>> origin_;

@@ -111,6 +111,8 @@ TEST_CASE("a frame of nothing is written, too", "[unit][output]") {
     CHECK(content(folder.path() / "run_bodies_0000.vtu").find("NumberOfPoints=\"0\" NumberOfCells=\"0\"") !=
           std::string::npos);
     CHECK(content(folder.path() / "run_contacts_0000.vtp").find("NumberOfVerts=\"0\"") != std::string::npos);
+    CHECK(count_files(folder, "run_lines_") == 0);
+    CHECK(content(folder.path() / "run.pvd").find("lines") == std::string::npos);
 }
 
 TEST_CASE("a contact force is its impulse over the time that it stands for, and none without a step",

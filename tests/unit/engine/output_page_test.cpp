@@ -221,6 +221,44 @@ TEST_CASE("packed contacts give back what touches, where, how strongly, and whic
     CHECK(found_again > seen / 2);
 }
 
+TEST_CASE("packed lines give back points to half a step and forces to half a code, whatever comes and goes",
+          "[unit][output]") {
+    OutputSample sample(3, 1, 40);
+    PageData data;
+    data.add(Frame{});
+    for (int i = 0; i < 40; ++i) data.add(sample.frame(i));
+    const ReadRun run = read_run(data.packed_frames());
+    CHECK(run.step_of_lines < 1.0 / Lattice::steps);
+    CHECK(run.frames[0].lines.empty());
+    for (int i = 0; i < 40; ++i) {
+        const Frame& frame = sample.frame(i);
+        const ReadFrame& read = run.frames[static_cast<std::size_t>(i + 1)];
+        REQUIRE(read.lines.size() == frame.lines.size());
+        for (std::size_t l = 0; l < frame.lines.size(); ++l) {
+            const LineFrame& line = frame.lines[l];
+            const PageLine& page_line = data.lines().lines()[read.lines[l].number];
+            CHECK(page_line.name == line.name);
+            CHECK(page_line.kind == line.kind);
+            REQUIRE(read.lines[l].points.size() == line.points.size());
+            for (std::size_t p = 0; p < line.points.size(); ++p) {
+                const Real off = (read.lines[l].points[p] - line.points[p]).cwiseAbs().maxCoeff();
+                CHECK(off <= run.step_of_lines / 2 * 1.000001);
+                CHECK(std::abs(read.lines[l].force[p] - line.force[p]) <=
+                      1.001 * half_code(line.force[p], read.top_of_lines));
+            }
+        }
+    }
+    CHECK(data.lines().lines().size() == 4);
+    CHECK(data.lines().force().max() == Approx(20 * sample.frame(39).time));
+    CHECK(run_of(page_of(data, {}))["lines"][1] == nlohmann::json{{"name", "cable <&>"}, {"kind", "cable"}});
+}
+
+TEST_CASE("without joints, ties, cables and springs a frame has one more byte", "[unit][output]") {
+    std::string bytes;
+    LineStream().put_frame(Frame{}, bytes);
+    CHECK(bytes == std::string(1, '\0'));
+}
+
 TEST_CASE("a node that is not finite, or infinitely far, harms no other", "[unit][output]") {
     OutputSample sample(1, 1, 6);
     PageData data;

@@ -149,6 +149,29 @@ void OutputSample::add_contacts(int number, Real time) {
     }
 }
 
+void OutputSample::add_lines(int number) {
+    const Real time = frame_.time;
+    LineFrame cable{.kind = LineKind::cable, .name = "cable <&>", .points = {{0, 0, 0.7}}, .force = {3.5}};
+    for (const BodyFrame& body : frame_.bodies) {
+        cable.points.push_back(body.position[0]);
+        cable.force.push_back(3 + std::sin(9 * time));
+    }
+    LineFrame tie{.kind = LineKind::tie, .name = "tie"};
+    for (auto node = static_cast<std::size_t>(1 + 6 * number / frame_count_); node < 7; ++node) {
+        tie.points.push_back(frame_.bodies.back().position[node]);
+        tie.force.push_back(0.01 * static_cast<Real>(node));
+    }
+    const LineFrame spring{.kind = LineKind::spring,
+                           .name = "spring",
+                           .points = {{0.3, 0, 0.7}, frame_.bodies.back().position[0]},
+                           .force = {-std::cos(5 * time), -std::cos(5 * time)}};
+    frame_.lines = {tie, cable, spring};
+    if (2 * number >= frame_count_)
+        frame_.lines.insert(
+            frame_.lines.begin(),
+            {.kind = LineKind::joint, .name = "joint", .points = {{0.1, 0, 0.3}}, .force = {20 * time}});
+}
+
 const Frame& OutputSample::frame(int number) {
     const Real time = number * frame_step;
     frame_ =
@@ -176,6 +199,7 @@ const Frame& OutputSample::frame(int number) {
         body.node_strain = means_of_nodes(tetrahedra_, b.strain, b.position.size());
     }
     frame_.contacts = contacts_;
+    add_lines(number);
     const std::array<MotionKey, 5> pose{{{},
                                          {time, {0, 0, 0.005}, Vec3::Zero()},
                                          {time, {-0.75, 0.1 * std::sin(3 * time), 0.05}, Vec3::Zero()},

@@ -12,6 +12,8 @@ namespace skerry {
 
 /// Balls with a centre node and an icosahedron around it, refined `level` times: 10 * 4^level + 2 surface nodes. Ball 1
 /// is added at a third of the run, ball 0 removed at two thirds. Colliders: plane, bucket, moving box, capsule, mesh.
+/// Lines: a cable from a fixed point through the centres of all balls, a spring with a force of either sign, a tie
+/// whose nodes break off one by one, and a joint in the second half of the run.
 class OutputSample {
 public:
     OutputSample(int ball_count, int level, int frame_count);
@@ -24,6 +26,7 @@ public:
 private:
     void place_ball(int ball, Real time);
     void add_contacts(int ball, Real time);
+    void add_lines(int number);
 
     struct Ball {
         std::string name;

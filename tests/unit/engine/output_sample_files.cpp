@@ -55,6 +55,11 @@ Json expected(const Frame& frame) {
                             {"state", static_cast<int>(c.motion)},
                             {"region", c.region},
                             {"first_body", c.first.slot}});
+    Json& lines = json["lines"] = Json::array();
+    for (const LineFrame& line : frame.lines) {
+        lines.push_back({{"kind", static_cast<int>(line.kind)}, {"joined", line.is_joined()}, {"force", line.force}});
+        for (const Vec3& point : line.points) lines.back()["points"].push_back(json_of(point));
+    }
     return json;
 }
 

@@ -7,7 +7,11 @@
 #include "engine/output/collect_frame.h"
 #include "engine/output/page/page_data.h"
 #include "page_stream_reader.h"
+#include "skerry/cable.h"
+#include "skerry/joint.h"
 #include "skerry/output.h"
+#include "skerry/spring.h"
+#include "skerry/tie.h"
 #include "skerry/world.h"
 #include "tests/support/temporary_folder.h"
 
@@ -118,6 +122,59 @@ TEST_CASE("contacts of the page name both bodies, or the collider, and carry wha
     CHECK(on_floor == Approx(weight * (lower_volume + upper_volume)).epsilon(0.1));
     CHECK(between == Approx(weight * upper_volume).epsilon(0.1));
     CHECK(found_again > 0);
+}
+
+TEST_CASE("lines have the points and forces of joints, ties, cables and springs, and lose nodes that break off",
+          "[unit][output]") {
+    World world;
+    const MaterialHandle rubber = world.add_material({.young_modulus = 1e5, .density = 1000, .damping = 20});
+    const BodyHandle arm = world.add_body(mesh::box({0.3, 0.1, 0.1}, {3, 1, 1}),
+                                          {.material = rubber, .dynamics = BodyDynamics::rigid, .name = "arm"});
+    const Mesh pad_mesh = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
+    const BodyHandle pad = world.add_body(
+        pad_mesh, {.material = rubber, .position = {0.1, 0, 0.1}, .dynamics = BodyDynamics::explicit_elastic});
+    std::vector<Index> bottom;
+    for (std::size_t n = 0; n < pad_mesh.nodes.size(); ++n)
+        if (pad_mesh.nodes[n].z() < 0) bottom.push_back(static_cast<Index>(n));
+    const auto hinge = Joints(world).add({.kind = JointKind::hinge, .first = arm, .axis = {0, 1, 0}});
+    const auto tie = Ties(world).add({.body = pad, .nodes = bottom, .to_body = arm});
+    const auto cable = Cables(world).add(
+        {.points = {{.point = {-0.15, 0, 0.4}}, {.body = arm, .point = {-0.15, 0, 0}}, {.point = {-0.15, 0, -0.1}}},
+         .drive = {.tension = TimeTable(2)}});
+    const auto spring = Springs(world).add(
+        {.first = {.body = arm, .point = {0.15, 0, 0}}, .second = {.point = {0.15, 0, 0.5}}, .stiffness = 100});
+    REQUIRE(world.advance(0.02).ok());
+
+    std::vector<LineFrame> lines = collect_frame(world).lines;
+    REQUIRE(lines.size() == 4);
+    const JointState joint = Joints(world).state(hinge);
+    // The axis reaches one radius of gyration to each side: that of a box with edges a, b, c is sqrt((a^2+b^2+c^2)/12).
+    const Vec3 half_axis = std::sqrt((0.09 + 0.01 + 0.01) / 12) * joint.axis;
+    CHECK(lines[0].kind == LineKind::joint);
+    REQUIRE(lines[0].points.size() == 2);
+    CHECK((lines[0].points[0] - joint.point + half_axis).norm() < 1e-6);
+    CHECK((lines[0].points[1] - joint.point - half_axis).norm() < 1e-6);
+    CHECK(lines[0].force == std::vector<Real>(2, joint.force.norm()));
+    const TieState tied = Ties(world).state(tie);
+    REQUIRE(lines[1].points.size() == 4);
+    for (std::size_t k = 0; k < 4; ++k) {
+        CHECK(lines[1].points[k] == world.positions(pad)[static_cast<std::size_t>(bottom[k])]);
+        CHECK(lines[1].force[k] == tied.nodes[k].force.norm());
+    }
+    const CableState pulled = Cables(world).state(cable);
+    REQUIRE(lines[2].points.size() == 3);
+    CHECK(lines[2].points[1] == pulled.points[1].point);
+    CHECK(lines[2].force == std::vector<Real>{2, 2, 2});
+    CHECK(lines[3].points[1] == Vec3(0.15, 0, 0.5));
+    CHECK(lines[3].force == std::vector<Real>(2, Springs(world).state(spring).force));
+
+    Ties(world).set_break_force(tie, 1e-6);
+    Cables(world).remove(cable);
+    REQUIRE(world.advance(0.001).ok());
+    lines = collect_frame(world).lines;
+    REQUIRE(lines.size() == 3);
+    CHECK(lines[1].kind == LineKind::tie);
+    CHECK(lines[1].points.empty());
 }
 
 }  // namespace skerry::test::output_world_test

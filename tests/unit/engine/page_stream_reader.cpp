@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <stdexcept>
 
 namespace skerry {
@@ -175,6 +176,46 @@ void read_contacts(Bytes& in, std::size_t count, const ReadRun& run, const std::
     frame.contacts = std::move(rows);
 }
 
+struct LineTrack {
+    std::map<std::size_t, std::vector<std::array<std::int64_t, 4>>> codes;
+    std::int64_t exponent = 0;
+};
+
+void read_lines(Bytes& in, ReadRun& run, LineTrack& track, ReadFrame& frame) {
+    LineTrack now{.codes = {}, .exponent = track.exponent};
+    const std::int64_t count = in.count();
+    if (count > 0) {
+        now.exponent = in.change();
+        frame.top_of_lines = std::pow(4.0, static_cast<Real>(now.exponent));
+    }
+    if (count > 0 && run.step_of_lines == 0) {
+        for (int axis = 0; axis < 3; ++axis) run.origin_of_lines[axis] = in.raw<double>();
+        run.step_of_lines = in.raw<double>();
+    }
+    for (std::int64_t i = 0; i < count; ++i) {
+        ReadLine line{.number = static_cast<std::size_t>(in.count())};
+        auto& codes = now.codes[line.number];
+        codes.resize(static_cast<std::size_t>(in.count()));
+        const auto prev = track.codes.find(line.number);
+        const bool continues = prev != track.codes.end() && prev->second.size() == codes.size();
+        for (std::size_t k = 0; k < 4; ++k)
+            for (std::size_t p = 0; p < codes.size(); ++p) {
+                std::int64_t base = p > 0 ? codes[p - 1][k] : 0;
+                if (continues) base = prev->second[p][k];
+                if (continues && k == 3) base = halved(base, now.exponent - track.exponent);
+                codes[p][k] = base + in.change();
+            }
+        for (const auto& [x, y, z, force] : codes) {
+            line.points.push_back(run.origin_of_lines + run.step_of_lines * Vec3(static_cast<Real>(x),
+                                                                                 static_cast<Real>(y),
+                                                                                 static_cast<Real>(z)));
+            line.force.push_back(value_of(force, now.exponent));
+        }
+        frame.lines.push_back(std::move(line));
+    }
+    track = std::move(now);
+}
+
 }  // namespace
 
 std::string inflate_all(const std::string& packed) {
@@ -202,6 +243,7 @@ ReadRun read_run(const std::string& packed) {
     ReadRun run;
     std::vector<Track> tracks;
     ContactTrack contacts;
+    LineTrack lines;
     while (!in.ended()) {
         ReadFrame frame;
         const std::int64_t body_count = in.count(), collider_count = in.count(), contact_count = in.count();
@@ -225,6 +267,7 @@ ReadRun read_run(const std::string& packed) {
             for (int k = 0; k < 6; ++k) in.raw<float>();
         }
         read_contacts(in, static_cast<std::size_t>(contact_count), run, tracks, exponents[3], contacts, frame);
+        read_lines(in, run, lines, frame);
         run.frames.push_back(std::move(frame));
     }
     return run;

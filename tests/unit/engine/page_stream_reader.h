@@ -27,11 +27,19 @@ struct ReadContact {
     int state, row_prev;  // row_prev: row in the previous frame, -1 if new
 };
 
+struct ReadLine {
+    std::size_t number;
+    std::vector<Vec3> points{};
+    std::vector<Real> force{};
+};
+
 struct ReadFrame {
     std::array<Real, 4> top;  // maxima of speed, stress, strain, force
     std::vector<ReadBody> bodies;
     std::vector<std::size_t> colliders;
     std::vector<ReadContact> contacts;
+    std::vector<ReadLine> lines;
+    Real top_of_lines = 0;  // maximum of the forces of lines
 };
 
 struct ReadShape {
@@ -44,6 +52,8 @@ struct ReadShape {
 struct ReadRun {
     std::vector<ReadShape> shapes;  // by body number
     std::vector<ReadFrame> frames;
+    Vec3 origin_of_lines;
+    Real step_of_lines = 0;  // [m]
 };
 
 /// All frames of packed_frames(). Throws std::runtime_error if bytes are missing.

@@ -47,10 +47,10 @@
   const last = times.length - 1;
   const legend_top = Object.fromEntries(field_names.map((field) => [field, text.round_up(run[field].usual)]));
   const modes = { color: [...field_names, "body"], contacts: ["off", "motion", "region"] };
-  const switches = ["wire", "flat", "xray", "colliders", "labels", "follow", "light", "panel"];
+  const switches = ["wire", "flat", "xray", "colliders", "lines", "labels", "follow", "light", "panel"];
   const state = {
     frame: 0, time: 0, playing: false, rate: 1, color: "speed", contacts: "motion", wire: false, flat: false,
-    xray: false, colliders: true, labels: false, follow: true, light: false, panel: true, recording: false,
+    xray: false, colliders: true, lines: true, labels: false, follow: true, light: false, panel: true, recording: false,
   };
 
   let scene = null;
@@ -152,6 +152,7 @@
       plots.forEach((plot) => plot.draw());
     }
     if (name === "follow" && scene) scene.view.follow(on);
+    if (name === "lines") show_line_legend(find("line_legend"), on, run);
     show();
   }
   function set_rate(rate) {
@@ -211,8 +212,8 @@
     }
   }
 
-  // #frame=30&color=stress&contacts=region&wire=1&flat=1&xray=1&colliders=0&labels=1&light=1&panel=0&play=1&rate=0.5
-  // &view=turn,lift,distance
+  // #frame=30&color=stress&contacts=region&wire=1&flat=1&xray=1&colliders=0&lines=0&labels=1&light=1&panel=0&play=1
+  // &rate=0.5&view=turn,lift,distance; in place of a frame, time=0.5 [s]
   function read_hash() {
     const asked = new URLSearchParams(location.hash.slice(1));
     for (const name in modes) if (asked.has(name)) set_mode(name, asked.get(name));
@@ -223,8 +224,12 @@
       if (numbers.length === 3 && numbers.every(isFinite)) scene.view.look(...numbers);
     }
     if (asked.has("frame")) go_to(asked.get("frame"));
+    if (asked.has("time") && times.length) {
+      set_playing(false);
+      go_to_time(Number(asked.get("time")) || 0);
+    }
     if (asked.has("play")) set_playing(asked.get("play") !== "0");
-    return asked.has("frame") || asked.has("play");
+    return ["frame", "time", "play"].some((name) => asked.has(name));
   }
 
   const flip = (name) => () => set_switch(name, !state[name]);
@@ -245,6 +250,7 @@
     [["w"], "show or hide the edges of surfaces", flip("wire")],
     [["f"], "flat shading", flip("flat")],
     [["o"], "show or hide colliders", flip("colliders")],
+    [["j"], "show or hide joints, ties, cables and springs", flip("lines")],
     [["v"], "initial view, which follows the bodies", () => set_switch("follow", true)],
     [["[", "]"], "turn the view; with Shift: up and down", (shift, key) =>
       move((to) => (/[[\]]/.test(key) ? to.turn(key === "[" ? 20 : -20, 0) : to.turn(0, key === "{" ? 20 : -20)))()],
@@ -292,6 +298,7 @@
   }
 
   find("scrub").max = Math.max(last, 0);
+  document.querySelector('[data-switch="lines"]').hidden = run.lines.length === 0;
   for (const name in modes) set_mode(name, state[name]);
   for (const name of switches) set_switch(name, state[name]);
   go_to(0);

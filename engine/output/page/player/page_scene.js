@@ -11,6 +11,7 @@ function make_scene(find, run, shapes, frames, state, legend_top, changed) {
   const largest = Object.fromEntries(field_names.map((field) => [field, run[field].max]));
   const bodies = make_bodies(view.scene, shapes, frames, legend_top, largest);
   const contacts = make_contacts(view.scene, Math.max(0, ...run.rows.contacts), box, run.force.usual || 1);
+  const lines = make_lines(view.scene, run.lines, frames, box, run.line_force.usual || 1);
   const colliders = make_colliders(view.scene, run.colliders, box);
 
   const ink = () => {
@@ -61,9 +62,10 @@ function make_scene(find, run, shapes, frames, state, legend_top, changed) {
     const hit = pick_body(bodies.list, origin, direction);
     const size = { width: view.canvas.clientWidth, height: view.canvas.clientHeight };
     const row = pick_contact(contacts.shown, view.camera, size, pointer, 8);
+    const row_of_line = pick_line(lines.shown, view.camera, size, pointer, 8);
     show_tip(find("tip"), find("view"), pointer, {
       hit, values: hit && bodies.values_at(hit), body: hit && bodies.list[hit.body], color: state.color,
-      contact: row < 0 ? null : contacts.at(row),
+      contact: row < 0 ? null : contacts.at(row), joining: row_of_line < 0 ? null : lines.at(row_of_line),
       name_of: {
         body: (number) => bodies.list[number].name,
         collider: (number) => run.colliders[number].name || run.colliders[number].kind,
@@ -89,6 +91,7 @@ function make_scene(find, run, shapes, frames, state, legend_top, changed) {
       const frame = frames[number], then = frames[Math.min(number + 1, frames.length - 1)];
       root.dataset.bodies = bodies.show(frame, then, blend, state.color);
       contacts.show(frame.contacts, then.contacts, blend, state.contacts);
+      root.dataset.lines = lines.show(frame.lines, then.lines, blend, state.lines);
       colliders.show(frame, then, blend, state.colliders);
       bodies.style(state);
       view.go_to(number + blend);

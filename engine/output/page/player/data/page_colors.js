@@ -47,6 +47,7 @@ const colors = (() => {
   };
   const body_colors = ["#6fa8dc", "#e6a15c", "#7fbf7b", "#d98cb3", "#b8a6e0", "#d8c25f", "#6cc5c1", "#e07f72",
     "#a9b665", "#8f9fb8"];
+  const line = { joint: "#b48cff", tie: "#ff6f91", cable: "#f2c14e", spring: "#6fd08c" };
   const motion = { open: "#8b97a6", stick: "#3fc8b4", slide: "#ff9d47" };
 
   const parse = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255);
@@ -77,5 +78,5 @@ const colors = (() => {
   const of_body = (number) => (number < body_colors.length ? parse(body_colors[number]) : of_number(number));
 
   return { at, css, linear, parse, table, of_number, of_body,
-    tables: Object.fromEntries(Object.keys(ramps).map((name) => [name, table(name)])), motion };
+    tables: Object.fromEntries(Object.keys(ramps).map((name) => [name, table(name)])), motion, line };
 })();

@@ -42,6 +42,7 @@ const decode = (() => {
   const times = (number, take) => Array.from({ length: number }, take);
   // Codes of an earlier scale as they are on a later one.
   const shifted = (code, exponent_prev, exponent) => code >> Math.min(exponent - exponent_prev, 31);
+  const value_of = (code, top) => Math.sign(code) * top * (code / last_code) * (code / last_code);
 
   function shape(take, name, fields) {
     const vertices = take.count(), corners = 3 * take.count();
@@ -132,16 +133,15 @@ const decode = (() => {
         code[numbers * i + k] = base + take.change();
       }
     const top = Math.pow(4, exponent);
-    const value = (c) => Math.sign(c) * top * (c / last_code) * (c / last_code);
     const point = new Float32Array(3 * count), force = new Float32Array(3 * count), normal = new Float32Array(count);
     const region = new Int32Array(count), state = new Uint8Array(count), next = new Int32Array(count).fill(-1);
     for (let i = 0; i < count; ++i) {
       const { origin, step } = lattice(i);
       for (let axis = 0; axis < 3; ++axis) {
         point[3 * i + axis] = origin[axis] + step * code[numbers * i + axis];
-        force[3 * i + axis] = value(code[numbers * i + 3 + axis]);
+        force[3 * i + axis] = value_of(code[numbers * i + 3 + axis], top);
       }
-      normal[i] = value(code[numbers * i + 6]);
+      normal[i] = value_of(code[numbers * i + 6], top);
     }
     let number = 0;
     for (let i = 0; i < count; ++i) region[i] = number += take.change();
@@ -151,10 +151,38 @@ const decode = (() => {
     return { count, first, second, collider, point, force, normal, region, state, next, code, exponent, top };
   }
 
-  // {bodies, frames}. A frame: bodies and colliders by number, contacts, scale by field: value = scale * code^2.
+  // Lines of a frame by number: points and forces. `prev`: lines of the previous frame, with all codes.
+  function lines(take, lattice, prev) {
+    const count = take.count(), out = { list: new Map(), exponent: prev.exponent, top: 0 };
+    if (count === 0) return out;
+    out.exponent = take.change();
+    out.top = Math.pow(4, out.exponent);
+    if (!lattice.step) Object.assign(lattice, { origin: times(3, take.f64), step: take.f64() });
+    for (let i = 0; i < count; ++i) {
+      const number = take.count(), points = take.count(), last = prev.list.get(number);
+      const continues = last && last.force.length === points, code = new Float64Array(4 * points);
+      for (let k = 0; k < 4; ++k)
+        for (let p = 0; p < points; ++p) {
+          let base = p > 0 ? code[4 * (p - 1) + k] : 0;
+          if (continues) base = last.code[4 * p + k];
+          if (continues && k === 3) base = shifted(base, prev.exponent, out.exponent);
+          code[4 * p + k] = base + take.change();
+        }
+      const line = { point: new Float32Array(3 * points), force: new Float32Array(points), code };
+      for (let p = 0; p < points; ++p) {
+        for (let axis = 0; axis < 3; ++axis)
+          line.point[3 * p + axis] = lattice.origin[axis] + lattice.step * code[4 * p + axis];
+        line.force[p] = value_of(code[4 * p + 3], out.top);
+      }
+      out.list.set(number, line);
+    }
+    return out;
+  }
+
+  // {bodies, frames}. A frame: bodies, colliders and lines by number, contacts, scale by field: value = scale * code^2.
   function frames(data, names, fields) {
-    const take = reader(data), bodies = [], out = [];
-    let last = null;
+    const take = reader(data), bodies = [], out = [], lattice_of_lines = {};
+    let last = null, last_lines = { list: new Map(), exponent: lowest_exponent };
     while (!take.ended()) {
       const [body_count, collider_count, contact_count] = times(3, take.count);
       const exponents = times(fields.length, take.change), force_exponent = take.change();
@@ -175,6 +203,7 @@ const decode = (() => {
       frame.contacts = contacts(take, contact_count, bodies, last, force_exponent);
       if (last) last.code = null;  // needed by the next frame only
       last = frame.contacts;
+      frame.lines = last_lines = lines(take, lattice_of_lines, last_lines);
       out.push(frame);
     }
     return { bodies, frames: out };

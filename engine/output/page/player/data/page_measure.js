@@ -23,8 +23,8 @@ function measure_scene(run, bodies, frames) {
   const low = new THREE.Vector3(...lower.map((list) => share_of(list, 0.02)));
   const high = new THREE.Vector3(...upper.map((list) => share_of(list, 0.98)));
   const bodies_box = new THREE.Box3(low, high), boxes = frames.map(box_of_frame);
-  const whole = bodies_box.clone().union(box_of_colliders(bodies_box, run.colliders, frames[0]));
-  const nearby = box_of_colliders(boxes.find((box) => box !== null), run.colliders, frames[0]);
+  const whole = bodies_box.clone().union(box_of_others(bodies_box, run.colliders, frames[0]));
+  const nearby = box_of_others(boxes.find((box) => box !== null), run.colliders, frames[0]);
   const course = smooth_course(boxes, Math.max(2, Math.round(0.06 * frames.length))).map((box) => box.union(nearby));
   const still = radius_of(whole) < 1.5 * radius_of(course[0]);
   return {
@@ -36,8 +36,9 @@ function measure_scene(run, bodies, frames) {
 const share_of = (list, share) => list.sort((a, b) => a - b)[Math.round(share * (list.length - 1))];
 const radius_of = (box) => box.min.distanceTo(box.max) / 2;
 
-// Around the colliders that are not much larger than `box`, the others are scenery; empty if there are none.
-function box_of_colliders(box, colliders, frame) {
+// Box around the points of lines that are near, and the colliders that are not much larger than `box`; the others are
+// scenery. Empty if there are none.
+function box_of_others(box, colliders, frame) {
   const center = box.getCenter(new THREE.Vector3()), reach = 2.5 * radius_of(box), out = new THREE.Box3();
   colliders.forEach((collider, number) => {
     const pose = frame.colliders.get(number);
@@ -45,6 +46,11 @@ function box_of_colliders(box, colliders, frame) {
     const other = box_of(collider, pose);
     if (Math.max(other.min.distanceTo(center), other.max.distanceTo(center)) < reach) out.union(other);
   });
+  for (const { point } of frame.lines.list.values())
+    for (let i = 0; i < point.length; i += 3) {
+      const place = new THREE.Vector3().fromArray(point, i);
+      if (place.distanceTo(center) < reach) out.expandByPoint(place);
+    }
   return out;
 }
 

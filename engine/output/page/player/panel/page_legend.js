@@ -44,6 +44,14 @@ function show_color_legend(card, color, run, bodies, legend_top) {
   }));
 }
 
+function show_line_legend(card, on, run) {
+  const kinds = Object.keys(colors.line).filter((kind) => run.lines.some((line) => line.kind === kind));
+  card.hidden = !on || kinds.length === 0;
+  card.replaceChildren(...kinds.map((kind) => legend_line(kind, colors.line[kind])),
+    legend_line("thickness: square root of the force"),
+    legend_line("largest force " + text.si(run.line_force.max, "N")));
+}
+
 function show_contact_legend(card, mode, run) {
   card.hidden = mode === "off" || run.force.max === 0;
   card.replaceChildren();

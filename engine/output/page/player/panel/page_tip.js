@@ -1,9 +1,10 @@
 // The values under the pointer.
 "use strict";
 
-// hit: of pick_body or null; contact: of make_contacts.at() or null. `place` in pixels of the host.
-function show_tip(tip, host, place, { hit, values, body, color, contact, name_of }) {
-  tip.hidden = !hit && !contact;
+// hit: of pick_body or null; contact: of make_contacts.at() or null; joining: of make_lines.at() or null. `place` in
+// pixels of the host.
+function show_tip(tip, host, place, { hit, values, body, color, contact, joining, name_of }) {
+  tip.hidden = !hit && !contact && !joining;
   if (tip.hidden) return;
   tip.replaceChildren();
   const line = (content, strong) => {
@@ -11,6 +12,12 @@ function show_tip(tip, host, place, { hit, values, body, color, contact, name_of
     made.textContent = content;
     tip.append(made);
   };
+  if (joining) {
+    const { kind, name, force, error } = joining;
+    line(kind[0].toUpperCase() + kind.slice(1) + ": " + name, true);
+    const quantity = { cable: "tension", tie: "force on the node" }[kind] || "force";
+    line(quantity + " " + text.si(force, "N", error));
+  }
   if (contact) {
     const { first, second, collider, strength, normal, friction, error, motion, region } = contact;
     const sides = [first >= 0 && name_of.body(first), second >= 0 && name_of.body(second),

@@ -7,27 +7,11 @@
 function make_contacts(scene, capacity, { size, spacing }, full_force) {
   const dot_radius = 0.2 * spacing, arrow_length = 0.75 * size, arrow_width = Math.min(1.1 * spacing, 0.2 * size);
   const color = new THREE.InstancedBufferAttribute(new Float32Array(3 * Math.max(capacity, 1)), 3);
-  const dots = layers(new THREE.IcosahedronBufferGeometry(1, 1));
-  const arrows = layers(arrow_geometry());
+  const dots = make_instances(scene, new THREE.IcosahedronBufferGeometry(1, 1), color);
+  const arrows = make_instances(scene, arrow_geometry(), color);
   const fixed = { open: 0, stick: 1, slide: 2 };
   const motion_colors = [];
   for (const name in fixed) motion_colors[fixed[name]] = colors.linear(colors.parse(colors.motion[name]));
-
-  function layers(geometry) {
-    geometry.setAttribute("color", color);
-    const make = (settings) => {
-      const material = new THREE.MeshBasicMaterial({ vertexColors: THREE.VertexColors, ...settings });
-      const mesh = new THREE.InstancedMesh(geometry, material, Math.max(capacity, 1));
-      mesh.frustumCulled = false;
-      scene.add(mesh);
-      return mesh;
-    };
-    const plain = make({});
-    const faint = make({ transparent: true, opacity: 0.5, depthFunc: THREE.GreaterDepth, depthWrite: false });
-    faint.renderOrder = 5;
-    faint.instanceMatrix = plain.instanceMatrix;
-    return [plain, faint];
-  }
 
   const matrix = new THREE.Matrix4(), turn = new THREE.Quaternion(), scale = new THREE.Vector3();
   const point = new THREE.Vector3(), force = new THREE.Vector3(), along = new THREE.Vector3(0, 1, 0);
@@ -51,10 +35,7 @@ function make_contacts(scene, capacity, { size, spacing }, full_force) {
   }
   function show(contacts, next, blend, mode) {
     const count = mode === "off" ? 0 : contacts.count;
-    for (const mesh of [...dots, ...arrows]) {
-      mesh.count = count;
-      mesh.visible = count > 0;  // an instance count of zero would mean "not instanced"
-    }
+    show_instances([...dots, ...arrows], count);
     shown.count = 0;
     if (count === 0) return;
     blend_rows(contacts, next, blend);
@@ -84,6 +65,31 @@ function make_contacts(scene, capacity, { size, spacing }, full_force) {
       collider: list.collider[i] };
   }
   return { show, shown, at, dot_radius };
+}
+
+// Two meshes of many copies of a shape: one where they are in sight, and a faint one where a body hides them. `color`
+// has a row for each copy.
+function make_instances(scene, geometry, color) {
+  geometry.setAttribute("color", color);
+  const make = (settings) => {
+    const material = new THREE.MeshBasicMaterial({ vertexColors: THREE.VertexColors, ...settings });
+    const mesh = new THREE.InstancedMesh(geometry, material, color.count);
+    mesh.frustumCulled = false;
+    scene.add(mesh);
+    return mesh;
+  };
+  const plain = make({});
+  const faint = make({ transparent: true, opacity: 0.5, depthFunc: THREE.GreaterDepth, depthWrite: false });
+  faint.renderOrder = 5;
+  faint.instanceMatrix = plain.instanceMatrix;
+  return [plain, faint];
+}
+
+function show_instances(meshes, count) {
+  for (const mesh of meshes) {
+    mesh.count = count;
+    mesh.visible = count > 0;  // an instance count of zero would mean "not instanced"
+  }
 }
 
 // An arrow along y from 0 to 1: a shaft and a head, without caps that nobody sees.

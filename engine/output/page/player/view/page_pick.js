@@ -26,6 +26,28 @@ function pick_body(bodies, origin, direction) {
   return best;
 }
 
+// The row of make_lines().shown whose segment is nearest to a place of the picture (pixels), within `reach` of it; -1
+// if there is none.
+function pick_line(shown, camera, { width, height }, { x, y }, reach) {
+  const on_screen = (list, i) => {
+    const point = new THREE.Vector3().fromArray(list, 3 * i).project(camera);
+    return Math.abs(point.z) > 1 ? null
+      : new THREE.Vector2((point.x + 1) / 2 * width - x, (1 - point.y) / 2 * height - y);
+  };
+  let best = -1, nearest = reach;
+  for (let i = 0; i < shown.count; ++i) {
+    const from = on_screen(shown.point, i), to = on_screen(shown.next, i);
+    if (!from || !to) continue;
+    const way = to.clone().sub(from), square = way.lengthSq();
+    const share = square > 0 ? Math.min(Math.max(-from.dot(way) / square, 0), 1) : 0;
+    const distance = from.addScaledVector(way, share).length();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    best = i;
+  }
+  return best;
+}
+
 // The contact whose dot is nearest to a place of the picture (pixels), within `reach` of it; -1 if there is none.
 // Those between bodies are seen through them, so what is in front of them does not hide them here either.
 function pick_contact(shown, camera, { width, height }, { x, y }, reach) {

@@ -1,0 +1,51 @@
+// Encodes joints, ties, cables and springs of each frame as changes from the previous frame.
+#pragma once
+
+#include <array>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/output/frame.h"
+#include "engine/output/page/quantile.h"
+#include "engine/output/page/stream/body_stream.h"
+#include "engine/output/page/stream/value_scale.h"
+
+namespace skerry {
+
+/// A line of the page. Lines are numbered in the order of their first appearance.
+struct PageLine {
+    std::string name;
+    LineKind kind;
+};
+
+/// Encoder of lines.
+class LineStream {
+public:
+    /// Writes the number of lines as a count. If it is not zero, writes further:
+    /// 1. the exponent e of the largest force 4^e (ValueScale), as change from zero;
+    /// 2. in the first frame with lines: f64 origin[3] and step of the lattice on which points are encoded [m];
+    /// 3. for each line: its number and its number of points as counts; x, y, z and force of all points, quantity by
+    /// quantity, each as change from a reference. The reference is the value of this point in the previous frame, if
+    /// the line had as many points there. Otherwise it is the value of the point before, and zero for the first point.
+    void put_frame(const Frame& frame, std::string& out);
+
+    std::span<const PageLine> lines() const { return lines_; }
+    /// Distribution of the absolute values of the forces [N].
+    const Quantile& force() const { return force_; }
+
+private:
+    // x, y, z and force of a point
+    using Row = std::array<std::int64_t, 4>;
+
+    std::map<decltype(LineFrame().key()), Index> numbers_;
+    std::vector<PageLine> lines_;
+    std::map<Index, std::vector<Row>> rows_prev_;  // rows of the previous frame by number of the line
+    Lattice lattice_;
+    bool has_lattice_ = false;
+    ValueScale scale_;
+    Quantile force_;
+};
+
+}  // namespace skerry
