@@ -21,9 +21,9 @@ class Builder:
             self.nodes.append(point)
         return self.number[key]
 
-    def cell(self, corner, mirror=0):
-        """`corner` returns the node of given bits. `mirror` has the bits of the axes along which the cell is mirrored."""
-        corners = [corner(bits & 1, bits >> 1 & 1, bits >> 2) for bits in range(8)]
+    def cell(self, node_at, i, j, k, mirror=0):
+        """Adds a cell with the lowest node `node_at(i, j, k)`. `mirror` has the bits of the mirrored axes."""
+        corners = [node_at(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2)) for bits in range(8)]
         for kuhn in KUHN:
             t = [corners[c ^ mirror] for c in kuhn]
             a, b, c, d = (self.nodes[n] for n in t)
@@ -33,7 +33,8 @@ class Builder:
 
     def faces(self, is_wanted):
         """Faces of the surface with wanted keys of all nodes, counter-clockwise as seen from outside."""
-        faces = [(t[a], t[b], t[c]) for t in self.tetrahedra for a, b, c in [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]]
+        sides = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+        faces = [(t[a], t[b], t[c]) for t in self.tetrahedra for a, b, c in sides]
         count = collections.Counter(frozenset(face) for face in faces)
         keys = list(self.number)
         return [f for f in faces if count[frozenset(f)] == 1 and all(is_wanted(*keys[n]) for n in f)]
@@ -43,14 +44,14 @@ def ring(section, across, through, around, mirror=lambda i: 0):
     """A grid of cells swept around the z axis. `section` returns the radius and the height of a node of the grid."""
     mesh = Builder()
 
-    def corner(i, j, k):
+    def node_at(i, j, k):
         angle, (radius, height) = 2 * math.pi * k / around, section(i, j)
         return mesh.node((i, j, k % around), (radius * math.cos(angle), radius * math.sin(angle), height))
 
     for k in range(around):
         for j in range(through):
             for i in range(across):
-                mesh.cell(lambda a, b, c: corner(i + a, j + b, k + c), mirror(i))
+                mesh.cell(node_at, i, j, k, mirror(i))
     return mesh
 
 
@@ -80,8 +81,12 @@ def tyre(ring_radius, tube_radius, thickness, opening, across, through, around):
 def bricks(x, y, z, cells, mirror=lambda j: 0):
     """Cells with given numbers, between planes at given coordinates."""
     mesh = Builder()
+
+    def node_at(i, j, k):
+        return mesh.node((i, j, k), (x[i], y[j], z[k]))
+
     for i, j, k in cells:
-        mesh.cell(lambda a, b, c: mesh.node((i + a, j + b, k + c), (x[i + a], y[j + b], z[k + c])), mirror(j))
+        mesh.cell(node_at, i, j, k, mirror(j))
     return mesh
 
 
