@@ -79,7 +79,8 @@ TEST_CASE("a pneumatic finger under constant pressure neither gains energy nor m
     if (!full_tests()) return;
     Finger finger(in_two_stages);
     finger.press(1);
-    const Real error = finger.world.report().energy_error_share, start = finger.press(0.1), volume = Cavities(finger.world).state(finger.air).volume;
+    const Real error = finger.world.report().energy_error_share, start = finger.press(0.1),
+               volume = Cavities(finger.world).state(finger.air).volume;
     for (int second = 0; second < 10; ++second) {
         CHECK(finger.press(1) == Approx(start).epsilon(1e-4));
         CHECK(finger.world.energy().kinetic < 1e-12);
@@ -168,7 +169,8 @@ TEST_CASE("a tyre on a rim rolls without slip, and its air has the volume betwee
     const auto check_air = [&] {
         const CavityState state = Cavities(world).state(air);
         const Real change = inner_volume(world, tyre, world.center_of_mass(rim)) - rest;
-        CHECK(state.volume - start == Approx(change).margin(1e-6 * start));
+        // Ties hold the edges of the inner wall within 1e-6 m, and the ring between the edges has an area of 0.04 m^2.
+        CHECK(state.volume - start == Approx(change).margin(4e-8));
         CHECK((state.pressure + standard_pressure) * std::pow(state.volume, 1.4) ==
               Approx((3e4 + standard_pressure) * std::pow(start, 1.4)).epsilon(1e-9));
         CHECK(state.force.norm() < 1e-5 * state.pressure * std::cbrt(start * start));
