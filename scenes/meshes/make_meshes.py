@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the mesh files of scenes/mesh_drop.json, one in each family of formats, in metres:
-python3 scenes/meshes/make_meshes.py"""
+"""Makes the mesh files of scenes/mesh_drop.json, one in each family of formats, and those of scenes/gripper.json and
+scenes/tyre.json, in metres: python3 scenes/meshes/make_meshes.py"""
+import collections
 import math
 import pathlib
 
@@ -12,7 +13,7 @@ KUHN = [(0, 1, 3, 7), (0, 1, 5, 7), (0, 2, 3, 7), (0, 2, 6, 7), (0, 4, 5, 7), (0
 
 class Builder:
     def __init__(self):
-        self.nodes, self.tetrahedra, self.number = [], [], {}
+        self.nodes, self.tetrahedra, self.number, self.groups = [], [], {}, {}
 
     def node(self, key, point):
         if key not in self.number:
@@ -20,44 +21,107 @@ class Builder:
             self.nodes.append(point)
         return self.number[key]
 
-    def cell(self, corners):
+    def cell(self, node_at, i, j, k, mirror=0):
+        """Adds a cell with the lowest node `node_at(i, j, k)`. `mirror` has the bits of the mirrored axes."""
+        corners = [node_at(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2)) for bits in range(8)]
         for kuhn in KUHN:
-            t = [corners[c] for c in kuhn]
+            t = [corners[c ^ mirror] for c in kuhn]
             a, b, c, d = (self.nodes[n] for n in t)
             u, v, w = ([p[i] - a[i] for i in range(3)] for p in (b, c, d))
             volume = sum(u[i] * (v[(i + 1) % 3] * w[(i + 2) % 3] - v[(i + 2) % 3] * w[(i + 1) % 3]) for i in range(3))
             self.tetrahedra.append(t if volume > 0 else [t[0], t[1], t[3], t[2]])
 
+    def faces(self, is_wanted):
+        """Faces of the surface with wanted keys of all nodes, counter-clockwise as seen from outside."""
+        sides = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+        faces = [(t[a], t[b], t[c]) for t in self.tetrahedra for a, b, c in sides]
+        count = collections.Counter(frozenset(face) for face in faces)
+        keys = list(self.number)
+        return [f for f in faces if count[frozenset(f)] == 1 and all(is_wanted(*keys[n]) for n in f)]
 
-def torus(ring_radius, tube_radius, across, around):
-    """A square grid of cells bent to a disc and swept around."""
+
+def ring(section, across, through, around, mirror=lambda i: 0):
+    """A grid of cells swept around the z axis. `section` returns the radius and the height of a node of the grid."""
     mesh = Builder()
 
-    def corner(i, j, k):
-        x, y = 2 * i / across - 1, 2 * j / across - 1
-        x, y = x * math.sqrt(1 - y * y / 2), y * math.sqrt(1 - x * x / 2)
-        angle, radius = 2 * math.pi * k / around, ring_radius + tube_radius * x
-        return mesh.node((i, j, k % around), (radius * math.cos(angle), radius * math.sin(angle), tube_radius * y))
+    def node_at(i, j, k):
+        angle, (radius, height) = 2 * math.pi * k / around, section(i, j)
+        return mesh.node((i, j, k % around), (radius * math.cos(angle), radius * math.sin(angle), height))
 
     for k in range(around):
-        for j in range(across):
+        for j in range(through):
             for i in range(across):
-                mesh.cell([corner(i + (b & 1), j + (b >> 1 & 1), k + (b >> 2)) for b in range(8)])
+                mesh.cell(node_at, i, j, k, mirror(i))
+    return mesh
+
+
+def torus(ring_radius, tube_radius, across, around):
+    """A ring whose section is a square grid bent to a disc."""
+    def section(i, j):
+        x, y = 2 * i / across - 1, 2 * j / across - 1
+        x, y = x * math.sqrt(1 - y * y / 2), y * math.sqrt(1 - x * x / 2)
+        return ring_radius + tube_radius * x, tube_radius * y
+
+    return ring(section, across, across, around)
+
+
+def tyre(ring_radius, tube_radius, thickness, opening, across, through, around):
+    """A tube that is open towards the axis, over an angle of 2 `opening` of its section."""
+    def section(i, j):
+        angle = (math.pi - opening) * (2 * i / across - 1)
+        radius = tube_radius - thickness * j / through
+        return ring_radius + radius * math.cos(angle), radius * math.sin(angle)
+
+    mesh = ring(section, across, through, around, lambda i: 2 * i // across)
+    mesh.groups = {"inside": mesh.faces(lambda i, j, k: j == through),
+                   "beads": mesh.faces(lambda i, j, k: i in (0, across))}
+    return mesh
+
+
+def bricks(x, y, z, cells, mirror=lambda j: 0):
+    """Cells with given numbers, between planes at given coordinates."""
+    mesh = Builder()
+
+    def node_at(i, j, k):
+        return mesh.node((i, j, k), (x[i], y[j], z[k]))
+
+    for i, j, k in cells:
+        mesh.cell(node_at, i, j, k, mirror(j))
     return mesh
 
 
 def voxels(rows, size, depth):
     """Cubes where a picture has an x, several cells deep."""
-    mesh = Builder()
     height, width = len(rows), max(len(row) for row in rows)
 
-    def corner(i, j, k):
-        return mesh.node((i, j, k), (size * (i - width / 2), size * (j - depth / 2), size * (k - height / 2)))
+    def planes(count):
+        return [size * (i - count / 2) for i in range(count + 1)]
 
-    for row, line in enumerate(rows):
-        for i, mark in enumerate(line):
-            for j in range(depth if mark == "x" else 0):
-                mesh.cell([corner(i + (b & 1), j + (b >> 1 & 1), height - 1 - row + (b >> 2)) for b in range(8)])
+    return bricks(planes(width), planes(depth), planes(height),
+                  ((i, j, height - 1 - row) for row, line in enumerate(rows) for i, mark in enumerate(line)
+                   for j in range(depth if mark == "x" else 0)))
+
+
+def finger(chambers, wall, gap, y, z):
+    """A finger along x, with a row of chambers above a channel and open gaps between the chambers."""
+    x = [0]
+    for size in chambers * (wall, wall, wall, gap):
+        x.append(x[-1] + size)
+    x, last, middle, top = x[:-1], 4 * chambers - 2, len(y) // 2, len(z) - 1
+
+    def is_solid(i, j, k):
+        if i % 4 == 3 and k > 2:
+            return False
+        is_hollow = 0 < i < last and k == 1 or i % 4 == 1 and 0 < k < top - 1
+        return not (is_hollow and 0 < j < len(y) - 2)
+
+    cells = [(i, j, k) for i in range(last + 1) for j in range(len(y) - 1) for k in range(top) if is_solid(i, j, k)]
+    mesh = bricks(x, y, z, cells, lambda j: 2 * (j >= middle))
+    mesh.groups = {
+        "chambers": mesh.faces(lambda i, j, k: 0 < i <= last and 0 < j < len(y) - 1 and 0 < k < top and
+                               (k < 3 or i % 4 in (1, 2))),
+        "clamp": mesh.faces(lambda i, j, k: i == 0),
+        "pad": mesh.faces(lambda i, j, k: k == 0 and i > last - 4)}
     return mesh
 
 
@@ -67,9 +131,14 @@ def point_lines(mesh, first=None):
 
 
 def write_gmsh(mesh, name):
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(mesh.nodes)), *point_lines(mesh, 1),
-             "$EndNodes", "$Elements", str(len(mesh.tetrahedra))]
-    lines += [f"{i + 1} 4 2 1 1 " + " ".join(str(n + 1) for n in t) for i, t in enumerate(mesh.tetrahedra)]
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat"]
+    if mesh.groups:
+        lines += ["$PhysicalNames", str(len(mesh.groups))]
+        lines += [f'2 {g + 1} "{group}"' for g, group in enumerate(mesh.groups)] + ["$EndPhysicalNames"]
+    elements = [("4 2 1 1", t) for t in mesh.tetrahedra]
+    elements += [(f"2 2 {g + 1} {g + 1}", face) for g, faces in enumerate(mesh.groups.values()) for face in faces]
+    lines += ["$Nodes", str(len(mesh.nodes)), *point_lines(mesh, 1), "$EndNodes", "$Elements", str(len(elements))]
+    lines += [f"{i + 1} {kind} " + " ".join(str(n + 1) for n in e) for i, (kind, e) in enumerate(elements)]
     (FOLDER / name).write_text("\n".join(lines + ["$EndElements", ""]))
 
 
@@ -91,3 +160,6 @@ def write_tetgen(mesh, name):
 write_gmsh(torus(0.06, 0.028, 3, 18), "torus.msh")
 write_vtk(voxels([".x.", "xxx", ".x."], 0.04, 2), "cross.vtk")
 write_tetgen(voxels(["xxx", "x..", "xxx", "..x", "xxx"], 0.028, 2), "letter_s")
+write_gmsh(finger(5, 0.006, 0.0045, [-0.015, -0.009, -0.0045, 0, 0.0045, 0.009, 0.015],
+                  [0, 0.006, 0.011, 0.017, 0.023, 0.029, 0.035]), "finger.msh")
+write_gmsh(tyre(0.12, 0.06, 0.022, math.radians(60), 10, 2, 46), "tyre.msh")

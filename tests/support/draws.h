@@ -1,4 +1,4 @@
-// Size of statistical tests: a tenth by default, all with SKERRY_FULL=1 in the environment (`scripts/test --full`).
+// Size of long tests: a part by default, all with SKERRY_FULL=1 in the environment (`scripts/test --full`).
 #pragma once
 
 #include <cstdlib>
@@ -6,7 +6,7 @@
 
 namespace skerry::test {
 
-/// True if long statistical tests shall run in full.
+/// True if long tests shall run in full.
 inline bool full_tests() {
     const char* const value = std::getenv("SKERRY_FULL");
     return value != nullptr && std::string_view(value) == "1";
