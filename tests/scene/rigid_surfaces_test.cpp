@@ -299,8 +299,11 @@ TEST_CASE("worlds with rigid surfaces and given masses continue with the same bi
         of.dynamics = BodyDynamics::rigid;
         of.position = {0.05, 0, 0.6};
         const BodyHandle link = scene.world.add_body(brick, of);
-        Springs(scene.world)
-            .add({.first = {.body = link, .point = {0.3, 0, 0.8}}, .second = {.point = {0.5, 0, 1}}, .stiffness = 30});
+        const SpringHandle spring = Springs(scene.world)
+                                        .add({.first = {.body = link, .point = {0.3, 0, 0.8}},
+                                              .second = {.point = {0.5, 0, 1}},
+                                              .stiffness = 30});
+        CHECK((Springs(scene.world).state(spring).first.point - Vec3(0.3, 0, 0.8)).norm() < 1e-14);
         scene.world.add_body(mesh::ball(0.1, 3), {.material = scene.material, .position = {0, 0.05, 0.95}});
         scene.world.add_collider(Plane{});
         REQUIRE(scene.world.advance(0.3).ok());
