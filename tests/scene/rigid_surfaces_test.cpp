@@ -181,6 +181,12 @@ TEST_CASE("given mass properties replace those of the shape", "[scene][rigid]") 
         world.set_velocities(scene.body, velocity);
         CHECK((world.report().momentum - Vec3(0, 2.5, 0)).norm() < 1e-12);
         CHECK((world.report().angular_momentum - center.cross(Vec3(0, 2.5, 0)) - inertia * turn).norm() < 1e-12);
+        // Positions that are set by node are a pose of the body.
+        std::vector<Vec3> position;
+        for (const Vec3& x : world.positions(scene.body)) position.push_back(rotation * (x - center) + center);
+        world.set_positions(scene.body, position);
+        CHECK((world.center_of_mass(scene.body) - center).norm() < 1e-13);
+        CHECK((world.positions(scene.body)[3] - position[3]).norm() < 1e-13);
         // An acceleration of all nodes acts at the centre of mass: it does not turn the body.
         world.set_velocity(scene.body, Vec3::Zero(), Vec3::Zero());
         Loads(world).add(AccelerationField{.acceleration = {0, 0, -4}});
