@@ -370,6 +370,26 @@ TEST_CASE("surfaces and mass properties that no rigid body can have are refused 
                       Contains("mass of the body is given"));
 }
 
+TEST_CASE("overlaps of surfaces at the start are resolved as those of tetrahedra, and refused inside each other",
+          "[scene][rigid]") {
+    const Vec3 by{0.05, 0.03, 0.04};
+    const auto gap = [&](const auto& shape) {
+        OneBody scene(weightless(), shape);
+        const BodyHandle other =
+            scene.world.add_body(shape, {.material = scene.material, .position = by, .dynamics = BodyDynamics::rigid});
+        REQUIRE(scene.world.advance(0.1).ok());
+        return Vec3(scene.world.center_of_mass(other) - scene.world.center_of_mass(scene.body));
+    };
+    CHECK(gap(brick).x() > brick_size.x());
+    CHECK((gap(brick) - gap(mesh::box(brick_size, {1, 1, 1}))).norm() < 1e-9);
+    const SurfaceMesh small = mesh::boundary(mesh::box(brick_size / 10, {1, 1, 1}));
+    for (const auto& [first, second] : {std::pair(brick, small), std::pair(small, brick)}) {
+        OneBody scene(weightless(), first, {.name = "first"});
+        scene.world.add_body(second, {.material = scene.material, .dynamics = BodyDynamics::rigid, .name = "second"});
+        CHECK_THROWS_WITH(scene.world.advance(0.1), Contains("is inside body '"));
+    }
+}
+
 TEST_CASE("a scene makes a rigid body of an STL file", "[scene][rigid]") {
     std::ostringstream stl;
     stl << "solid peg\n";
