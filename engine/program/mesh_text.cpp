@@ -13,7 +13,7 @@ Problems problems_of(const MeshReport& r) {
     if (r.inverted > 0)
         problems.push_back(grouped(r.inverted) + " inverted tetrahedra (of negative volume): a run refuses the mesh");
     if (r.flat > 0) problems.push_back(grouped(r.flat) + " flat tetrahedra (without volume): a run refuses the mesh");
-    if (r.components > 1)
+    if (r.components > 1 && r.tetrahedra > 0)
         problems.push_back(grouped(r.components) + " parts of the mesh are not connected to each other");
     if (r.slivers > 0)
         problems.push_back(grouped(r.slivers) + " of " + grouped(r.tetrahedra) +

@@ -181,6 +181,12 @@ TEST_CASE("given mass properties replace those of the shape", "[scene][rigid]") 
         world.set_velocities(scene.body, velocity);
         CHECK((world.report().momentum - Vec3(0, 2.5, 0)).norm() < 1e-12);
         CHECK((world.report().angular_momentum - center.cross(Vec3(0, 2.5, 0)) - inertia * turn).norm() < 1e-12);
+        // Positions that are set by node are a pose of the body.
+        std::vector<Vec3> position;
+        for (const Vec3& x : world.positions(scene.body)) position.push_back(rotation * (x - center) + center);
+        world.set_positions(scene.body, position);
+        CHECK((world.center_of_mass(scene.body) - center).norm() < 1e-13);
+        CHECK((world.positions(scene.body)[3] - position[3]).norm() < 1e-13);
         // An acceleration of all nodes acts at the centre of mass: it does not turn the body.
         world.set_velocity(scene.body, Vec3::Zero(), Vec3::Zero());
         Loads(world).add(AccelerationField{.acceleration = {0, 0, -4}});
@@ -299,8 +305,11 @@ TEST_CASE("worlds with rigid surfaces and given masses continue with the same bi
         of.dynamics = BodyDynamics::rigid;
         of.position = {0.05, 0, 0.6};
         const BodyHandle link = scene.world.add_body(brick, of);
-        Springs(scene.world)
-            .add({.first = {.body = link, .point = {0.3, 0, 0.8}}, .second = {.point = {0.5, 0, 1}}, .stiffness = 30});
+        const SpringHandle spring = Springs(scene.world)
+                                        .add({.first = {.body = link, .point = {0.3, 0, 0.8}},
+                                              .second = {.point = {0.5, 0, 1}},
+                                              .stiffness = 30});
+        CHECK((Springs(scene.world).state(spring).first.point - Vec3(0.3, 0, 0.8)).norm() < 1e-14);
         scene.world.add_body(mesh::ball(0.1, 3), {.material = scene.material, .position = {0, 0.05, 0.95}});
         scene.world.add_collider(Plane{});
         REQUIRE(scene.world.advance(0.3).ok());
@@ -359,6 +368,26 @@ TEST_CASE("surfaces and mass properties that no rigid body can have are refused 
                       Contains("without tetrahedra"));
     CHECK_THROWS_WITH(given.world.set_dynamics(given.body, BodyDynamics::implicit_elastic),
                       Contains("mass of the body is given"));
+}
+
+TEST_CASE("overlaps of surfaces at the start are resolved as those of tetrahedra, and refused inside each other",
+          "[scene][rigid]") {
+    const Vec3 by{0.05, 0.03, 0.04};
+    const auto gap = [&](const auto& shape) {
+        OneBody scene(weightless(), shape);
+        const BodyHandle other =
+            scene.world.add_body(shape, {.material = scene.material, .position = by, .dynamics = BodyDynamics::rigid});
+        REQUIRE(scene.world.advance(0.1).ok());
+        return Vec3(scene.world.center_of_mass(other) - scene.world.center_of_mass(scene.body));
+    };
+    CHECK(gap(brick).x() > brick_size.x());
+    CHECK((gap(brick) - gap(mesh::box(brick_size, {1, 1, 1}))).norm() < 1e-9);
+    const SurfaceMesh small = mesh::boundary(mesh::box(brick_size / 10, {1, 1, 1}));
+    for (const auto& [first, second] : {std::pair(brick, small), std::pair(small, brick)}) {
+        OneBody scene(weightless(), first, {.name = "first"});
+        scene.world.add_body(second, {.material = scene.material, .dynamics = BodyDynamics::rigid, .name = "second"});
+        CHECK_THROWS_WITH(scene.world.advance(0.1), Contains("is inside body '"));
+    }
 }
 
 TEST_CASE("a scene makes a rigid body of an STL file", "[scene][rigid]") {

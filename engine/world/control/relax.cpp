@@ -198,7 +198,7 @@ private:
         for (std::size_t n = 0; n < nodes.position.size(); ++n) {
             BodyBalance& of = bodies_[static_cast<std::size_t>(nodes.body[n])];
             if (!(nodes.inverse_mass[n] > 0)) continue;
-            const Real mass = nodes.mass[n], speed = nodes.velocity[n].norm();
+            const Real mass = model.weight_of_node(n), speed = nodes.velocity[n].norm();
             Vec3 given = mass * model.settings.gravity;
             if (model.forced) given += nodes.applied_force[n];
             of.forces += given.norm();

@@ -161,8 +161,8 @@ MassProperties mass_properties(const Model& model, const NewBody& body) {
 
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
-    // All nodes of a body without tetrahedra can move. They get their masses from the mass of the body (share_mass).
-    if (body.tetrahedra.empty()) std::ranges::fill(rows_of(nodes.mass, range), Real(1));
+    // All nodes of a body that shares its mass can move. share_mass replaces their masses.
+    if (body.tetrahedra.empty() || body.mass) std::ranges::fill(rows_of(nodes.mass, range), Real(1));
     add_lumped_mass(body.tetrahedra, body.shape_of_masses(), densities(model, body), rows_of(nodes.mass, range));
     // A round body is drawn with a mesh that lies inside the exact shape and has less volume. The masses of its nodes
     // are scaled to the mass of the exact shape.

@@ -221,14 +221,14 @@ bool ForceLedger::shows_reaction(const Model& model, std::size_t attachment, con
     };
     for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[attachment])) {
         const auto n = static_cast<std::size_t>(node);
-        held += model.nodes.mass[n];
-        if (!rigid) add_position(n, model.nodes.mass[n]);
+        held += model.weight_of_node(n);
+        if (!rigid) add_position(n, model.weight_of_node(n));
     }
     if (rigid || implicit)
         for (auto n = static_cast<std::size_t>(model.bodies.nodes[body].begin);
              n < static_cast<std::size_t>(model.bodies.nodes[body].end); ++n) {
-            if (rigid) add_position(n, model.nodes.mass[n]);
-            noise += model.nodes.mass[n] * digits * model.nodes.velocity[n].norm();
+            if (rigid) add_position(n, model.weight_of_node(n));
+            noise += model.weight_of_node(n) * digits * model.nodes.velocity[n].norm();
         }
     // The reaction counts as measured if its rounding error is at most this fraction of the force, or at most this
     // acceleration of the held nodes [m/s^2].

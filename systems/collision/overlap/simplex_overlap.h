@@ -7,8 +7,7 @@
 
 namespace skerry {
 
-/// A simplex: the convex hull of four points (tetrahedron), or of the first three points (triangle). In each pair of
-/// simplices, at least one is a tetrahedron.
+/// A simplex: the convex hull of four points (tetrahedron), or of the first three points (triangle).
 struct Simplex {
     std::array<Vec3, 4> point;  // [m]
     std::size_t count;
@@ -17,9 +16,9 @@ struct Simplex {
 };
 
 /// Separating axis test of two simplices. The axes are the normals of all faces, and the cross products of an edge of
-/// the first and an edge of the second simplex. The test stores for each axis the distance by which the first simplex
-/// would have to move to be separated. The interiors of the simplices overlap if and only if no axis separates the
-/// simplices.
+/// the first and an edge of the second simplex. Triangles in one plane never overlap. The test stores for each axis the
+/// distance by which the first simplex would have to move to be separated. The interiors of the simplices overlap if
+/// and only if no axis separates the simplices.
 class SimplexOverlap {
 public:
     /// Tests the axes one after another. The test ends at the first axis along which the simplices overlap by at most

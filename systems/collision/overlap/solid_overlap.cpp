@@ -206,6 +206,13 @@ void go_past(const PlacedSolid& first, const PlacedSolid& second, Overlap& overl
         }
 }
 
+/// True if a solid whose simplices do not overlap those of a closed surface is inside this surface.
+bool is_within(const PlacedSolid& inner, const PlacedSolid& outer) {
+    const Simplex any = inner.solid.at(0).moved(inner.shift - outer.shift);
+    const Vec3 centre = (any.point[0] + any.point[1] + any.point[2] + any.point[3]) / 4;
+    return !outer.solid.has_volume && contains(outer.solid, centre, 0);
+}
+
 }  // namespace
 
 std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance) {
@@ -213,11 +220,10 @@ std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid&
     const std::vector<Meeting> meetings = find_meetings(first, second, tolerance);
     Overlap overlap{OverlapKind::crossing, 0, Vec3::UnitZ(), Vec3::Zero()};
     if (meetings.empty()) {
-        const Simplex any = first.solid.at(0).moved(first.shift - second.shift);
-        const Vec3 centre = (any.point[0] + any.point[1] + any.point[2] + any.point[3]) / 4;
-        if (second.solid.has_volume || !contains(second.solid, centre, 0)) return std::nullopt;
-        overlap.kind = OverlapKind::inside;
-        overlap.place = middle_of_points(first);
+        const bool inside = is_within(first, second);
+        if (!inside && !is_within(second, first)) return std::nullopt;
+        overlap.kind = inside ? OverlapKind::inside : OverlapKind::around;
+        overlap.place = middle_of_points(inside ? first : second);
         go_past(first, second, overlap);
         return overlap;
     }

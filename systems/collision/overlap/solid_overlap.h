@@ -24,11 +24,10 @@ struct PlacedSolid {
     Aabb box() const { return {solid.box.lower + shift, solid.box.upper + shift}; }
 };
 
-/// Overlap of two solids. The first solid must consist of tetrahedra. The solids overlap if a tetrahedron of the first
-/// solid and a simplex of the second overlap by more than `tolerance` [m], or if the first solid is inside the closed
-/// surface of the second. If the two surfaces cross, `direction` is close to the direction of the shortest separating
-/// motion. If one solid contains the other, `direction` is the best of a few directions, and a motion by `depth` takes
-/// the first solid past the end of the second.
+/// Overlap of two solids. The solids overlap if a simplex of the first and a simplex of the second overlap by more than
+/// `tolerance` [m], or if one solid is inside the closed surface of the other. If the two surfaces cross, `direction`
+/// is close to the direction of the shortest separating motion. If one solid contains the other, `direction` is the
+/// best of a few directions, and a motion by `depth` takes the first solid past the end of the second.
 std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance);
 
 }  // namespace skerry

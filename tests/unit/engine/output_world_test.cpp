@@ -92,6 +92,25 @@ TEST_CASE("a world that bodies join and leave is written as a series and as a pa
     CHECK(text.find("\"bodies\":[\"box\",\"ball\"]") != std::string::npos);
 }
 
+TEST_CASE("a rigid body without tetrahedra is written as the triangles of its surface", "[unit][output]") {
+    BodyHandle box;
+    World world = box_on_floor(box);
+    world.add_body(mesh::boundary(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1})),
+                   {.material = world.add_material({}), .position = {1, 0, 1}, .dynamics = BodyDynamics::rigid});
+    const Frame frame = collect_frame(world);
+    CHECK(frame.bodies[1].stress == std::vector<Mat3>(12, Mat3::Zero()));
+    CHECK(frame.bodies[1].material == std::vector<Index>(12, 1));
+    const TemporaryFolder folder;
+    VtkWriter series(folder.path(), "run");
+    series.write_frame(world);
+    series.close();
+    std::ifstream file(folder.path() / "run_bodies_0000.vtu", std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    CHECK(text.find("NumberOfPoints=\"35\" NumberOfCells=\"60\"") != std::string::npos);
+    const std::string types = std::string(48, '\x0a') + std::string(12, '\x05');  // tetrahedra, then triangles
+    CHECK(text.find(types) != std::string::npos);
+}
+
 TEST_CASE("contacts of the page name both bodies, or the collider, and carry what lies on them", "[unit][output]") {
     BodyHandle lower;
     World world = box_on_floor(lower);
