@@ -222,7 +222,7 @@ template <class Struct, std::size_t numbers, class... Parts>
 inline constexpr bool has_size = sizeof(Struct) == numbers * sizeof(Real) + (sizeof(Parts) + ... + 0);
 static_assert(has_size<Settings, 17>);
 static_assert(
-    has_size<BodySettings, 34, std::map<int, MaterialHandle>, std::map<std::string, MaterialHandle>, std::string>);
+    has_size<BodySettings, 35, std::map<int, MaterialHandle>, std::map<std::string, MaterialHandle>, std::string>);
 static_assert(has_size<MaterialSettings, 20>);
 static_assert(has_size<ColliderSettings, 16, Motion, std::string>);
 static_assert(has_size<LoadSettings, 2>);
