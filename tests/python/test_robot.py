@@ -266,12 +266,13 @@ def test_mistakes_of_a_file_are_named(text: str, message: str, tmp_path: pathlib
 
 def test_a_robot_is_added_completely_or_not_at_all() -> None:
     world = sk.World(threads=1)
-    world.add_robot(ARM)
-    before = world.state_hash
+    world.add_body(sk.Sphere(0.1), sk.Material(), position=(3, 0, 0), dynamics="rigid", name="arm/lower")
     for arguments in ({}, {"coordinates": {"arm": 1}, "name": "b"}, {"coordinates": {"right": 0.1}, "name": "b"}):
         with pytest.raises(sk.SceneError):
             world.add_robot(ARM, **arguments)  # type: ignore[arg-type]
-        assert world.state_hash == before
+        assert list(world.bodies) == ["arm/lower"]
+        assert world.joints == []
+    world.advance(0.01)
 
 
 def test_the_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
