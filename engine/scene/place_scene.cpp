@@ -1,8 +1,10 @@
 #include "engine/scene/place_scene.h"
 
 #include <Eigen/Geometry>
+#include <iterator>
+#include <optional>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "engine/scene/scene_plan.h"
 #include "systems/geometry/rotation.h"

@@ -11,6 +11,7 @@
 #include "jobs/executor.h"
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
+#include "skerry/joint.h"
 #include "skerry/load.h"
 #include "skerry/rollout.h"
 #include "skerry/spring.h"
@@ -253,6 +254,25 @@ TEST_CASE("springs and dampers allocate nothing, either", "[determinism]") {
     }
     for (int k = 0; k < 10; ++k) REQUIRE(world.advance(0.2).ok());
     CHECK(allocations_of_a_fifth_second(world) == 0);
+}
+
+TEST_CASE("joints that motors turn and that mimic others allocate nothing, either", "[determinism]") {
+    Settings settings;
+    settings.sleep = false;
+    World world = resting_balls(Backend::serial, 1, settings);
+    const auto stiff = world.add_material({});
+    std::vector<JointHandle> hinges;
+    for (const Real x : {3.0, 4.0}) {
+        const BodyHandle body =
+            world.add_body(mesh::box({0.2, 0.1, 0.1}, {2, 1, 1}),
+                           {.material = stiff, .position = {x, 0, 1}, .dynamics = BodyDynamics::rigid});
+        hinges.push_back(Joints(world).add({.kind = JointKind::hinge, .first = body, .point = {x, 0, 1}}));
+    }
+    Joints(world).set_motor(hinges[0], JointMotor{.speed = 1, .strength = 10});
+    Joints(world).set_mimic(hinges[1], JointMimic{.leader = hinges[0], .ratio = -2});
+    REQUIRE(world.advance(2).ok());
+    CHECK(allocations_of_a_fifth_second(world) == 0);
+    CHECK(Joints(world).state(hinges[1]).speed == Approx(-2).epsilon(1e-3));
 }
 
 TEST_CASE("implicit bodies allocate nothing in steps that are longer than those of what lies on them",

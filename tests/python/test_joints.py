@@ -123,3 +123,20 @@ def test_passive_forces_hold_and_slow_a_joint() -> None:
     assert hinge.state.motor + hinge.state.passive == pytest.approx(0, abs=1e-9)
     with pytest.raises(sk.SceneError, match=r"passive.friction.*-1"):
         hinge.set_passive(sk.JointPassive(friction=-1.0))
+
+
+def test_a_joint_mimics_another_one() -> None:
+    world, rod = rod_world(gravity=(0, 0, 0), tolerance=1e-10)
+    drum = world.add_body(sk.Mesh.box((0.1, 0.1, 0.1), (1, 1, 1)), RUBBER, position=(0, 1, 0), dynamics="rigid")
+    hinge = world.add_joint("hinge", rod, point=(0, 0, 0), axis=(0, 1, 0), coordinate=0.3)
+    leader = world.add_joint("hinge", drum, point=(0, 1, 0), motor=sk.Motor(speed=2.0, strength=10))
+    assert hinge.coordinate == pytest.approx(0.3) and hinge.mimic is None
+    hinge.set_mimic(leader, ratio=-0.5, offset=0.3)
+    assert hinge.mimic == (leader, -0.5, 0.3)
+    world.advance(0.1)
+    assert leader.coordinate == pytest.approx(0.2)
+    assert hinge.coordinate == pytest.approx(0.2, abs=1e-6)
+    with pytest.raises(sk.SceneError, match=r"mimic.ratio: found 0"):
+        hinge.set_mimic(leader, ratio=0)
+    hinge.set_mimic(None)
+    assert hinge.mimic is None and hinge.state.mimic == 0

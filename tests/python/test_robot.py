@@ -143,11 +143,12 @@ def test_an_arm_swings_as_in_mujoco() -> None:
     model.opt.timestep, model.opt.integrator = 1e-4, mujoco.mjtIntegrator.mjINT_RK4
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     data = mujoco.MjData(model)
-    data.qpos[:2] = 0.8, 0.6
-    for _ in range(4000):
+    data.qpos[:2] = 0.5, 0.6
+    for _ in range(3000):
         mujoco.mj_step(model, data)
+    assert 0.9 < data.qpos[0] < 1.7 and abs(data.qpos[1] - 0.6) > 0.1  # within the limits, which are soft, too
     errors = [
-        np.abs(swung(robot, step, 0.4, {"shoulder": 0.8, "elbow": 0.6})[:2] - data.qpos[:2]).max()
+        np.abs(swung(robot, step, 0.3, {"shoulder": 0.5, "elbow": 0.6})[:2] - data.qpos[:2]).max()
         for step in (2e-3, 1e-3)
     ]
     assert errors[0] < 1e-2
@@ -175,7 +176,7 @@ def test_motors_hold_and_move_the_arm_and_the_fingers_mirror() -> None:
     world.advance(0.3)
     assert arm.positions[2:] == pytest.approx([0.01, 0.01], abs=1e-6)
     assert arm.joints["right"].state.mimic != 0
-    with pytest.raises(ValueError, match="targets"):
+    with pytest.raises(TypeError, match="targets"):
         arm.set_targets([0, 0])
 
 
@@ -265,12 +266,13 @@ def test_mistakes_of_a_file_are_named(text: str, message: str, tmp_path: pathlib
 
 def test_a_robot_is_added_completely_or_not_at_all() -> None:
     world = sk.World(threads=1)
-    world.add_robot(ARM)
-    before = world.state_hash()
+    world.add_body(sk.Sphere(0.1), sk.Material(), position=(3, 0, 0), dynamics="rigid", name="arm/lower")
     for arguments in ({}, {"coordinates": {"arm": 1}, "name": "b"}, {"coordinates": {"right": 0.1}, "name": "b"}):
         with pytest.raises(sk.SceneError):
             world.add_robot(ARM, **arguments)  # type: ignore[arg-type]
-        assert world.state_hash() == before
+        assert list(world.bodies) == ["arm/lower"]
+        assert world.joints == []
+    world.advance(0.01)
 
 
 def test_the_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
