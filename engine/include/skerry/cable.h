@@ -41,6 +41,8 @@ struct CableState {
     Real dissipated = 0;             // energy dissipated by friction at the points since the cable was added [J]
 };
 
+extern template class __attribute__((visibility("default"))) ObjectView<CableHandle>;
+
 /// A view of the cables of a world.
 class Cables : public ObjectView<CableHandle> {
 public:

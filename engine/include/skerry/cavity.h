@@ -81,6 +81,9 @@ struct PipeState {
     Real flow = 0;         // mean mass flow out of the first cavity in the last step [kg/s]
 };
 
+extern template class __attribute__((visibility("default"))) ObjectView<CavityHandle>;
+extern template class __attribute__((visibility("default"))) ObjectView<PipeHandle>;
+
 /// A view of the cavities and pipes of a world. Setting an equal value again changes no bit of the state.
 class Cavities : public ObjectView<CavityHandle> {
 public:

@@ -84,6 +84,8 @@ struct JointState {
     Real error = 0;
 };
 
+extern template class __attribute__((visibility("default"))) ObjectView<JointHandle>;
+
 /// A view of the joints of a world.
 class Joints : public ObjectView<JointHandle> {
 public:

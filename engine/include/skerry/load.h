@@ -77,6 +77,8 @@ struct LoadState {
     Vec3 force = Vec3::Zero();
 };
 
+extern template class __attribute__((visibility("default"))) ObjectView<LoadHandle>;
+
 /// A view of the loads of a world. Loads act on explicit, implicit and rigid bodies. Forces of World::set_loads are
 /// independent of these loads.
 class Loads : public ObjectView<LoadHandle> {

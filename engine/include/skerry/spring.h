@@ -34,6 +34,8 @@ struct SpringState {
     Real energy = 0;           // elastic energy [J]
 };
 
+extern template class __attribute__((visibility("default"))) ObjectView<SpringHandle>;
+
 /// A view of the springs of a world. Each change wakes the bodies of the spring, unless the new value equals the old
 /// one.
 class Springs : public ObjectView<SpringHandle> {

@@ -65,6 +65,8 @@ struct SurfaceSetSettings {
     std::optional<Vec3> direction{};
 };
 
+extern template class __attribute__((visibility("default"))) ObjectView<SurfaceSetHandle>;
+
 /// A view of the surface sets of a world.
 class SurfaceSets : public ObjectView<SurfaceSetHandle> {
 public:

@@ -53,6 +53,8 @@ struct TieState {
     std::vector<TiedNode> nodes{};
 };
 
+extern template class __attribute__((visibility("default"))) ObjectView<TieHandle>;
+
 /// A view of the ties of a world.
 class Ties : public ObjectView<TieHandle> {
 public:
