@@ -1,6 +1,7 @@
 // Loads and force fields: one row per load.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "components/column.h"
@@ -20,12 +21,14 @@ struct LoadTable {
     Column<Vec3> vector;       // force [N], traction [Pa], acceleration [m/s^2] or velocity of the wind [m/s]
     Column<Real> rate;         // rate of a drag [1/s]
     Column<Range> nodes;       // range of rows in the columns `node` and `weight`; empty for fields
+    Column<Range> faces;       // range of rows in the column `face`; empty except for tractions
     Column<Range> scale_keys;  // range of rows in the column `key`; never empty
     // Nodes of all forces and tractions, as numbers in the meshes of their bodies, and their weights: fractions of a
     // force, or areas of a traction [1 or m^2].
     Column<Index> node;
     Column<Real> weight;
-    Column<TimeKey> key;  // scales of all loads over time
+    Column<std::array<Index, 3>> face;  // faces of all tractions, by the nodes of their meshes
+    Column<TimeKey> key;                // scales of all loads over time
 
     std::size_t size() const { return slot.size(); }
 
@@ -36,6 +39,7 @@ struct LoadTable {
     void erase_keys_of(std::size_t load) {
         erase_keys(scale_keys, key, load);
         erase_lists(nodes, load, node, weight);
+        erase_lists(faces, load, face);
     }
 
     /// Visits the columns with one row per load. The columns of lists are visited by for_each_column only.
@@ -46,12 +50,14 @@ struct LoadTable {
         visit("vector", vector, ColumnRole::state);
         visit("rate", rate, ColumnRole::state);
         visit("nodes", nodes, ColumnRole::link);
+        visit("faces", faces, ColumnRole::link);
         visit("scale_keys", scale_keys, ColumnRole::link);
     }
     void for_each_column(auto&& visit) {
         for_each_row_column(visit);
         visit("node", node, ColumnRole::state);
         visit("weight", weight, ColumnRole::state);
+        visit("face", face, ColumnRole::state);
         visit("key", key, ColumnRole::state);
     }
 };

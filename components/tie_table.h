@@ -19,13 +19,14 @@ namespace skerry {
 struct TieTable {
     Column<std::uint32_t> slot;
     Column<TieKind> kind;
-    Column<std::uint8_t> parts;  // 1: the tie switches off collisions between its two bodies
-    Column<Index> first;         // row of BodyTable; the deformable body whose nodes are tied
-    Column<Index> second;        // row of BodyTable, or no_index
-    Column<Index> collider;      // row of ColliderTable, or no_index; without body and collider: the world
-    Column<Range> nodes;         // rows of the columns by tied node
-    Column<Real> break_force;    // force at which a node breaks off; may be infinite [N]
-    Column<Real> step;           // time for which the impulses acted in the last step; 0 before the first step [s]
+    Column<std::uint8_t> parts;                    // 1: the tie switches off collisions between its two bodies
+    Column<std::uint8_t> close_gap, bodies_touch;  // as the user gave them
+    Column<Index> first;                           // row of BodyTable; the deformable body whose nodes are tied
+    Column<Index> second;                          // row of BodyTable, or no_index
+    Column<Index> collider;    // row of ColliderTable, or no_index; without body and collider: the world
+    Column<Range> nodes;       // rows of the columns by tied node
+    Column<Real> break_force;  // force at which a node breaks off; may be infinite [N]
+    Column<Real> step;         // time for which the impulses acted in the last step; 0 before the first step [s]
 
     // The next columns have one row per tied node. Nodes have their numbers in the meshes of the bodies.
     Column<Index> node;  // node of the first body
@@ -56,6 +57,8 @@ struct TieTable {
         visit("slot", slot, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);
         visit("parts", parts, ColumnRole::state);
+        visit("close_gap", close_gap, ColumnRole::state);
+        visit("bodies_touch", bodies_touch, ColumnRole::state);
         visit("first", first, ColumnRole::body);
         visit("second", second, ColumnRole::body);
         visit("collider", collider, ColumnRole::collider);

@@ -2,6 +2,7 @@
 
 #include "engine/output/collect_frame.h"
 #include "engine/world/control/control.h"
+#include "engine/world/edit/objects.h"
 #include "engine/world/world_state.h"
 
 namespace skerry {
@@ -9,8 +10,9 @@ namespace skerry {
 namespace {
 
 /// Radius of gyration of the first body of a joint [m].
-Real gyration_radius(const Model& model, std::size_t joint) {
-    const auto first = static_cast<std::size_t>(model.joints.first[joint]);
+Real gyration_radius(const Model& model, JointHandle joint) {
+    const auto first =
+        static_cast<std::size_t>(model.joints.first[static_cast<std::size_t>(model.row(joint, "frame"))]);
     const auto row = static_cast<std::size_t>(model.bodies.rigid[first].begin);
     return std::sqrt(model.rigid_bodies.moments[row].sum() / (2 * model.rigid_bodies.mass[row]));
 }
@@ -47,25 +49,24 @@ std::vector<LineFrame> collect_lines(const World& world) {
     const WorldState& state = WorldAccess::state_of(world);
     const Model& model = state.model;
     std::vector<LineFrame> lines;
-    const auto add = [&](LineKind kind, const auto& table, const auto& map, auto&& put) {
-        for (std::size_t row = 0; row < table.size(); ++row) {
-            const auto handle = map.handle_of_slot(table.slot[row]);
+    const auto add = [&]<class HandleType>(LineKind kind, HandleType, auto&& put) {
+        for (const HandleType handle : handles_of<HandleType>(model)) {
             lines.push_back({.kind = kind,
                              .slot = handle.slot,
                              .generation = handle.generation,
-                             .name = std::string(name_of(kind)) + "_" + std::to_string(handle.slot)});
-            put(handle, row, lines.back());
+                             .name = object_name(model, handle)});
+            put(handle, lines.back());
         }
     };
-    add(LineKind::joint, model.joints, model.joint_map, [&](JointHandle joint, std::size_t row, LineFrame& line) {
-        put_points(joint_state(model, joint), gyration_radius(model, row), line);
+    add(LineKind::joint, JointHandle{}, [&](JointHandle joint, LineFrame& line) {
+        put_points(joint_state(model, joint), gyration_radius(model, joint), line);
     });
-    add(LineKind::tie, model.ties, model.tie_map,
-        [&](TieHandle tie, std::size_t, LineFrame& line) { put_points(world, tie_state(state, tie), line); });
-    add(LineKind::cable, model.cables, model.cable_map,
-        [&](CableHandle cable, std::size_t, LineFrame& line) { put_points(cable_state(state, cable), line); });
-    add(LineKind::spring, model.springs, model.spring_map,
-        [&](SpringHandle spring, std::size_t, LineFrame& line) { put_points(spring_state(state, spring), line); });
+    add(LineKind::tie, TieHandle{},
+        [&](TieHandle tie, LineFrame& line) { put_points(world, tie_state(state, tie), line); });
+    add(LineKind::cable, CableHandle{},
+        [&](CableHandle cable, LineFrame& line) { put_points(cable_state(state, cable), line); });
+    add(LineKind::spring, SpringHandle{},
+        [&](SpringHandle spring, LineFrame& line) { put_points(spring_state(state, spring), line); });
     return lines;
 }
 

@@ -117,6 +117,7 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
     lumped.velocity.assign(step.free_velocity.begin(), step.free_velocity.end());
     std::vector<Vec3> impulse;
     for (std::size_t row = 0; row < step.contacts.stencil.size(); ++row) {
+        if (!step.joined.empty() && step.joined[row]) continue;
         bool on_rigid_body = false;
         const LumpedContact contact = load_contact(
             step.contacts, static_cast<Index>(row), step.free_velocity, settings, h, [](Index node) { return node; },

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "skerry/problem.h"
 #include "systems/solver/inputs/region_inputs.h"
@@ -16,6 +17,8 @@ struct StepContacts {
     std::span<const Vec3> free_velocity;  // predicted velocity of each node without contacts [m/s]
     std::span<const Vec3> impulse;        // impulse of each contact after the solve, in the world frame [N s]
     std::span<const Index> region;        // region number of each contact
+    // By contact: true if its region also has rows of joints, ties or cables, so that the problem must leave it out.
+    std::vector<bool> joined{};
 };
 
 /// Exports the contact problem that solve_regions solves. W is computed from stencils and inverse masses, q from the

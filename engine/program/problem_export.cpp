@@ -11,8 +11,11 @@
 #include <vector>
 
 #include "engine/program/progress.h"
+#include "skerry/cable.h"
 #include "skerry/error.h"
+#include "skerry/joint.h"
 #include "skerry/problem.h"
+#include "skerry/tie.h"
 
 namespace skerry {
 
@@ -40,6 +43,7 @@ public:
         : folder_(folder), scene_(scene), of_(options.problems_of), every_(options.problems_every) {}
 
     void open(World& world, const RunStart& start) override {
+        joined_ = !Joints(world).all().empty() || !Ties(world).all().empty() || !Cables(world).all().empty();
         const auto take = [this, &world](const StepProblem& step) {
             try {
                 write_step(step);
@@ -56,7 +60,10 @@ public:
     double seconds_in_steps() const override { return seconds_; }
     std::string written() const override {
         return std::to_string(files_) + " contact problems of " + std::to_string(steps_) + " steps to " +
-               folder_.string();
+               folder_.string() +
+               (joined_ ? " (without regions that have joints, ties, or cables with friction or a prescribed length, "
+                          "whose equations are not contacts)"
+                        : "");
     }
 
 private:
@@ -70,6 +77,7 @@ private:
     std::string scene_;
     ProblemsOf of_;
     std::optional<int> every_;  // number of steps between two exported steps
+    bool joined_ = false;       // true if the world has joints, ties or cables
     long files_ = 0, steps_ = 0;
     double seconds_ = 0;  // wall time of the export [s]
     std::exception_ptr failure_;

@@ -159,9 +159,7 @@ public:
         } else if constexpr (std::is_same_v<T, std::vector<std::array<Index, 3>>>) {
             to_[name] = array_of<Index>(std::span<const std::array<Index, 3>>(value), {3});
         } else if constexpr (std::is_same_v<T, TimeTable>) {
-            nb::list pairs;
-            for (const TimeKey& key : value.keys) pairs.append(nb::make_tuple(key.time, key.value));
-            to_[name] = nb::tuple(pairs);
+            to_[name] = object_of(value);
         } else if constexpr (VectorOf<T>::value) {
             nb::list items;
             for (const auto& item : value) items.append(instance_of(item));
@@ -288,6 +286,22 @@ nb::dict values_of(const MaterialSettings& settings) {
     return dict_of(settings);
 }
 
+nb::dict values_of(const SpringSettings& settings) {
+    return dict_of(settings);
+}
+nb::dict values_of(const CableSettings& settings) {
+    return dict_of(settings);
+}
+nb::dict values_of(const TieSettings& settings) {
+    return dict_of(settings);
+}
+nb::dict values_of(const PipeSettings& settings) {
+    return dict_of(settings);
+}
+nb::dict values_of(const AnyLoad& settings) {
+    return std::visit([](const auto& load) { return dict_of(load); }, settings);
+}
+
 nb::object object_of(const Shape& shape) {
     return std::visit([](const auto& known) { return instance_of(known); }, shape);
 }
@@ -302,6 +316,18 @@ nb::object object_of(const JointPassive& passive) {
 }
 nb::object object_of(const SurfaceSettings& surface) {
     return instance_of(surface);
+}
+
+nb::object object_of(const GasFilling& gas) {
+    return instance_of(gas);
+}
+nb::object object_of(const LiquidFilling& liquid) {
+    return instance_of(liquid);
+}
+nb::object object_of(const TimeTable& table) {
+    nb::list pairs;
+    for (const TimeKey& key : table.keys) pairs.append(nb::make_tuple(key.time, key.value));
+    return nb::tuple(pairs);
 }
 
 void bind_settings(nb::module_& module) {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "engine/python/bind.h"
+#include "skerry/cable.h"
 #include "skerry/cavity.h"
 #include "skerry/joint.h"
+#include "skerry/load.h"
 #include "skerry/problem.h"
 #include "skerry/spring.h"
 #include "skerry/tie.h"
@@ -42,6 +44,11 @@ TimeTable table_of(const std::vector<std::array<Real, 2>>& pairs);
 /// The values of a struct by name, as Python values.
 nb::dict values_of(const Settings& settings);
 nb::dict values_of(const MaterialSettings& settings);
+nb::dict values_of(const SpringSettings& settings);
+nb::dict values_of(const CableSettings& settings);
+nb::dict values_of(const TieSettings& settings);
+nb::dict values_of(const PipeSettings& settings);
+nb::dict values_of(const AnyLoad& settings);
 
 /// The Python object of a shape or of settings: an instance of its dataclass.
 nb::object object_of(const Shape& shape);
@@ -49,5 +56,9 @@ nb::object object_of(const Pose& pose);
 nb::object object_of(const JointMotor& motor);
 nb::object object_of(const JointPassive& passive);
 nb::object object_of(const SurfaceSettings& surface);
+nb::object object_of(const GasFilling& gas);
+nb::object object_of(const LiquidFilling& liquid);
+/// The pairs (time, value) of a table.
+nb::object object_of(const TimeTable& table);
 
 }  // namespace skerry::python

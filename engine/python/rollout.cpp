@@ -32,6 +32,15 @@ std::variant<ColliderHandle, AttachmentHandle> movable(nb::handle object) {
     return nb::cast<ColliderHandle>(object);
 }
 
+/// A cable, a cavity, a pipe, a spring or a load.
+decltype(ValueControl::object) valued(nb::handle object) {
+    if (nb::isinstance<CableHandle>(object)) return nb::cast<CableHandle>(object);
+    if (nb::isinstance<CavityHandle>(object)) return nb::cast<CavityHandle>(object);
+    if (nb::isinstance<PipeHandle>(object)) return nb::cast<PipeHandle>(object);
+    if (nb::isinstance<SpringHandle>(object)) return nb::cast<SpringHandle>(object);
+    return nb::cast<LoadHandle>(object);
+}
+
 /// A control of Python: kind, handle (None for gravity) and values in the order of RolloutControl::values.
 using Control = std::tuple<std::string, nb::object, Values>;
 
@@ -53,6 +62,8 @@ RolloutControl control_of(const Control& given) {
         control.what = BodyForceControl{nb::cast<BodyHandle>(object)};
     else if (kind == "gravity")
         control.what = GravityControl{};
+    else if (kind == "value")
+        control.what = ValueControl{valued(object)};
     else
         refuse_kind(kind);
     return control;

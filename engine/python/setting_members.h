@@ -9,8 +9,10 @@
 #include <type_traits>
 #include <vector>
 
+#include "skerry/cable.h"
 #include "skerry/cavity.h"
 #include "skerry/joint.h"
+#include "skerry/load.h"
 #include "skerry/problem.h"
 #include "skerry/settings.h"
 #include "skerry/spring.h"
@@ -178,6 +180,40 @@ void for_each_setting(Is<LiquidFilling> auto& s, auto&& visit) {
     visit("bulk_modulus", s.bulk_modulus);
     visit("volume", s.volume);
     visit("ambient", s.ambient);
+}
+
+void for_each_setting(Is<CableSettings> auto& s, auto&& visit) {
+    visit("tension", s.drive.tension);
+    visit("length", s.drive.length);
+    visit("rate", s.drive.rate);
+    visit("friction", s.friction);
+}
+
+void for_each_setting(Is<PipeSettings> auto& s, auto&& visit) {
+    visit("conductance", s.conductance);
+    visit("pressure", s.pressure);
+}
+
+void for_each_setting(Is<ForceLoad> auto& s, auto&& visit) {
+    visit("force", s.force);
+    visit("scale", s.scale);
+}
+void for_each_setting(Is<TractionLoad> auto& s, auto&& visit) {
+    visit("faces", s.faces);
+    visit("traction", s.traction);
+    visit("scale", s.scale);
+}
+void for_each_setting(Is<AccelerationField> auto& s, auto&& visit) {
+    visit("acceleration", s.acceleration);
+    visit("scale", s.scale);
+}
+void for_each_setting(Is<GravityScale> auto& s, auto&& visit) {
+    visit("scale", s.scale);
+}
+void for_each_setting(Is<DragField> auto& s, auto&& visit) {
+    visit("rate", s.rate);
+    visit("wind", s.wind);
+    visit("scale", s.scale);
 }
 
 void for_each_setting(Is<ProblemSettings> auto& s, auto&& visit) {

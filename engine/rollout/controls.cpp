@@ -5,8 +5,13 @@
 #include <type_traits>
 
 #include "engine/world/complaint.h"
+#include "engine/world/edit/objects.h"
 #include "engine/world/world_state.h"
+#include "skerry/cable.h"
+#include "skerry/cavity.h"
 #include "skerry/joint.h"
+#include "skerry/load.h"
+#include "skerry/spring.h"
 
 namespace skerry {
 
@@ -33,12 +38,15 @@ std::string name_of_object(const World& world, AttachmentHandle attachment) {
     const auto body = static_cast<std::size_t>(model_of(world).attachments.body[row_of(world, attachment)]);
     return "attachment of body '" + model_of(world).body_records[body].name + "'";
 }
-std::string name_of_object(const World& world, JointHandle joint) {
-    return "joint " + std::to_string(row_of(world, joint));
+template <class HandleType>
+    requires requires { ObjectsOf<HandleType>::noun; }
+std::string name_of_object(const World& world, HandleType object) {
+    return ObjectsOf<HandleType>::noun + (" '" + object_name(model_of(world), object) + "'");
 }
 
 /// The object of a control; gravity has none.
-using ControlledObject = std::variant<std::monostate, BodyHandle, ColliderHandle, AttachmentHandle, JointHandle>;
+using ControlledObject = std::variant<std::monostate, BodyHandle, ColliderHandle, AttachmentHandle, JointHandle,
+                                      CableHandle, CavityHandle, PipeHandle, SpringHandle, LoadHandle>;
 
 ControlledObject object_of(const RolloutControl& control) {
     return std::visit(
@@ -68,6 +76,7 @@ constexpr std::array<ControlKind, std::variant_size_v<decltype(RolloutControl::w
     {"forces on the nodes of ", 3},  // for each node
     {"force on ", 3},
     {"gravity", 3},
+    {"value of ", 1},
 }};
 
 /// Text such as "pose of collider 'finger'".
@@ -127,8 +136,31 @@ struct ApplyControl {
         world.set_loads(control.body, forces);
     }
     void operator()(const GravityControl&) const { world.set_gravity(vector_at(values, 0)); }
+    void operator()(const ValueControl& control) const {
+        std::visit([&](auto object) { set_value(object, values[0]); }, control.object);
+    }
 
 private:
+    void set_value(CableHandle cable, const TimeTable& value) const {
+        CableDrive drive = Cables(world).settings(cable).drive;
+        for (std::optional<TimeTable>* given : {&drive.tension, &drive.length, &drive.rate})
+            if (*given) *given = value;
+        Cables(world).set_drive(cable, drive);
+    }
+    void set_value(CavityHandle cavity, const TimeTable& value) const {
+        Cavities cavities(world);
+        switch (cavities.state(cavity).law) {
+            case CavityLaw::pressure:
+                return cavities.set_pressure(cavity, value);
+            case CavityLaw::gas:
+                return cavities.set_inflow(cavity, value);
+            case CavityLaw::liquid:
+                return cavities.set_liquid_volume(cavity, value);
+        }
+    }
+    void set_value(PipeHandle pipe, const TimeTable& value) const { Cavities(world).set_reservoir(pipe, value); }
+    void set_value(SpringHandle spring, const TimeTable& value) const { Springs(world).set_rest_length(spring, value); }
+    void set_value(LoadHandle load, const TimeTable& value) const { Loads(world).set_scale(load, value); }
     void drive(JointHandle joint, JointMotor motor) const {
         const JointMotorRow now = model_of(world).joints.motor[row_of(world, joint)];
         motor.strength = now.most;

@@ -90,6 +90,12 @@ BodyHandle add_mesh_body(const ScenePlan& plan, const BodyPlan& body, const Body
     }
 }
 
+/// Gives objects of a world the names of their plans.
+template <class HandleType>
+void name_objects(World& world, const std::vector<HandleType>& objects, const auto& plans) {
+    for (std::size_t i = 0; i < objects.size(); ++i) ObjectView<HandleType>(world).set_name(objects[i], plans[i].name);
+}
+
 }  // namespace
 
 Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>& added) {
@@ -185,6 +191,11 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         settings.second = anchor_of(spring.second, plan, world, {bodies, colliders});
         springs.push_back(called_at(spring.place, [&] { return Springs(world).add(settings); }));
     }
+    name_objects(world, joints, plan.joints);
+    name_objects(world, ties, plan.ties);
+    name_objects(world, cables, plan.cables);
+    name_objects(world, cavities, plan.cavities);
+    name_objects(world, springs, plan.springs);
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     const Built built{world, bodies, colliders, pins, joints, ties, cables, cavities, springs};

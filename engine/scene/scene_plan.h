@@ -98,7 +98,7 @@ struct PipePlan {
 struct LoadPlan {
     std::optional<std::size_t> body{};  // index in ScenePlan::bodies
     // load without its body handle, because handles exist only in a built world
-    std::variant<ForceLoad, TractionLoad, AccelerationField, GravityScale, DragField> load{};
+    AnyLoad load{};
     Place place;
 };
 struct SpringPlan {

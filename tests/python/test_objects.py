@@ -1,4 +1,4 @@
-"""Objects without names: copies, files, reset, busy worlds and removal, the same for each kind."""
+"""Objects other than bodies and colliders: names, settings, copies, files, reset, busy worlds and removal."""
 
 from __future__ import annotations
 
@@ -202,3 +202,87 @@ def test_nodes_may_be_given_by_a_truth_value_for_each() -> None:
     for add in (world.add_tie, lambda body, nodes: world.add_force(body, nodes, (1, 0, 0))):
         with pytest.raises(TypeError, match=r"nodes: found an array of the shape \(7,\), expected \(8,\)"):
             add(cube, mask[1:])
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "attachments"])
+def test_an_object_is_found_by_its_name_also_in_a_copy(kind: str) -> None:
+    world = object_world()
+    item = KINDS[kind][0](world)
+    assert getattr(world, kind)[item.name] == item
+    item.name = "my own"
+    for same in [world, world.copy(), pickle.loads(pickle.dumps(world))]:
+        assert getattr(same, kind)["my own"].name == "my own"
+        assert getattr(same, kind)[0] == getattr(same, kind)[:1][0]
+    with pytest.raises(KeyError, match=r"no object has the name 'other'; the names are \['my own'\]"):
+        getattr(world, kind)["other"]
+
+
+def traction(world: sk.World) -> sk.Load:
+    cube = world.bodies["cube"]
+    return world.add_traction(cube, cube.surface[:2], (0, 0, 5), scale=[(0, 1), (1, 2)])
+
+
+def drag(world: sk.World) -> sk.Load:
+    return world.add_drag(2, wind=(1, 0, 0))
+
+
+def acceleration(world: sk.World) -> sk.Load:
+    return world.add_acceleration((1, 2, 3), body=world.bodies["block"])
+
+
+def weight(world: sk.World) -> sk.Load:
+    return world.add_gravity_scale(0.5)
+
+
+def balloon(world: sk.World) -> sk.Cavity:
+    cube = world.bodies["cube"]
+    return world.add_cavity(cube, faces=cube.surface[:1], gas=sk.Gas(pressure=100, inflow=1e-6), volume=1e-3)
+
+
+def plain(value: Any) -> Any:
+    """A setting in a form that can be compared, without rounding errors."""
+    if isinstance(value, sk.Anchor):
+        return value.body, value.collider, tuple(round(x, 12) for x in value.point)
+    if isinstance(value, list):
+        return [plain(inner) for inner in value]
+    if isinstance(value, sk.Gas):
+        return round(value.pressure, 6), value.exponent, value.inflow
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+@pytest.mark.parametrize(
+    ("make", "method"),
+    [
+        (spring, "add_spring"),
+        (cable, "add_cable"),
+        (cavity, "add_cavity"),
+        (balloon, "add_cavity"),
+        (pipe, "add_pipe"),
+        (tie, "add_tie"),
+        (load, "add_force"),
+        (traction, "add_traction"),
+        (drag, "add_drag"),
+        (acceleration, "add_acceleration"),
+    ],
+)
+def test_settings_are_arguments_that_add_an_equal_object(make: Callable[[sk.World], Any], method: str) -> None:
+    world = object_world()
+    item = make(world)
+    twin = getattr(world, method)(**item.settings)
+    assert twin != item
+    assert {name: plain(value) for name, value in twin.settings.items()} == {
+        name: plain(value) for name, value in item.settings.items()
+    }
+
+
+def test_settings_are_those_that_were_given() -> None:
+    world = object_world()
+    assert spring(world).settings["stiffness"] == 1 and spring(world).settings["only"] == "both"
+    assert cable(world).settings["tension"] == ((0, 1),) and cable(world).settings["length"] is None
+    assert cavity(world).settings["pressure"] == ((0, 10),)
+    assert balloon(world).settings["gas"].inflow == ((0, 1e-6),)
+    assert pipe(world).settings["second"] is None and pipe(world).settings["pressure"] == ((0, 100),)
+    assert tie(world).settings["to"] is None and tie(world).settings["nodes"].tolist() == [0]
+    assert weight(world).settings == {"body": None, "scale": ((0, 0.5),)}
+    assert traction(world).settings["scale"] == ((0, 1), (1, 2))
+    assert drag(world).settings["wind"] == (1, 0, 0)

@@ -383,3 +383,26 @@ def test_a_force_on_a_body_is_divided_by_mass() -> None:
     out = sk.rollout(free, {ball: [(1, 0, 0)] * 3}, dt=0.01, record={"ball": sk.NodesProbe(ball)})
     moved = out["ball.position"][0, -1] - ball.positions
     assert moved == pytest.approx(np.broadcast_to(moved[0], moved.shape), abs=1e-12)  # all nodes move alike
+
+
+def test_the_value_of_an_object_is_controlled_as_by_its_own_function() -> None:
+    bench = Bench()
+    tip = sk.Anchor(body=bench.ball, point=(0, 0, 0.052))
+    spring = bench.world.add_spring(tip, sk.Anchor(point=(0, 0, 0.3)), stiffness=20)
+    cable = bench.world.add_cable([tip, sk.Anchor(point=(0.3, 0, 0.1))], tension=0)
+    cavity = bench.world.add_cavity(bench.bar, faces=bench.bar.surface[:4], pressure=0)
+    load = bench.world.add_acceleration((0, 0, 1), scale=0)
+    values = np.linspace(0.1, 0.2, STEPS)
+    setters = {
+        spring: lambda twin, x: twin.set_rest_length(x),
+        cable: lambda twin, x: twin.set_drive(tension=x),
+        cavity: lambda twin, x: twin.set_pressure(x),
+        load: lambda twin, x: twin.set_scale(x),
+    }
+    rolled = sk.rollout(bench.world, dict.fromkeys(setters, values), dt=DT, keep_worlds=True).worlds[0]
+    by_hand = bench.world.copy()
+    for value in values:
+        for item, apply in setters.items():
+            apply(item.in_copy(by_hand), value)
+        by_hand.advance(DT)
+    assert rolled.state_hash == by_hand.state_hash

@@ -7,12 +7,11 @@
 #include "components/cable_control.h"
 #include "components/types.h"
 #include "skerry/anchor.h"
+#include "skerry/object_view.h"
 #include "skerry/time_table.h"
 
 #pragma GCC visibility push(default)
 namespace skerry {
-
-class World;
 
 /// Control of a cable. Exactly one member must be given. A cable never pushes.
 struct CableDrive {
@@ -42,26 +41,21 @@ struct CableState {
     Real dissipated = 0;             // energy dissipated by friction at the points since the cable was added [J]
 };
 
-/// A view of the cables of a world. It is valid until the world is moved or destroyed. Functions that change cables may
-/// only be called between calls of advance. They throw SceneError and change nothing if a handle is stale or a value is
-/// out of range. Cables belong to the state of the world: they are saved, cloned and hashed.
-class Cables {
-public:
-    explicit Cables(World& world) : world_(&world) {}
+extern template class __attribute__((visibility("default"))) ObjectView<CableHandle>;
 
-    /// Adds a cable. It is removed with each of its bodies and colliders. All bodies of a cable that has friction, or
-    /// whose length is prescribed, are in one contact region.
+/// A view of the cables of a world.
+class Cables : public ObjectView<CableHandle> {
+public:
+    using ObjectView::ObjectView;
+
+    /// Adds a cable. All bodies of a cable that has friction, or whose length is prescribed, are in one contact region.
     CableHandle add(const CableSettings& cable);
-    void remove(CableHandle cable);
-    bool alive(CableHandle cable) const;
-    std::vector<CableHandle> all() const;  // all cables, in the order added
     CableState state(CableHandle cable) const;
+    /// Settings of an equal cable that is added now: points have their present positions.
+    CableSettings settings(CableHandle cable) const;
     /// Replaces the control. A control equal to the present one changes no bit of the state. A new rate starts at the
     /// present length, except if the old control was also a rate.
     void set_drive(CableHandle cable, const CableDrive& drive);
-
-private:
-    World* world_;
 };
 
 }  // namespace skerry

@@ -9,12 +9,11 @@
 #include "components/cavity_law.h"
 #include "components/handle.h"
 #include "components/types.h"
+#include "skerry/object_view.h"
 #include "skerry/time_table.h"
 
 #pragma GCC visibility push(default)
 namespace skerry {
-
-class World;
 
 inline constexpr Real standard_pressure = 101325;  // [Pa]
 
@@ -82,26 +81,27 @@ struct PipeState {
     Real flow = 0;         // mean mass flow out of the first cavity in the last step [kg/s]
 };
 
-/// A view of the cavities and pipes of a world. It is valid until the world is moved or destroyed. Functions that
-/// change something may only be called between calls of advance. They throw SceneError and change nothing if a handle
-/// is stale or a value is out of range. Cavities and pipes belong to the state of the world: they are saved, cloned and
-/// hashed. Setting an equal value again changes no bit of the state.
-class Cavities {
-public:
-    explicit Cavities(World& world) : world_(&world) {}
+extern template class __attribute__((visibility("default"))) ObjectView<CavityHandle>;
+extern template class __attribute__((visibility("default"))) ObjectView<PipeHandle>;
 
-    /// Removing the body removes the cavity.
+/// A view of the cavities and pipes of a world. Setting an equal value again changes no bit of the state.
+class Cavities : public ObjectView<CavityHandle> {
+public:
+    using ObjectView::ObjectView;
+
+    /// Adds a cavity. Removing it also removes its pipes.
     CavityHandle add(const CavitySettings& cavity);
-    /// Removing a cavity removes its pipes.
     PipeHandle add(const PipeSettings& pipe);
-    void remove(CavityHandle cavity);
-    void remove(PipeHandle pipe);
-    bool alive(CavityHandle cavity) const;
-    bool alive(PipeHandle pipe) const;
-    std::vector<CavityHandle> all() const;  // in the order added
-    std::vector<PipeHandle> pipes() const;  // in the order added
+    using ObjectView::alive;
+    using ObjectView::remove;
+    void remove(PipeHandle pipe) { ObjectView<PipeHandle>(*world_).remove(pipe); }
+    bool alive(PipeHandle pipe) const { return ObjectView<PipeHandle>(*world_).alive(pipe); }
+    std::vector<PipeHandle> pipes() const { return ObjectView<PipeHandle>(*world_).all(); }  // in the order added
     CavityState state(CavityHandle cavity) const;
     PipeState state(PipeHandle pipe) const;
+    /// Settings of an equal cavity that is added now: pressure and volume of a filling are those of the present.
+    CavitySettings settings(CavityHandle cavity) const;
+    PipeSettings settings(PipeHandle pipe) const;
 
     /// Sets a prescribed pressure above ambient [Pa].
     void set_pressure(CavityHandle cavity, const TimeTable& pressure);
@@ -112,9 +112,6 @@ public:
     void set_conductance(PipeHandle pipe, Real conductance);
     /// Sets the pressure of a reservoir above ambient [Pa].
     void set_reservoir(PipeHandle pipe, const TimeTable& pressure);
-
-private:
-    World* world_;
 };
 
 }  // namespace skerry

@@ -7,11 +7,10 @@
 #include "components/handle.h"
 #include "components/joint_kind.h"
 #include "components/types.h"
+#include "skerry/object_view.h"
 
 #pragma GCC visibility push(default)
 namespace skerry {
-
-class World;
 
 /// Key of a motor: a target speed or a target coordinate at an absolute time. Exactly one of the two must be given.
 struct MotorKey {
@@ -99,20 +98,16 @@ struct JointState {
     Real error = 0;
 };
 
-/// A view of the joints of a world. It is valid until the world is moved or destroyed. Like the functions of World,
-/// functions that change joints may only be called between calls of advance. They throw SceneError and change nothing
-/// if a handle is stale or a value is out of range. Joints belong to the state of the world: they are saved, cloned and
-/// hashed.
-class Joints {
+extern template class __attribute__((visibility("default"))) ObjectView<JointHandle>;
+
+/// A view of the joints of a world.
+class Joints : public ObjectView<JointHandle> {
 public:
-    explicit Joints(World& world) : world_(&world) {}
+    using ObjectView::ObjectView;
 
     /// Joins two rigid bodies, or a rigid body and the world, in their present poses. The joint is removed when either
     /// body is removed.
     JointHandle add(const JointSettings& joint);
-    void remove(JointHandle joint);
-    bool alive(JointHandle joint) const;
-    std::vector<JointHandle> all() const;  // all joints, in the order added
     /// Returns the present pose and motion of a joint, and the joint's force and moment in the last step.
     JointState state(JointHandle joint) const;
     /// Sets the motor of a hinge or a slider, or removes the motor if none is given. Setting a motor equal to the
@@ -132,9 +127,6 @@ public:
     std::optional<JointMotor> motor(JointHandle joint) const;
     JointLimits limits(JointHandle joint) const;
     JointPassive passive(JointHandle joint) const;
-
-private:
-    World* world_;
 };
 
 }  // namespace skerry

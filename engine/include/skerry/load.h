@@ -3,17 +3,17 @@
 
 #include <array>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "components/handle.h"
 #include "components/load_kind.h"
 #include "components/types.h"
+#include "skerry/object_view.h"
 #include "skerry/time_table.h"
 
 #pragma GCC visibility push(default)
 namespace skerry {
-
-class World;
 
 // Every load is multiplied by its `scale`, which may change over time. A step uses the mean of the scale in the time in
 // which forces act, so that the impulses of all steps add up to the integral of the force over time.
@@ -62,6 +62,8 @@ struct DragField {
     TimeTable scale = 1;               // factor of `wind`
 };
 
+using AnyLoad = std::variant<ForceLoad, TractionLoad, AccelerationField, GravityScale, DragField>;
+
 /// State of a load at the present time.
 struct LoadState {
     LoadKind kind = LoadKind::force;
@@ -75,31 +77,26 @@ struct LoadState {
     Vec3 force = Vec3::Zero();
 };
 
-/// A view of the loads of a world. It is valid until the world is moved or destroyed. Functions that change loads may
-/// only be called between calls of advance. They throw SceneError and change nothing if a handle is stale or a value is
-/// out of range. Loads act on explicit, implicit and rigid bodies. They belong to the state of the world: they are
-/// saved, cloned and hashed. Forces of World::set_loads are independent of these loads.
-class Loads {
-public:
-    explicit Loads(World& world) : world_(&world) {}
+extern template class __attribute__((visibility("default"))) ObjectView<LoadHandle>;
 
-    /// Adds a load. A load on a body is removed with the body.
+/// A view of the loads of a world. Loads act on explicit, implicit and rigid bodies. Forces of World::set_loads are
+/// independent of these loads.
+class Loads : public ObjectView<LoadHandle> {
+public:
+    using ObjectView::ObjectView;
+
+    /// Adds a load.
     LoadHandle add(const ForceLoad& load);
     LoadHandle add(const TractionLoad& load);
     LoadHandle add(const AccelerationField& field);
     LoadHandle add(const GravityScale& factor);
     LoadHandle add(const DragField& drag);
-    void remove(LoadHandle load);
-    bool alive(LoadHandle load) const;
-    std::vector<LoadHandle> all() const;  // in the order added
     LoadState state(LoadHandle load) const;
+    AnyLoad settings(LoadHandle load) const;
     /// Replaces the scale of a load. Setting an equal scale changes no bit of the state.
     void set_scale(LoadHandle load, const TimeTable& scale);
     /// Replaces force, traction, acceleration or velocity of the wind. Throws SceneError for a factor of the weight.
     void set_vector(LoadHandle load, const Vec3& vector);
-
-private:
-    World* world_;
 };
 
 }  // namespace skerry

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "components/load_kind.h"
 #include "skerry/recorder.h"
 #include "skerry/world.h"
 
@@ -45,11 +46,17 @@ struct BodyForceControl {
 };
 /// Sets the acceleration of gravity. Numbers: three [m/s^2].
 struct GravityControl {};
+/// Sets the value that an object has as a TimeTable. Numbers: tension [N], length [m] or rate [m/s] of a cable, whichever
+/// is prescribed; pressure [Pa], inflow [kg/s] or liquid volume [m^3] of a cavity; pressure of the reservoir of a pipe
+/// [Pa]; rest length of a spring [m]; scale of a load.
+struct ValueControl {
+    std::variant<CableHandle, CavityHandle, PipeHandle, SpringHandle, LoadHandle> object{};
+};
 
 /// One controlled quantity. An object may have only one control. Each value applies from the start of its interval.
 struct RolloutControl {
     std::variant<PoseControl, VelocityControl, MotorSpeedControl, MotorPositionControl, NodeForceControl,
-                 BodyForceControl, GravityControl>
+                 BodyForceControl, GravityControl, ValueControl>
         what;
     // Values in the order (world, interval, number), or in the order (interval, number) for all worlds. The values are
     // not copied and must exist until rollout() returns.

@@ -7,12 +7,11 @@
 #include "components/spring_side.h"
 #include "components/types.h"
 #include "skerry/anchor.h"
+#include "skerry/object_view.h"
 #include "skerry/time_table.h"
 
 #pragma GCC visibility push(default)
 namespace skerry {
-
-class World;
 
 /// A spring, a damper, or both in parallel, between two anchors. At least one anchor must be on a body. Stiffness and
 /// damping must not both be 0.
@@ -35,21 +34,19 @@ struct SpringState {
     Real energy = 0;           // elastic energy [J]
 };
 
-/// A view of the springs of a world. It is valid until the world is moved or destroyed. Like the functions of World,
-/// functions that change springs may only be called between calls of advance. They throw SceneError and change nothing
-/// if a handle is stale or a value is out of range. Springs belong to the state of the world: they are saved, cloned
-/// and hashed. Each change wakes the bodies of the spring, unless the new value equals the old one.
-class Springs {
-public:
-    explicit Springs(World& world) : world_(&world) {}
+extern template class __attribute__((visibility("default"))) ObjectView<SpringHandle>;
 
-    /// Adds a spring. The spring is removed when a body or a collider of its anchors is removed. Stiff springs on light
-    /// bodies shorten the step of the world.
+/// A view of the springs of a world. Each change wakes the bodies of the spring, unless the new value equals the old
+/// one.
+class Springs : public ObjectView<SpringHandle> {
+public:
+    using ObjectView::ObjectView;
+
+    /// Adds a spring. Stiff springs on light bodies shorten the step of the world.
     SpringHandle add(const SpringSettings& spring);
-    void remove(SpringHandle spring);
-    bool alive(SpringHandle spring) const;
-    std::vector<SpringHandle> all() const;  // all springs, in the order added
     SpringState state(SpringHandle spring) const;
+    /// Settings of an equal spring that is added now: anchors have their present positions.
+    SpringSettings settings(SpringHandle spring) const;
 
     /// Moves the second anchor of a spring. The rest length does not change. With `strength`, this drags a body to a
     /// point that moves, for example with a mouse.
@@ -57,9 +54,6 @@ public:
     void set_rest_length(SpringHandle spring, const TimeTable& rest_length);
     void set_stiffness(SpringHandle spring, Real stiffness);
     void set_damping(SpringHandle spring, Real damping);
-
-private:
-    World* world_;
 };
 
 }  // namespace skerry

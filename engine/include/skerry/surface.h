@@ -8,6 +8,7 @@
 #include "components/handle.h"
 #include "components/types.h"
 #include "skerry/control.h"
+#include "skerry/object_view.h"
 
 #pragma GCC visibility push(default)
 namespace skerry {
@@ -64,27 +65,21 @@ struct SurfaceSetSettings {
     std::optional<Vec3> direction{};
 };
 
-/// A view of the surface sets of a world. It is valid until the world is moved or destroyed. Functions that change sets
-/// may only be called between calls of advance. They throw SceneError and change nothing if a handle is stale or a
-/// value is out of range. Sets belong to the state of the world: they are saved, cloned and hashed.
-class SurfaceSets {
+extern template class __attribute__((visibility("default"))) ObjectView<SurfaceSetHandle>;
+
+/// A view of the surface sets of a world.
+class SurfaceSets : public ObjectView<SurfaceSetHandle> {
 public:
-    explicit SurfaceSets(World& world) : world_(&world) {}
+    using ObjectView::ObjectView;
 
     /// Adds a set. It is removed with its body. Where sets overlap, the set that was added last applies. A property of
     /// a set takes precedence over that of the pair of materials; it is combined with the property of the other surface
     /// like the property of a body. For two surfaces with directions, the geometric mean of both friction tensors
     /// applies.
     SurfaceSetHandle add(const SurfaceSetSettings& set);
-    void remove(SurfaceSetHandle set);
-    bool alive(SurfaceSetHandle set) const;
-    std::vector<SurfaceSetHandle> all() const;  // all sets, in the order added
     SurfaceSetSettings settings(SurfaceSetHandle set) const;
     /// Changes the properties of a set, and wakes its body. `friction_across` needs a set with a direction.
     void set_surface(SurfaceSetHandle set, const SurfaceSettings& surface, std::optional<Real> friction_across = {});
-
-private:
-    World* world_;
 };
 
 }  // namespace skerry

@@ -7,11 +7,10 @@
 #include "components/handle.h"
 #include "components/tie_kind.h"
 #include "components/types.h"
+#include "skerry/object_view.h"
 
 #pragma GCC visibility push(default)
 namespace skerry {
-
-class World;
 
 /// A tie between nodes of a deformable body and another object: a body of any kind, a collider, or the world if neither
 /// is given. Each node is tied in its present position to the nearest point of the other object, which must not be
@@ -54,25 +53,19 @@ struct TieState {
     std::vector<TiedNode> nodes{};
 };
 
-/// A view of the ties of a world. It is valid until the world is moved or destroyed. Like the functions of World,
-/// functions that change ties may only be called between calls of advance. They throw SceneError and change nothing if
-/// a handle is stale or a value is out of range. Ties belong to the state of the world: they are saved, cloned and
-/// hashed.
-class Ties {
-public:
-    explicit Ties(World& world) : world_(&world) {}
+extern template class __attribute__((visibility("default"))) ObjectView<TieHandle>;
 
-    /// Ties nodes of a body. The tie is removed together with either object.
+/// A view of the ties of a world.
+class Ties : public ObjectView<TieHandle> {
+public:
+    using ObjectView::ObjectView;
+
+    /// Ties nodes of a body.
     TieHandle add(const TieSettings& tie);
-    void remove(TieHandle tie);
-    bool alive(TieHandle tie) const;
-    std::vector<TieHandle> all() const;  // all ties, in the order added
     TieState state(TieHandle tie) const;
+    TieSettings settings(TieHandle tie) const;
     /// Sets the force at which a node breaks off [N]. Nodes that have broken off stay so.
     void set_break_force(TieHandle tie, Real force);
-
-private:
-    World* world_;
 };
 
 }  // namespace skerry

@@ -34,9 +34,17 @@ nb::dict values_of(const CableState& state) {
     return values;
 }
 
+nb::dict settings_of_cable(World& world, const CableHandle& cable) {
+    const CableSettings settings = Cables(world).settings(cable);
+    nb::dict values = python::values_of(settings);
+    values["points"] = nb::list(nb::cast(settings.points));
+    return values;
+}
+
 }  // namespace
 
 void bind_cables(WorldClass& type) {
+    bind_view<CableHandle>(type, "cables");
     type.def("add_cable",
              guarded([](World& world, const std::vector<Anchor>& points, const GivenTable& tension,
                         const GivenTable& length, const GivenTable& rate, Real friction) {
@@ -45,11 +53,9 @@ void bind_cables(WorldClass& type) {
              }),
              nb::arg("points"), nb::arg("tension").none(), nb::arg("length").none(), nb::arg("rate").none(),
              nb::arg("friction"))
-        .def("remove", guarded([](World& world, const CableHandle& cable) { Cables(world).remove(cable); }))
-        .def("alive", guarded([](World& world, const CableHandle& cable) { return Cables(world).alive(cable); }))
-        .def("cables", guarded([](World& world) { return Cables(world).all(); }))
         .def("cable_state",
              guarded([](World& world, const CableHandle& cable) { return values_of(Cables(world).state(cable)); }))
+        .def("cable_settings", guarded(settings_of_cable))
         .def("set_cable_drive",
              guarded([](World& world, const CableHandle& cable, const GivenTable& tension, const GivenTable& length,
                         const GivenTable& rate) { Cables(world).set_drive(cable, drive_of(tension, length, rate)); }),

@@ -9,6 +9,7 @@ namespace skerry::python {
 namespace {
 
 using Pairs = std::vector<std::array<Real, 2>>;
+using Face = std::array<Index, 3>;
 
 CavityHandle add_cavity(WorldObject& object, const BodyHandle& body, const std::optional<IndexRows<3>>& faces,
                         const std::optional<Pairs>& pressure, nb::handle gas, nb::handle liquid,
@@ -48,6 +49,26 @@ nb::dict values_of(const PipeState& state) {
     return values;
 }
 
+nb::dict settings_of_cavity(World& world, const CavityHandle& cavity) {
+    const CavitySettings settings = Cavities(world).settings(cavity);
+    nb::dict values;
+    values["body"] = settings.body;
+    values["faces"] = array_of<Index>(std::span<const Face>(*settings.faces), {3});
+    const char* const names[] = {"pressure", "gas", "liquid"};  // in the order of the alternatives
+    values[names[settings.filling.index()]] =
+        std::visit([](const auto& filling) { return object_of(filling); }, settings.filling);
+    values["volume"] = settings.volume;
+    return values;
+}
+
+nb::dict settings_of_pipe(World& world, const PipeHandle& pipe) {
+    const PipeSettings settings = Cavities(world).settings(pipe);
+    nb::dict values = python::values_of(settings);
+    values["first"] = settings.first;
+    values["second"] = settings.second ? nb::cast(*settings.second) : nb::none();
+    return values;
+}
+
 template <auto set>
 auto setter() {
     return guarded([](World& world, const CavityHandle& cavity, const Pairs& table) {
@@ -58,6 +79,8 @@ auto setter() {
 }  // namespace
 
 void bind_cavities(WorldClass& type) {
+    bind_view<CavityHandle>(type, "cavities");
+    bind_view<PipeHandle>(type, "pipes");
     type.def("add_cavity", &add_cavity, nb::arg("body"), nb::arg("faces").none(), nb::arg("pressure").none(),
              nb::arg("gas").none(), nb::arg("liquid").none(), nb::arg("volume").none())
         .def("add_pipe",
@@ -66,16 +89,12 @@ void bind_cavities(WorldClass& type) {
                  return Cavities(world).add(PipeSettings{first, second, conductance, table_of(pressure)});
              }),
              nb::arg("first"), nb::arg("second").none(), nb::arg("conductance"), nb::arg("pressure"))
-        .def("remove", guarded([](World& world, const CavityHandle& cavity) { Cavities(world).remove(cavity); }))
-        .def("remove", guarded([](World& world, const PipeHandle& pipe) { Cavities(world).remove(pipe); }))
-        .def("alive", guarded([](World& world, const CavityHandle& cavity) { return Cavities(world).alive(cavity); }))
-        .def("alive", guarded([](World& world, const PipeHandle& pipe) { return Cavities(world).alive(pipe); }))
-        .def("cavities", guarded([](World& world) { return Cavities(world).all(); }))
-        .def("pipes", guarded([](World& world) { return Cavities(world).pipes(); }))
         .def("cavity_state",
              guarded([](World& world, const CavityHandle& cavity) { return values_of(Cavities(world).state(cavity)); }))
         .def("pipe_state",
              guarded([](World& world, const PipeHandle& pipe) { return values_of(Cavities(world).state(pipe)); }))
+        .def("cavity_settings", guarded(settings_of_cavity))
+        .def("pipe_settings", guarded(settings_of_pipe))
         .def("set_pressure", setter<&Cavities::set_pressure>())
         .def("set_inflow", setter<&Cavities::set_inflow>())
         .def("set_liquid_volume", setter<&Cavities::set_liquid_volume>())

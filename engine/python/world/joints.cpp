@@ -70,10 +70,8 @@ void set_motor(WorldObject& object, const JointHandle& joint, nb::handle given) 
 }  // namespace
 
 void bind_joints(WorldClass& type) {
+    bind_view<JointHandle>(type, "joints");
     type.def("add_joint", &add_joint, nb::arg("first"), nb::arg("second").none(), nb::arg("given"))
-        .def("remove", guarded([](World& world, const JointHandle& joint) { Joints(world).remove(joint); }))
-        .def("alive", guarded([](World& world, const JointHandle& joint) { return Joints(world).alive(joint); }))
-        .def("joints", guarded([](World& world) { return Joints(world).all(); }))
         .def("joint_state",
              guarded([](World& world, const JointHandle& joint) { return values_of(Joints(world).state(joint)); }))
         .def("set_motor", &set_motor, nb::arg("joint"), nb::arg("motor").none())

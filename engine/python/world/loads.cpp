@@ -31,9 +31,21 @@ nb::dict values_of(const LoadState& state) {
     return values;
 }
 
+nb::dict settings_of_load(World& world, const LoadHandle& load) {
+    const AnyLoad settings = Loads(world).settings(load);
+    nb::dict values = python::values_of(settings);
+    const std::optional<BodyHandle> body =
+        std::visit([](const auto& any) { return std::optional<BodyHandle>(any.body); }, settings);
+    values["body"] = body ? object_of(*body) : nb::none();
+    if (const auto* const force = std::get_if<ForceLoad>(&settings))
+        values["nodes"] = array_of<Index>(std::span<const Index>(force->nodes));
+    return values;
+}
+
 }  // namespace
 
 void bind_loads(WorldClass& type) {
+    bind_view<LoadHandle>(type, "loads_of_world");
     type.def("add_force", guarded([](World& world, const BodyHandle& body, const Indices& nodes, const Vec3& force,
                                      const Pairs& scale) {
                  return Loads(world).add(ForceLoad{body, nodes_in(nodes), force, table_of(scale)});
@@ -56,11 +68,9 @@ void bind_loads(WorldClass& type) {
                  return Loads(world).add(DragField{body, rate, wind, table_of(scale)});
              }),
              nb::arg("body").none(), nb::arg("rate"), nb::arg("wind"), nb::arg("scale"))
-        .def("remove", guarded([](World& world, const LoadHandle& load) { Loads(world).remove(load); }))
-        .def("alive", guarded([](World& world, const LoadHandle& load) { return Loads(world).alive(load); }))
-        .def("loads_of_world", guarded([](World& world) { return Loads(world).all(); }))
         .def("load_state",
              guarded([](World& world, const LoadHandle& load) { return values_of(Loads(world).state(load)); }))
+        .def("load_settings", guarded(settings_of_load))
         .def("set_load_scale", guarded([](World& world, const LoadHandle& load, const Pairs& scale) {
                  Loads(world).set_scale(load, table_of(scale));
              }))

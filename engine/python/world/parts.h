@@ -30,6 +30,19 @@ void bind_views(WorldClass& type);
 void bind_results(WorldClass& type);
 void bind_problem_watch(WorldClass& type);
 
+/// Binds the functions that all views have in common. `list`: name of the function that lists all objects.
+template <class HandleType>
+void bind_view(WorldClass& type, const char* list) {
+    using View = ObjectView<HandleType>;
+    type.def(list, guarded([](World& world) { return View(world).all(); }))
+        .def("remove", guarded([](World& world, const HandleType& object) { View(world).remove(object); }))
+        .def("alive", guarded([](World& world, const HandleType& object) { return View(world).alive(object); }))
+        .def("name", guarded([](World& world, const HandleType& object) { return View(world).name(object); }))
+        .def("set_name", guarded([](World& world, const HandleType& object, const std::string& name) {
+                 View(world).set_name(object, name);
+             }));
+}
+
 /// The members of a report by name.
 nb::dict values_of(const StepReport& report);
 nb::dict values_of(const WorldReport& report);

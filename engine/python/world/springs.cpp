@@ -38,6 +38,14 @@ nb::dict values_of(const SpringState& state) {
     return values;
 }
 
+nb::dict settings_of_spring(World& world, const SpringHandle& spring) {
+    const SpringSettings settings = Springs(world).settings(spring);
+    nb::dict values = python::values_of(settings);
+    values["first"] = settings.first;
+    values["second"] = settings.second;
+    return values;
+}
+
 }  // namespace
 
 void bind_anchors(nb::module_& module) {
@@ -48,12 +56,11 @@ void bind_anchors(nb::module_& module) {
 }
 
 void bind_springs(WorldClass& type) {
+    bind_view<SpringHandle>(type, "springs");
     type.def("add_spring", &add_spring, nb::arg("first"), nb::arg("second"), nb::arg("given"))
-        .def("remove", guarded([](World& world, const SpringHandle& spring) { Springs(world).remove(spring); }))
-        .def("alive", guarded([](World& world, const SpringHandle& spring) { return Springs(world).alive(spring); }))
-        .def("springs", guarded([](World& world) { return Springs(world).all(); }))
         .def("spring_state",
              guarded([](World& world, const SpringHandle& spring) { return values_of(Springs(world).state(spring)); }))
+        .def("spring_settings", guarded(settings_of_spring))
         .def("set_second", guarded([](World& world, const SpringHandle& spring, const Anchor& anchor) {
                  Springs(world).set_second(spring, anchor);
              }))

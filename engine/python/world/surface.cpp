@@ -74,6 +74,7 @@ nb::dict surface_set(WorldObject& object, const SurfaceSetHandle& set) {
 }  // namespace
 
 void bind_surface(WorldClass& type) {
+    bind_view<SurfaceSetHandle>(type, "surface_sets");
     type.def("set_pair", &set_pair)
         .def("pair", &pair)
         .def("pairs", &pairs)
@@ -89,10 +90,7 @@ void bind_surface(WorldClass& type) {
         .def("add_surface_set", &add_surface_set, nb::arg("body"), nb::arg("nodes"), nb::arg("faces"),
              nb::arg("surface"), nb::arg("friction_across").none(), nb::arg("direction").none())
         .def("set_set_surface", &set_set_surface, nb::arg("set"), nb::arg("surface"), nb::arg("friction_across").none())
-        .def("surface_set", &surface_set)
-        .def("surface_sets", guarded([](World& world) { return SurfaceSets(world).all(); }))
-        .def("remove", guarded([](World& world, const SurfaceSetHandle& set) { SurfaceSets(world).remove(set); }))
-        .def("alive", guarded([](World& world, const SurfaceSetHandle& set) { return SurfaceSets(world).alive(set); }));
+        .def("surface_set", &surface_set);
 }
 
 }  // namespace skerry::python

@@ -49,15 +49,24 @@ nb::dict values_of(const TieState& state) {
     return values;
 }
 
+nb::dict settings_of_tie(World& world, const TieHandle& tie) {
+    const TieSettings settings = Ties(world).settings(tie);
+    nb::dict values = python::values_of(settings);
+    values["body"] = settings.body;
+    values["nodes"] = array_of<Index>(std::span<const Index>(settings.nodes));
+    values["to_body"] = settings.to_body ? object_of(*settings.to_body) : nb::none();
+    values["to_collider"] = settings.to_collider ? object_of(*settings.to_collider) : nb::none();
+    return values;
+}
+
 }  // namespace
 
 void bind_ties(WorldClass& type) {
+    bind_view<TieHandle>(type, "ties");
     type.def("add_tie", &add_tie, nb::arg("body"), nb::arg("nodes"), nb::arg("to_body").none(),
              nb::arg("to_collider").none(), nb::arg("given"))
-        .def("remove", guarded([](World& world, const TieHandle& tie) { Ties(world).remove(tie); }))
-        .def("alive", guarded([](World& world, const TieHandle& tie) { return Ties(world).alive(tie); }))
-        .def("ties", guarded([](World& world) { return Ties(world).all(); }))
         .def("tie_state", guarded([](World& world, const TieHandle& tie) { return values_of(Ties(world).state(tie)); }))
+        .def("tie_settings", guarded(settings_of_tie))
         .def("set_break_force",
              guarded([](World& world, const TieHandle& tie, Real force) { Ties(world).set_break_force(tie, force); }));
 }

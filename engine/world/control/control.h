@@ -15,6 +15,13 @@
 
 namespace skerry {
 
+inline TimeTable time_table_of(std::span<const TimeKey> keys) {
+    return std::vector<TimeKey>(keys.begin(), keys.end());
+}
+inline BodyHandle handle_of_body(const Model& model, Index row) {
+    return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(row)]);
+}
+
 // control_bodies.cpp
 
 /// Throws SceneError if the node positions turn a tetrahedron of the body inside out. Tetrahedra that are already

@@ -6,7 +6,6 @@
 
 #include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
-#include "engine/world/edit/joining_rows.h"
 #include "engine/world/query/place_anchor.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
@@ -158,30 +157,6 @@ CableHandle Cables::add(const CableSettings& cable) {
     return handle;
 }
 
-void Cables::remove(CableHandle cable) {
-    WorldState& state = WorldAccess::state_of(*world_);
-    state.require_between_steps("remove_cable");
-    Model& model = state.model;
-    const auto row = static_cast<std::size_t>(model.row(cable, "remove_cable"));
-    wake_bodies_of_cable(model, row);
-    std::vector<bool> gone(model.cables.size(), false);
-    gone[row] = true;
-    erase_joining_rows(gone, model.cables, model.cable_map);
-    model.links_open = true;
-    note_forces(model);
-}
-
-bool Cables::alive(CableHandle cable) const {
-    return WorldAccess::state_of(*world_).model.cable_map.row(cable) != no_index;
-}
-
-std::vector<CableHandle> Cables::all() const {
-    std::vector<CableHandle> handles;
-    const Model& model = WorldAccess::state_of(*world_).model;
-    for (const std::uint32_t slot : model.cables.slot) handles.push_back(model.cable_map.handle_of_slot(slot));
-    return handles;
-}
-
 CableState Cables::state(CableHandle cable) const {
     return cable_state(WorldAccess::state_of(*world_), cable);
 }
@@ -212,6 +187,23 @@ CableState cable_state(const WorldState& state, CableHandle cable) {
         now.dissipated += last.dissipated;
     }
     return now;
+}
+
+CableSettings Cables::settings(CableHandle cable) const {
+    const WorldState& state = WorldAccess::state_of(*world_);
+    const CableTable& table = state.model.cables;
+    const auto row = static_cast<std::size_t>(state.model.row(cable, "settings"));
+    const AnchorsBetweenSteps anchors(state);
+    CableSettings settings{.points = {}, .drive = {}, .friction = table.friction[row]};
+    for (auto p = static_cast<std::size_t>(table.points[row].begin);
+         p < static_cast<std::size_t>(table.points[row].end); ++p)
+        settings.points.push_back(anchors.at(table.anchor, p));
+    const CableControl control = table.control[row];
+    auto& given = control == CableControl::tension  ? settings.drive.tension
+                  : control == CableControl::length ? settings.drive.length
+                                                    : settings.drive.rate;
+    given = time_table_of(table.keys_of(row));
+    return settings;
 }
 
 void Cables::set_drive(CableHandle cable, const CableDrive& drive) {

@@ -10,6 +10,7 @@
 #include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/joining_rows.h"
+#include "engine/world/edit/objects.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 #include "systems/forces/cavities.h"
@@ -235,32 +236,40 @@ CavityHandle Cavities::add(const CavitySettings& cavity) {
     return handle;
 }
 
-void Cavities::remove(CavityHandle cavity) {
-    WorldState& state = WorldAccess::state_of(*world_);
-    state.require_between_steps("remove");
-    Model& model = state.model;
-    const auto row = static_cast<std::size_t>(model.row(cavity, "remove"));
+void prepare_removal(World& world, CavityHandle cavity) {
+    Model& model = WorldAccess::state_of(world).model;
     std::vector<bool> gone(model.pipes.size(), false);
     for (std::size_t p = 0; p < gone.size(); ++p)
         gone[p] = model.pipes.first[p] == cavity.slot || model.pipes.second[p] == cavity.slot;
-    erase_joining_rows(gone, model.pipes, model.pipe_map);
-    model.wake(static_cast<std::size_t>(model.cavities.body[row]));
-    erase_cavity(model, row);
-}
-
-bool Cavities::alive(CavityHandle cavity) const {
-    return WorldAccess::state_of(*world_).model.cavity_map.row(cavity) != no_index;
-}
-
-std::vector<CavityHandle> Cavities::all() const {
-    const Model& model = WorldAccess::state_of(*world_).model;
-    std::vector<CavityHandle> handles;
-    for (const std::uint32_t slot : model.cavities.slot) handles.push_back(model.cavity_map.handle_of_slot(slot));
-    return handles;
+    wake_and_erase_rows(gone, model.pipes, model.pipe_map, model);
 }
 
 CavityState Cavities::state(CavityHandle cavity) const {
     return cavity_state(WorldAccess::state_of(*world_), cavity);
+}
+
+CavitySettings Cavities::settings(CavityHandle cavity) const {
+    const WorldState& world = WorldAccess::state_of(*world_);
+    const Model& model = world.model;
+    const CavityTable& table = model.cavities;
+    const auto row = static_cast<std::size_t>(model.row(cavity, "settings"));
+    const CavityFluid& fluid = table.fluid[row];
+    const TimeTable values = time_table_of(table.keys_of(row));
+    const std::span<const Face> faces = rows_of(table.face.span(), table.faces[row]);
+    CavitySettings settings{.body = handle_of_body(model, table.body[row]),
+                            .faces = std::vector<Face>(faces.begin(), faces.end()),
+                            .filling = values};
+    if (table.law[row] == CavityLaw::gas)
+        settings.filling = GasFilling{.pressure = filling_of(model, row, world.clock.time).pressure(),
+                                      .exponent = fluid.exponent,
+                                      .ambient = fluid.ambient,
+                                      .density = fluid.density,
+                                      .inflow = values};
+    if (table.law[row] == CavityLaw::liquid)
+        settings.filling =
+            LiquidFilling{.bulk_modulus = fluid.bulk_modulus, .volume = values, .ambient = fluid.ambient};
+    if (!table.closed[row] && table.law[row] != CavityLaw::pressure) settings.volume = volume_of_cavity(model, row);
+    return settings;
 }
 
 CavityState cavity_state(const WorldState& world, CavityHandle cavity) {
@@ -269,7 +278,7 @@ CavityState cavity_state(const WorldState& world, CavityHandle cavity) {
     const auto row = static_cast<std::size_t>(model.row(cavity, "cavity"));
     const CavityFilling filling = filling_of(model, row, world.clock.time);
     CavityState now;
-    now.body = model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(table.body[row])]);
+    now.body = handle_of_body(model, table.body[row]);
     now.law = table.law[row];
     now.faces = table.faces[row].size();
     now.closed = table.closed[row] != 0;
@@ -401,27 +410,16 @@ PipeHandle Cavities::add(const PipeSettings& pipe) {
     return handle;
 }
 
-void Cavities::remove(PipeHandle pipe) {
-    WorldState& state = WorldAccess::state_of(*world_);
-    state.require_between_steps("remove");
-    Model& model = state.model;
-    const auto row = static_cast<std::size_t>(model.row(pipe, "remove"));
-    wake_ends(model, row);
-    std::vector<bool> gone(model.pipes.size(), false);
-    gone[row] = true;
-    erase_joining_rows(gone, model.pipes, model.pipe_map);
-    model.links_open = true;
-}
-
-bool Cavities::alive(PipeHandle pipe) const {
-    return WorldAccess::state_of(*world_).model.pipe_map.row(pipe) != no_index;
-}
-
-std::vector<PipeHandle> Cavities::pipes() const {
+PipeSettings Cavities::settings(PipeHandle pipe) const {
     const Model& model = WorldAccess::state_of(*world_).model;
-    std::vector<PipeHandle> handles;
-    for (const std::uint32_t slot : model.pipes.slot) handles.push_back(model.pipe_map.handle_of_slot(slot));
-    return handles;
+    const auto row = static_cast<std::size_t>(model.row(pipe, "settings"));
+    PipeSettings settings{.first = model.cavity_map.handle_of_slot(model.pipes.first[row]),
+                          .conductance = model.pipes.conductance[row]};
+    if (model.pipes.keys[row].size() == 0)
+        settings.second = model.cavity_map.handle_of_slot(model.pipes.second[row]);
+    else
+        settings.pressure = time_table_of(model.pipes.keys_of(row));
+    return settings;
 }
 
 PipeState Cavities::state(PipeHandle pipe) const {

@@ -6,7 +6,7 @@
 
 #include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
-#include "engine/world/edit/joining_rows.h"
+#include "engine/world/edit/objects.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/validate.h"
 #include "skerry/joint.h"
@@ -152,11 +152,7 @@ void wake_both(Model& model, std::size_t joint) {
 std::optional<BodyHandle> second_of(const Model& model, std::size_t joint) {
     const Index row = model.joints.second[joint];
     if (row == no_index) return {};
-    return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(row)]);
-}
-
-BodyHandle first_of(const Model& model, std::size_t joint) {
-    return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(model.joints.first[joint])]);
+    return handle_of_body(model, row);
 }
 
 /// Velocity of a point of a body, and angular velocity of the body. Both are zero for the world (`body` is no_index).
@@ -236,29 +232,11 @@ JointHandle Joints::add(const JointSettings& joint) {
     return handle;
 }
 
-void Joints::remove(JointHandle joint) {
-    WorldState& state = WorldAccess::state_of(*world_);
-    state.require_between_steps("remove");
-    Model& model = state.model;
-    const auto row = static_cast<std::size_t>(model.row(joint, "remove"));
-    wake_both(model, row);
+void prepare_removal(World& world, JointHandle joint) {
+    const Model& model = WorldAccess::state_of(world).model;
+    const auto row = static_cast<std::size_t>(model.joint_map.row(joint));
     if (model.joints.parts[row] != 0 && !parted_elsewhere(model.joints, row))
-        world_->set_collision(first_of(model, row), *second_of(model, row), true);
-    std::vector<bool> gone(model.joints.size(), false);
-    gone[row] = true;
-    erase_joining_rows(gone, model.joints, model.joint_map);
-    model.links_open = true;
-}
-
-bool Joints::alive(JointHandle joint) const {
-    return WorldAccess::state_of(*world_).model.joint_map.row(joint) != no_index;
-}
-
-std::vector<JointHandle> Joints::all() const {
-    std::vector<JointHandle> handles;
-    const Model& model = WorldAccess::state_of(*world_).model;
-    for (const std::uint32_t slot : model.joints.slot) handles.push_back(model.joint_map.handle_of_slot(slot));
-    return handles;
+        world.set_collision(handle_of_body(model, model.joints.first[row]), *second_of(model, row), true);
 }
 
 JointState Joints::state(JointHandle joint) const {
@@ -272,7 +250,7 @@ JointState joint_state(const Model& model, JointHandle joint) {
                      second = joints.place(joints.second[j], joints.second_frame[j]);
     JointState now;
     now.kind = joints.kind[j];
-    now.first = first_of(model, j);
+    now.first = handle_of_body(model, model.joints.first[j]);
     now.second = second_of(model, j);
     now.point = first.point;
     now.axis = second.axes.col(2);

@@ -9,7 +9,8 @@
 
 #include "engine/mesh/sets.h"
 #include "engine/world/complaint.h"
-#include "engine/world/edit/joining_rows.h"
+#include "engine/world/control/control.h"
+#include "engine/world/edit/objects.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 #include "engine/world/world_state.h"
@@ -28,6 +29,7 @@ struct LoadRow {
     Real rate = 0;
     std::vector<Index> node{};
     std::vector<Real> weight{};
+    std::vector<std::array<Index, 3>> face{};
 };
 
 /// Wakes the body that a load acts on, or all bodies.
@@ -61,6 +63,9 @@ LoadHandle append_load(World& world, const LoadRow& row, const TimeTable& scale)
     for (const Index node : row.node) table.node.push_back(node);
     for (const Real weight : row.weight) table.weight.push_back(weight);
     if (!row.node.empty()) table.nodes[place] = {first, static_cast<Index>(table.node.size())};
+    const auto first_face = static_cast<Index>(table.face.size());
+    for (const std::array<Index, 3>& face : row.face) table.face.push_back(face);
+    if (!row.face.empty()) table.faces[place] = {first_face, static_cast<Index>(table.face.size())};
     set_keys(table.scale_keys, table.key, place, scale.keys);
     wake_loaded(model, row.body);
     note_forces(model);
@@ -162,7 +167,7 @@ LoadHandle Loads::add(const TractionLoad& load) {
             (rest[static_cast<std::size_t>(b)] - first).cross(rest[static_cast<std::size_t>(c)] - first);
         for (const Index node : {a, b, c}) of_node[static_cast<std::size_t>(node)] += twice_area.norm() / 6;
     }
-    LoadRow row{.kind = LoadKind::traction, .body = body, .vector = load.traction};
+    LoadRow row{.kind = LoadKind::traction, .body = body, .vector = load.traction, .face = load.faces};
     for (std::size_t n = 0; n < of_node.size(); ++n) {
         if (!(of_node[n] > 0)) continue;
         row.node.push_back(static_cast<Index>(n));
@@ -201,25 +206,9 @@ LoadHandle Loads::add(const DragField& drag) {
                        drag.scale);
 }
 
-void Loads::remove(LoadHandle load) {
-    Model& model = model_between_steps(*world_, "remove");
-    const auto row = static_cast<std::size_t>(model.row(load, "remove"));
-    wake_loaded(model, model.loads.body[row]);
-    std::vector<bool> gone(model.loads.size(), false);
-    gone[row] = true;
-    erase_joining_rows(gone, model.loads, model.load_map);
-    note_forces(model);
-}
-
-bool Loads::alive(LoadHandle load) const {
-    return WorldAccess::state_of(*world_).model.load_map.row(load) != no_index;
-}
-
-std::vector<LoadHandle> Loads::all() const {
-    std::vector<LoadHandle> handles;
-    const Model& model = WorldAccess::state_of(*world_).model;
-    for (const std::uint32_t slot : model.loads.slot) handles.push_back(model.load_map.handle_of_slot(slot));
-    return handles;
+void prepare_removal(World& world, LoadHandle load) {
+    Model& model = WorldAccess::state_of(world).model;
+    wake_loaded(model, model.loads.body[static_cast<std::size_t>(model.load_map.row(load))]);
 }
 
 LoadState Loads::state(LoadHandle load) const {
@@ -227,11 +216,34 @@ LoadState Loads::state(LoadHandle load) const {
     const Model& model = state.model;
     const auto row = static_cast<std::size_t>(model.row(load, "load"));
     LoadState now{.kind = model.loads.kind[row], .vector = model.loads.vector[row], .rate = model.loads.rate[row]};
-    if (const Index body = model.loads.body[row]; body != no_index)
-        now.body = model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(body)]);
+    if (const Index body = model.loads.body[row]; body != no_index) now.body = handle_of_body(model, body);
     now.scale = value_at(model.loads.keys_of(row), state.clock.time);
     now.force = force_of_load(model, row, now.scale);
     return now;
+}
+
+AnyLoad Loads::settings(LoadHandle load) const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    const LoadTable& table = model.loads;
+    const auto row = static_cast<std::size_t>(model.row(load, "settings"));
+    const TimeTable scale = time_table_of(table.keys_of(row));
+    const std::span<const Index> nodes = table.nodes_of(row);
+    const std::span<const std::array<Index, 3>> faces = rows_of(table.face.span(), table.faces[row]);
+    std::optional<BodyHandle> body;
+    if (table.body[row] != no_index) body = handle_of_body(model, table.body[row]);
+    switch (table.kind[row]) {
+        case LoadKind::force:
+            return ForceLoad{*body, {nodes.begin(), nodes.end()}, table.vector[row], scale};
+        case LoadKind::traction:
+            return TractionLoad{*body, {faces.begin(), faces.end()}, table.vector[row], scale};
+        case LoadKind::acceleration:
+            return AccelerationField{body, table.vector[row], scale};
+        case LoadKind::gravity:
+            return GravityScale{body, scale};
+        case LoadKind::drag:
+            break;
+    }
+    return DragField{body, table.rate[row], table.vector[row], scale};
 }
 
 void Loads::set_scale(LoadHandle load, const TimeTable& scale) {

@@ -1,11 +1,9 @@
 // Functions that add, remove and change springs between steps (docs/methods/springs.md).
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
-#include "engine/world/edit/joining_rows.h"
 #include "engine/world/query/place_anchor.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
@@ -131,29 +129,6 @@ SpringHandle Springs::add(const SpringSettings& spring) {
     return handle;
 }
 
-void Springs::remove(SpringHandle spring) {
-    const Changed change(*world_, spring, "remove");
-    Model& model = change.world.model;
-    wake_bodies_of(model, change.row);
-    std::vector<bool> gone(model.springs.size(), false);
-    gone[change.row] = true;
-    erase_joining_rows(gone, model.springs, model.spring_map);
-    model.links_open = true;
-    note_forces(model);
-    change.world.record.balance.close();
-}
-
-bool Springs::alive(SpringHandle spring) const {
-    return WorldAccess::state_of(*world_).model.spring_map.row(spring) != no_index;
-}
-
-std::vector<SpringHandle> Springs::all() const {
-    std::vector<SpringHandle> handles;
-    const Model& model = WorldAccess::state_of(*world_).model;
-    for (const std::uint32_t slot : model.springs.slot) handles.push_back(model.spring_map.handle_of_slot(slot));
-    return handles;
-}
-
 SpringState Springs::state(SpringHandle spring) const {
     return spring_state(WorldAccess::state_of(*world_), spring);
 }
@@ -177,6 +152,20 @@ SpringState spring_state(const WorldState& world, SpringHandle spring) {
     state.force = model.springs.tension[row];
     state.energy = inputs.law(row).energy(state.length - state.rest_length);
     return state;
+}
+
+SpringSettings Springs::settings(SpringHandle spring) const {
+    const WorldState& world = WorldAccess::state_of(*world_);
+    const SpringTable& table = world.model.springs;
+    const auto row = static_cast<std::size_t>(world.model.row(spring, "settings"));
+    const AnchorsBetweenSteps anchors(world);
+    return {.first = anchors.at(table.first, row),
+            .second = anchors.at(table.second, row),
+            .stiffness = table.stiffness[row],
+            .damping = table.damping[row],
+            .rest_length = time_table_of(table.keys_of(row)),
+            .only = table.side[row],
+            .strength = table.strength[row]};
 }
 
 void Springs::set_second(SpringHandle spring, const Anchor& anchor) {

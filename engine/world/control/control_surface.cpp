@@ -8,7 +8,6 @@
 #include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/edit_model.h"
-#include "engine/world/edit/joining_rows.h"
 #include "engine/world/validate.h"
 #include "skerry/surface.h"
 
@@ -178,30 +177,6 @@ SurfaceSetHandle SurfaceSets::add(const SurfaceSetSettings& set) {
     model.wake(b);
     model.links_open = true;
     return handle;
-}
-
-void SurfaceSets::remove(SurfaceSetHandle set) {
-    WorldState& state = WorldAccess::state_of(*world_);
-    state.require_between_steps("remove");
-    Model& model = state.model;
-    const auto row = static_cast<std::size_t>(model.row(set, "remove"));
-    model.wake(static_cast<std::size_t>(model.surface_sets.body[row]));
-    std::vector<bool> gone(model.surface_sets.size(), false);
-    gone[row] = true;
-    erase_joining_rows(gone, model.surface_sets, model.surface_set_map);
-    model.links_open = true;
-}
-
-bool SurfaceSets::alive(SurfaceSetHandle set) const {
-    return WorldAccess::state_of(*world_).model.surface_set_map.row(set) != no_index;
-}
-
-std::vector<SurfaceSetHandle> SurfaceSets::all() const {
-    const Model& model = WorldAccess::state_of(*world_).model;
-    std::vector<SurfaceSetHandle> handles;
-    for (const std::uint32_t slot : model.surface_sets.slot)
-        handles.push_back(model.surface_set_map.handle_of_slot(slot));
-    return handles;
 }
 
 SurfaceSetSettings SurfaceSets::settings(SurfaceSetHandle set) const {

@@ -7,7 +7,7 @@
 
 #include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
-#include "engine/world/edit/joining_rows.h"
+#include "engine/world/edit/objects.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/query/fitted_tree.h"
 #include "engine/world/query/place_anchor.h"
@@ -212,22 +212,19 @@ bool parted_by_another(const TieTable& ties, std::size_t tie) {
     return false;
 }
 
-BodyHandle handle_of(const Model& model, Index body) {
-    return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(body)]);
-}
 ColliderHandle handle_of_collider(const Model& model, Index collider) {
     return model.collider_map.handle_of_slot(model.colliders.slot[static_cast<std::size_t>(collider)]);
 }
 
 /// Switches the collisions of the two objects of a tie on or off. Returns whether they were on.
 bool switch_collisions(World& world, const Model& model, std::size_t tie, bool on) {
-    const BodyHandle first = handle_of(model, model.ties.first[tie]);
+    const BodyHandle first = handle_of_body(model, model.ties.first[tie]);
     const auto set = [&](auto other) {
         const bool were_on = world.may_collide(first, other);
         world.set_collision(first, other, on);
         return were_on;
     };
-    if (model.ties.second[tie] != no_index) return set(handle_of(model, model.ties.second[tie]));
+    if (model.ties.second[tie] != no_index) return set(handle_of_body(model, model.ties.second[tie]));
     return model.ties.collider[tie] != no_index && set(handle_of_collider(model, model.ties.collider[tie]));
 }
 
@@ -253,6 +250,8 @@ TieHandle Ties::add(const TieSettings& tie) {
     table.second[row] = objects.second;
     table.collider[row] = objects.collider;
     table.break_force[row] = tie.break_force;
+    table.close_gap[row] = tie.close_gap;
+    table.bodies_touch[row] = tie.bodies_touch;
     table.step[row] = 0;
     const auto begin = static_cast<Index>(table.node.size());
     for (const Index node : tie.nodes) tie_node(state, tie, objects, poses, node);
@@ -265,17 +264,10 @@ TieHandle Ties::add(const TieSettings& tie) {
     return handle;
 }
 
-void Ties::remove(TieHandle tie) {
-    WorldState& state = WorldAccess::state_of(*world_);
-    state.require_between_steps("remove");
-    Model& model = state.model;
-    const auto row = static_cast<std::size_t>(model.row(tie, "remove"));
-    wake_tied(model, row);
-    if (model.ties.parts[row] != 0 && !parted_by_another(model.ties, row)) switch_collisions(*world_, model, row, true);
-    std::vector<bool> gone(model.ties.size(), false);
-    gone[row] = true;
-    erase_joining_rows(gone, model.ties, model.tie_map);
-    model.links_open = true;
+void prepare_removal(World& world, TieHandle tie) {
+    const Model& model = WorldAccess::state_of(world).model;
+    const auto row = static_cast<std::size_t>(model.tie_map.row(tie));
+    if (model.ties.parts[row] != 0 && !parted_by_another(model.ties, row)) switch_collisions(world, model, row, true);
 }
 
 void release_ties(WorldState& world) {
@@ -293,17 +285,6 @@ void release_ties(WorldState& world) {
     }
 }
 
-bool Ties::alive(TieHandle tie) const {
-    return WorldAccess::state_of(*world_).model.tie_map.row(tie) != no_index;
-}
-
-std::vector<TieHandle> Ties::all() const {
-    std::vector<TieHandle> handles;
-    const Model& model = WorldAccess::state_of(*world_).model;
-    for (const std::uint32_t slot : model.ties.slot) handles.push_back(model.tie_map.handle_of_slot(slot));
-    return handles;
-}
-
 TieState Ties::state(TieHandle tie) const {
     return tie_state(WorldAccess::state_of(*world_), tie);
 }
@@ -318,8 +299,8 @@ TieState tie_state(const WorldState& world, TieHandle tie) {
     inputs.motion = poses;
     TieState now;
     now.kind = table.kind[t];
-    now.body = handle_of(model, table.first[t]);
-    if (table.second[t] != no_index) now.to_body = handle_of(model, table.second[t]);
+    now.body = handle_of_body(model, table.first[t]);
+    if (table.second[t] != no_index) now.to_body = handle_of_body(model, table.second[t]);
     if (table.collider[t] != no_index) now.to_collider = handle_of_collider(model, table.collider[t]);
     now.break_force = table.break_force[t];
     const auto position = [&](std::size_t k) -> const Vec3& {
@@ -342,6 +323,22 @@ TieState tie_state(const WorldState& world, TieHandle tie) {
         if (!node.broken) now.error = std::max(now.error, node.error);
     }
     return now;
+}
+
+TieSettings Ties::settings(TieHandle tie) const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    const TieTable& table = model.ties;
+    const auto row = static_cast<std::size_t>(model.row(tie, "settings"));
+    TieSettings settings{.kind = table.kind[row],
+                         .body = handle_of_body(model, table.first[row]),
+                         .break_force = table.break_force[row],
+                         .close_gap = table.close_gap[row] != 0,
+                         .bodies_touch = table.bodies_touch[row] != 0};
+    if (table.second[row] != no_index) settings.to_body = handle_of_body(model, table.second[row]);
+    if (table.collider[row] != no_index) settings.to_collider = handle_of_collider(model, table.collider[row]);
+    const std::span<const Index> nodes = rows_of(table.node.span(), table.nodes[row]);
+    settings.nodes.assign(nodes.begin(), nodes.end());
+    return settings;
 }
 
 void Ties::set_break_force(TieHandle tie, Real force) {

@@ -1,28 +1,10 @@
 #include "engine/world/edit/joining_rows.h"
 
-#include <algorithm>
 #include <vector>
 
 namespace skerry {
 
 namespace {
-
-/// Calls visit(row, joined) for each body or collider that a row of a joining table names. `role`: `body` or
-/// `collider`. `joined` is a reference to the entry of the column, which is a row of BodyTable or ColliderTable. The
-/// entry no_index stands for the world and is not visited.
-template <class Table>
-void for_each_joined(Table& table, ColumnRole role, auto&& visit) {
-    const AnyTable any(table);
-    for (const ColumnInfo& info : any.columns()) {
-        if (info.role != role) continue;
-        auto* const joined = reinterpret_cast<Index*>(any.column(info).write());
-        for (std::size_t row = 0; row < table.slot.size(); ++row) {
-            const Range entries = entries_of(table, info, row);
-            for (Index entry = entries.begin; entry < entries.end; ++entry)
-                if (joined[entry] != no_index) visit(row, joined[entry]);
-        }
-    }
-}
 
 /// True if a row of a table can name several bodies: in several columns, or in a list.
 bool joins_bodies(AnyTable table) {
@@ -40,10 +22,7 @@ void erase_rows_joining(ColumnRole role, Index object, Model& model) {
         for_each_joined(table, role, [&](std::size_t row, Index joined) {
             if (joined == object) gone[row] = true;
         });
-        for_each_joined(table, ColumnRole::body, [&](std::size_t row, Index body) {
-            if (gone[row]) model.wake(static_cast<std::size_t>(body));
-        });
-        erase_joining_rows(gone, table, map);
+        wake_and_erase_rows(gone, table, map, model);
     });
 }
 

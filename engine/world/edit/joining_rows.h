@@ -21,7 +21,7 @@ Range entries_of(const Table& table, const ColumnInfo& column, std::size_t row) 
 
 /// Removes the marked rows of a table and their handles. `gone`: true for each row to be removed.
 template <class Table, class Handle>
-void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<Handle>& map) {
+void erase_joining_rows(const std::vector<bool>& gone, Table& table, NamedHandles<Handle>& map) {
     std::vector<Index> row_now;
     std::vector<Range> ranges;
     Index next = 0;
@@ -30,7 +30,9 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
         row_now.push_back(gone[row] ? no_index : next++);
         if (!gone[row]) continue;
         append_gone(Range{index, index + 1}, ranges);
-        map.forget(map.handle_of_slot(table.slot[row]));
+        const Handle handle = map.handle_of_slot(table.slot[row]);
+        map.names.erase(handle);
+        map.forget(handle);
         if constexpr (requires { table.erase_keys_of(row); }) table.erase_keys_of(row);
         if constexpr (requires { table.erase_members_of(row); }) table.erase_members_of(row);
     }
@@ -38,6 +40,32 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
     AnyTable(table).erase(ranges);
     if constexpr (requires { table.rows_moved(row_now); }) table.rows_moved(row_now);
     map.rows_moved(row_now);
+}
+
+/// Calls visit(row, joined) for each body or collider that a row of a joining table names. `role`: `body` or
+/// `collider`. `joined` is a reference to the entry of the column, which is a row of BodyTable or ColliderTable. The
+/// entry no_index stands for the world and is not visited.
+template <class Table>
+void for_each_joined(Table& table, ColumnRole role, auto&& visit) {
+    const AnyTable any(table);
+    for (const ColumnInfo& info : any.columns()) {
+        if (info.role != role) continue;
+        auto* const joined = reinterpret_cast<Index*>(any.column(info).write());
+        for (std::size_t row = 0; row < table.slot.size(); ++row) {
+            const Range entries = entries_of(table, info, row);
+            for (Index entry = entries.begin; entry < entries.end; ++entry)
+                if (joined[entry] != no_index) visit(row, joined[entry]);
+        }
+    }
+}
+
+/// Removes the marked rows of a table and their handles, and wakes the bodies of these rows.
+template <class Table, class Handle>
+void wake_and_erase_rows(const std::vector<bool>& gone, Table& table, NamedHandles<Handle>& map, Model& model) {
+    for_each_joined(table, ColumnRole::body, [&](std::size_t row, Index body) {
+        if (gone[row]) model.wake(static_cast<std::size_t>(body));
+    });
+    erase_joining_rows(gone, table, map);
 }
 
 /// Removes all rows that join an object to others, for example the joints of a body. Must be called before the object

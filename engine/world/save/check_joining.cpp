@@ -235,6 +235,7 @@ void check_loads(const SavedFile& file, const Model& model) {
         file.complain("loads/weight", std::to_string(table.weight.size()) + " rows",
                       std::to_string(table.node.size()) + ", as in loads/node");
     expect_between(file, "loads/rate", table.rate, 0.0, infinity);
+    expect_partition(file, "loads/faces", table.faces, table.face.size());
     Index listed = 0;
     for (std::size_t row = 0; row < table.size(); ++row) {
         const auto require = [&](bool good, const char* column, const char* found, const char* expected) {

@@ -71,7 +71,7 @@ void list_watch(StepWatch& watch, Archive& archive) {
     archive.column("watch/step", watch.step);
 }
 
-void list_model(Model& model, Archive& archive) {
+void list_model(Model& model, SavedRows& saved, Archive& archive) {
     for (const AnyTable& table : model.tables()) {
         // rest positions are saved elsewhere: the file contains them once for each mesh
         const void* const of_meshes = &model.nodes.rest_position;
@@ -81,8 +81,10 @@ void list_model(Model& model, Archive& archive) {
     list_handles("handles/bodies", model.body_map, archive);
     list_handles("handles/colliders", model.collider_map, archive);
     list_handles("handles/attachments", model.attachment_map, archive);
-    model.for_each_joining(
-        [&](const char* name, auto&, auto& map) { list_handles(std::string("handles/") + name, map, archive); });
+    model.for_each_joining([&](const char* name, auto&, auto& map) {
+        list_handles(std::string("handles/") + name, map, archive);
+        list_ragged(std::string("names/") + name, saved.object_name[name], archive);
+    });
     list_ragged("clusters/nodes", model.clusters.nodes, archive);
     archive.column("clusters/body", model.clusters.body);
     archive.column("clusters/inverse", model.clusters.inverse);
@@ -160,7 +162,7 @@ void list_state(WorldState& world, SavedRows& saved, Archive& archive) {
     archive.value("clock/offset", world.clock.offset);
     archive.value("clock/step_before", world.clock.step_before);
     list_records(saved, archive);
-    list_model(world.model, archive);
+    list_model(world.model, saved, archive);
     list_cache(world.cache, saved, archive);
     list_run(world, saved, archive);
 }

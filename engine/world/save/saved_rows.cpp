@@ -246,7 +246,7 @@ SavedStart start_of(const RunRecord& record) {
 
 }  // namespace
 
-SavedRows rows_to_save(const WorldState& world) {
+SavedRows rows_to_save(WorldState& world) {
     const Model& model = world.model;
     SavedRows saved;
     saved.step_size = model.settings.step_size.value_or(0);
@@ -277,6 +277,12 @@ SavedRows rows_to_save(const WorldState& world) {
         append_text(record.name, saved.collider_name);
         saved.collider_settled.push_back(record.settled);
     }
+    world.model.for_each_joining([&](const char* table, auto& rows, auto& handles) {
+        for (const std::uint32_t slot : rows.slot) {
+            const auto given = handles.names.find(handles.handle_of_slot(slot));
+            append_text(given == handles.names.end() ? "" : given->second, saved.object_name[table]);
+        }
+    });
     const PairTable& pairs = world.cache.pairs;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         append(pairs.candidates[p].span(), saved.candidates);
@@ -303,6 +309,19 @@ SavedRows rows_to_save(const WorldState& world) {
     return saved;
 }
 
+namespace {
+
+void put_object_names(const SavedRows& saved, const SavedFile& file, Model& model) {
+    model.for_each_joining([&](const char* table, auto& rows, auto& handles) {
+        const Ragged<std::uint8_t>& names = saved.object_name.at(table);
+        expect_ragged(file, std::string("names/") + table, names, rows.slot.size(), table);
+        for (std::size_t row = 0; row < names.size(); ++row)
+            if (names[row].size() > 0) handles.names[handles.handle_of_slot(rows.slot[row])] = text_of(names[row]);
+    });
+}
+
+}  // namespace
+
 void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
     const std::size_t bodies = model.bodies.slot.size(), colliders = model.colliders.slot.size();
     const SavedMeshes& meshes = saved.meshes;
@@ -327,6 +346,7 @@ void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
     expect_ragged(file, "records/body_name", saved.body_name, bodies, "bodies");
     if (saved.world == 0) file.complain("handles/world", "0", "the number of a world, an integer > 0");
     model.set_world(saved.world);
+    put_object_names(saved, file, model);
     for (std::size_t m = 0; m < count; ++m) check_mesh(meshes, m, file);
 
     model.nodes.rest_position.resize(model.nodes.position.size());

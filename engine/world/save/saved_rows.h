@@ -1,6 +1,7 @@
 // Data that have another form in a file than in a world. They are converted before saving and after reading.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "components/ragged.h"
@@ -57,7 +58,9 @@ struct SavedRows {
     Ragged<Index> tetrahedron_material;       // BodyRecord::tetrahedron_material
     SavedSets sets;
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
-    Column<ColliderShape> shape_kind;               // alternative of Shape
+    // names of the objects of each table that for_each_joining visits, by name of the table; empty: no name was given
+    std::map<std::string, Ragged<std::uint8_t>> object_name;
+    Column<ColliderShape> shape_kind;  // alternative of Shape
     // members of the shape in the order of their declaration, filled up with zeros
     Column<std::array<Real, 6>> shape_size;
     Ragged<Candidate> candidates;  // contact candidates of each pair
@@ -72,7 +75,7 @@ struct SavedRows {
     ContactTable contacts;  // contacts of the last step; empty if the step was refused
 };
 
-SavedRows rows_to_save(const WorldState& world);
+SavedRows rows_to_save(WorldState& world);
 
 // The following functions throw SceneError with the name of `file` if saved data are inconsistent with each other or
 // with the columns of the world.

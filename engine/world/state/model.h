@@ -90,6 +90,12 @@ struct ColliderRecord {
     bool settled = false;  // true if the collider was checked for overlaps
 };
 
+/// Handles of objects, with the names that were given to objects. Names serve users and files, and affect no step.
+template <class HandleType>
+struct NamedHandles : HandleMap<HandleType> {
+    std::map<HandleType, std::string> names;
+};
+
 struct Model {
     Settings settings;
     Tuning tuning;
@@ -129,14 +135,14 @@ struct Model {
     HandleMap<BodyHandle> body_map;
     HandleMap<ColliderHandle> collider_map;
     HandleMap<AttachmentHandle> attachment_map;
-    HandleMap<JointHandle> joint_map;
-    HandleMap<SurfaceSetHandle> surface_set_map;
-    HandleMap<TieHandle> tie_map;
-    HandleMap<CableHandle> cable_map;
-    HandleMap<CavityHandle> cavity_map;
-    HandleMap<PipeHandle> pipe_map;
-    HandleMap<LoadHandle> load_map;
-    HandleMap<SpringHandle> spring_map;
+    NamedHandles<JointHandle> joint_map;
+    NamedHandles<SurfaceSetHandle> surface_set_map;
+    NamedHandles<TieHandle> tie_map;
+    NamedHandles<CableHandle> cable_map;
+    NamedHandles<CavityHandle> cavity_map;
+    NamedHandles<PipeHandle> pipe_map;
+    NamedHandles<LoadHandle> load_map;
+    NamedHandles<SpringHandle> spring_map;
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
     std::vector<ColliderRecord> collider_records;  // one record for each row of ColliderTable

@@ -1,8 +1,11 @@
 // Passes contact problems to subscribers, mostly for comparison with other solvers.
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/problem/step_problem.h"
 #include "engine/world/step/step.h"
@@ -28,6 +31,35 @@ void say_places_among_all(const ContactTable& contacts, const RestingContactTabl
     for (std::size_t i = 0; i < rows.size(); ++i)
         if (rows[i] >= 0) place_of[static_cast<std::size_t>(rows[i])] = static_cast<Index>(i);
     for (Index& row : place) row = place_of[static_cast<std::size_t>(row)];
+}
+
+/// Marks the contacts of all regions that also have rows of joints, ties or cables. The list is empty if there are
+/// none.
+std::vector<bool> joined_contacts(const Model& model, const StepScratch& scratch) {
+    const CableTable& cables = model.cables;
+    std::vector<bool> joined(model.bodies.slot.size(), false);  // by row of BodyTable
+    const auto mark = [&](std::span<const Index> bodies) {
+        for (const Index body : bodies)
+            if (body != no_index) joined[static_cast<std::size_t>(body)] = true;
+    };
+    mark(model.joints.first.span());
+    mark(model.joints.second.span());
+    if (model.ties.size() > 0)
+        for (const Index tie : scratch.ties.tie)
+            mark(std::array{model.ties.first[static_cast<std::size_t>(tie)],
+                            model.ties.second[static_cast<std::size_t>(tie)]});
+    if (cables.size() > 0)
+        for (const CableBlock& block : scratch.cables.solved())
+            mark(rows_of(cables.anchor.body.span(), cables.points[static_cast<std::size_t>(block.cable)]));
+    std::set<Index> regions;
+    const ContactTable& c = scratch.contacts;
+    for (std::size_t row = 0; row < c.size(); ++row)
+        for (const Index body : {c.first_body[row], c.second_body[row]})
+            if (body != no_index && joined[static_cast<std::size_t>(body)]) regions.insert(c.region[row]);
+    std::vector<bool> contacts;
+    if (regions.empty()) return contacts;
+    for (std::size_t row = 0; row < c.size(); ++row) contacts.push_back(regions.contains(c.region[row]));
+    return contacts;
 }
 
 }  // namespace
@@ -62,8 +94,9 @@ void show_contact_problem(const WorldState& world, Real time) {
     inputs.implicit.rotation = kept.rotation;
     inputs.implicit.velocity = kept.deforming;
     inputs.implicit.velocity_before = kept.deforming_before;
-    StepProblem problem = step_problem({inputs, kept.velocity_next, c.impulse, c.region}, scratch.parameters.solver,
-                                       scratch.parameters.h);
+    StepProblem problem =
+        step_problem({inputs, kept.velocity_next, c.impulse, c.region, joined_contacts(model, scratch)},
+                     scratch.parameters.solver, scratch.parameters.h);
     if (problem.problem.q.empty()) return;
     say_places_among_all(c, world.cache.resting, problem.contact);
     problem.step = record.counters.steps;

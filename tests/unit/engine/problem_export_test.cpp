@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "problem_samples.h"
+#include "skerry/cable.h"
+#include "skerry/joint.h"
 #include "skerry/problem.h"
+#include "skerry/tie.h"
 #include "systems/contact/tangent_frame.h"
 
 namespace skerry::test::problem_export_test {
@@ -275,6 +278,38 @@ TEST_CASE("watching changes nothing, and not watching costs a skipped stage", "[
     watched.world.advance(0.01);
     CHECK(watched.problems.size() == shown);
     CHECK_THROWS_AS(watched.world.watch_contact_problems([](const StepProblem&) {}, 0), SceneError);
+}
+
+TEST_CASE("regions with joints, ties or solved cables are left out, and impulses solve the rest", "[unit][problem]") {
+    World world(Stack::exact());
+    const auto rubber = world.add_material({.young_modulus = 2e4, .density = 500});
+    world.add_collider(Plane{});
+    const Mesh block = mesh::box({0.2, 0.2, 0.1}, {2, 2, 1});
+    const auto add = [&](Real x, BodyDynamics dynamics) {
+        return world.add_body(
+            block, {.material = rubber, .position = {x, 0, 0.052}, .velocity = {0.3, 0, -0.5}, .dynamics = dynamics});
+    };
+    const BodyHandle free = add(0, BodyDynamics::explicit_elastic), tied = add(1, BodyDynamics::explicit_elastic),
+                     joined = add(2, BodyDynamics::rigid), roped = add(3, BodyDynamics::rigid);
+    world.add_body(block, {.material = rubber,  // lies on the tied body, so that their regions are one
+                           .position = {1, 0, 0.153},
+                           .velocity = {0, 0, -0.5},
+                           .dynamics = BodyDynamics::explicit_elastic});
+    Ties(world).add({.body = tied, .nodes = {0}});
+    Joints(world).add({.kind = JointKind::slider, .first = joined, .point = {2, 0, 0}});
+    Cables(world).add({.points = {{.point = {3, 0, 1}}, {.body = roped, .point = {3, 0, 0.052}}},
+                       .drive = {.length = TimeTable(0.9)}});
+    std::size_t of_free = 0, of_others = 0;
+    world.watch_contact_problems([&](const StepProblem& step) {
+        for (const Index contact : step.contact)
+            CHECK(world.contacts()[static_cast<std::size_t>(contact)].first == free);
+        of_free += step.contact.size();
+        for (const Contact& contact : world.contacts()) of_others += contact.first != free;
+        CHECK(problem_error(step.problem, step.impulse).relative < 1e-6);
+    });
+    REQUIRE(world.advance(0.05).ok());
+    CHECK(of_free > 0);
+    CHECK(of_others > 0);
 }
 
 }  // namespace skerry::test::problem_export_test

@@ -5,8 +5,12 @@
 #include <stdexcept>
 #include <thread>
 
+#include "skerry/cable.h"
+#include "skerry/cavity.h"
 #include "skerry/joint.h"
+#include "skerry/load.h"
 #include "skerry/rollout.h"
+#include "skerry/spring.h"
 
 namespace skerry::test::rollout_test {
 
@@ -102,9 +106,9 @@ TEST_CASE("settings and controls of a rollout are refused with the control, the 
     const std::vector<Real> targets(5, 1), forces(5 * 3, 1);
     check_refused(yard,
                   calls(5, {{MotorSpeedControl{yard.hinge}, targets}, {MotorPositionControl{yard.hinge}, targets}}),
-                  {"controls[1] (motor position of joint 0)", "controls[0]"});
+                  {"controls[1] (motor position of joint 'joint_0')", "controls[0]"});
     check_refused(yard, calls(5, {{MotorSpeedControl{yard.slider}, targets}}),
-                  {"controls[0]", "joint 1", "no motor", "set_motor"});
+                  {"controls[0]", "joint 'joint_1'", "no motor", "set_motor"});
     check_refused(yard, calls(5, {{BodyForceControl{yard.cube}, forces}, {NodeForceControl{yard.cube}, forces}}),
                   {"controls[1] (forces on the nodes of body 'cube')", "controls[0]"});
     check_refused(yard, calls(5, {{NodeForceControl{yard.cube}, forces}}),
@@ -149,8 +153,24 @@ TEST_CASE("worlds of a rollout must be copies of one world", "[unit]") {
     refused({&yard.world, nullptr}, calls(1, {}), "null pointer");
 }
 
-TEST_CASE("every control has the effect of its function of World", "[unit]") {
-    const Yard yard;
+TEST_CASE("every control has the effect of its function", "[unit]") {
+    Yard yard;
+    const Anchor of_cube{.body = yard.cube, .point = {0, 0, 0.5}}, above{.point = {0, 0, 1}};
+    const auto spring = Springs(yard.world).add({.first = of_cube, .second = above, .stiffness = 10});
+    const auto shake = Loads(yard.world).add(AccelerationField{.acceleration = {0, 0, 9}, .scale = 0});
+    Cables cables(yard.world);
+    const auto pulled = cables.add({.points = {of_cube, above}, .drive = {.tension = TimeTable(0)}}),
+               wound = cables.add({.points = {{.body = yard.lever, .point = {1, 0, 0.5}}, {.point = {1, 0, 0}}},
+                                   .drive = {.rate = TimeTable(0)}});
+    Cavities cavities(yard.world);
+    const std::vector faces{yard.world.surface(yard.cube)[0]};
+    const auto pressed = cavities.add({.body = yard.cube, .faces = faces, .filling = TimeTable(0)}),
+               gas = cavities.add({.body = yard.cube, .faces = faces, .filling = GasFilling{}, .volume = 1e-3}),
+               liquid = cavities.add({.body = yard.cube,
+                                      .faces = faces,
+                                      .filling = LiquidFilling{.bulk_modulus = 1e3, .ambient = 0},
+                                      .volume = 1e-3});
+    const auto vent = cavities.add(PipeSettings{.first = gas, .conductance = 1e-6});
     constexpr std::size_t intervals = 4;
     const auto end_of = [&](const RolloutControl& control) {
         RolloutSettings settings = calls(intervals, {control});
@@ -203,6 +223,20 @@ TEST_CASE("every control has the effect of its function of World", "[unit]") {
               world.set_loads(yard.cube, load);
           }));
     CHECK(end_of({PoseControl{yard.floor}, six}) != end_by_hand([](World&, Real) {}));
+
+    const auto same_value = [&](auto object, auto&& command) {
+        CHECK(end_of({ValueControl{object}, one}) ==
+              end_by_hand([&](World& world, Real t) { command(world, TimeTable(0.02 * t)); }));
+        CHECK(end_of({ValueControl{object}, one}) != end_by_hand([](World&, Real) {}));
+    };
+    same_value(spring, [&](World& world, const TimeTable& x) { Springs(world).set_rest_length(spring, x); });
+    same_value(shake, [&](World& world, const TimeTable& x) { Loads(world).set_scale(shake, x); });
+    same_value(pulled, [&](World& world, const TimeTable& x) { Cables(world).set_drive(pulled, {.tension = x}); });
+    same_value(wound, [&](World& world, const TimeTable& x) { Cables(world).set_drive(wound, {.rate = x}); });
+    same_value(pressed, [&](World& world, const TimeTable& x) { Cavities(world).set_pressure(pressed, x); });
+    same_value(gas, [&](World& world, const TimeTable& x) { Cavities(world).set_inflow(gas, x); });
+    same_value(liquid, [&](World& world, const TimeTable& x) { Cavities(world).set_liquid_volume(liquid, x); });
+    same_value(vent, [&](World& world, const TimeTable& x) { Cavities(world).set_reservoir(vent, x); });
 }
 
 TEST_CASE("a force on a body accelerates its centre of mass and does not rotate it", "[unit]") {

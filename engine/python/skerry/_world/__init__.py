@@ -8,7 +8,7 @@ from .collider import Collider
 from .joint import Joint, JointState
 from .load import Load, LoadKind, LoadState
 from .material import MaterialHandle
-from .objects import Objects
+from .objects import ObjectList, Objects
 from .relax import RelaxReport
 from .reports import (
     DynamicsChoice,
@@ -45,6 +45,7 @@ __all__ = [
     "LoadKind",
     "LoadState",
     "MaterialHandle",
+    "ObjectList",
     "Objects",
     "Pipe",
     "PipeState",

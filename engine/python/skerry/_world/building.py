@@ -56,7 +56,7 @@ from .collider import Collider
 from .joint import Joint, joint_label
 from .load import Load
 from .material import MaterialHandle
-from .objects import Objects, PosedObject
+from .objects import ObjectList, Objects, PosedObject
 from .reports import StepReport
 from .spring import Spring
 from .tie import Tie
@@ -381,24 +381,24 @@ class Building(CavityBuilding):
         return Objects(self._core, "colliders", self._collider)
 
     @property
-    def joints(self) -> list[Joint]:
-        """The joints in the order added. They have no names."""
-        return [self._joint(handle) for handle in self._core.joints()]
+    def joints(self) -> ObjectList[Joint]:
+        """The joints in the order added."""
+        return ObjectList(self._joint(handle) for handle in self._core.joints())
 
     @property
-    def ties(self) -> list[Tie]:
-        """The ties in the order added. They have no names."""
-        return [self._tie(handle) for handle in self._core.ties()]
+    def ties(self) -> ObjectList[Tie]:
+        """The ties in the order added."""
+        return ObjectList(self._tie(handle) for handle in self._core.ties())
 
     @property
-    def cables(self) -> list[Cable]:
-        """The cables in the order added. They have no names."""
-        return [self._cable(handle) for handle in self._core.cables()]
+    def cables(self) -> ObjectList[Cable]:
+        """The cables in the order added."""
+        return ObjectList(self._cable(handle) for handle in self._core.cables())
 
     @property
-    def springs(self) -> list[Spring]:
-        """The springs in the order added. They have no names."""
-        return [self._spring(handle) for handle in self._core.springs()]
+    def springs(self) -> ObjectList[Spring]:
+        """The springs in the order added."""
+        return ObjectList(self._spring(handle) for handle in self._core.springs())
 
     @property
     def attachments(self) -> list[Attachment]:

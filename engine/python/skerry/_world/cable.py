@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from .._arrays import TimeTable, TimeTableLike, time_table
 from .anchor import Anchor, anchor_of
-from .objects import WorldObject
+from .objects import NamedObject
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,7 +32,7 @@ class CableState:
     dissipated: float
 
 
-class Cable(WorldObject):
+class Cable(NamedObject):
     """A cable that runs straight from point to point and never pushes. Removing a body removes its cables."""
 
     __slots__ = ()
@@ -42,6 +43,13 @@ class Cable(WorldObject):
         values = self._core.cable_state(self._handle)
         values["points"] = tuple(anchor_of(self._world, point) for point in values["points"])
         return CableState(**values)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Present arguments of World.add_cable()."""
+        values: dict[str, Any] = self._core.cable_settings(self._handle)
+        values["points"] = [anchor_of(self._world, point) for point in values["points"]]
+        return values
 
     @property
     def length(self) -> float:
@@ -58,10 +66,6 @@ class Cable(WorldObject):
         """Prescribes the tension of the first segment [N], the greatest length [m], or its rate [m/s]. Exactly one must
         be given, as a number or as a list of pairs (time, value)."""
         self._core.set_cable_drive(self._handle, *drive_tables(tension, length, rate))
-
-    def remove(self) -> None:
-        """Removes the cable."""
-        self._world.remove(self)
 
 
 def drive_tables(

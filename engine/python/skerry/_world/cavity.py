@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from .._arrays import TimeTableLike, Vector, checked, index_array, real, time_table
 from .._settings import CavityLaw, Gas, Liquid
 from .body import Body
-from .objects import WorldObject
+from .objects import NamedObject, ObjectList
 
 if TYPE_CHECKING:
     from .world import World
@@ -42,7 +42,7 @@ class CavityState:
     force: Vector
 
 
-class Cavity(WorldObject):
+class Cavity(NamedObject):
     """Faces of a body under one pressure. Removing the body removes the cavity."""
 
     __slots__ = ()
@@ -52,6 +52,12 @@ class Cavity(WorldObject):
         """Present pressure, volume, mass, energy and force."""
         values = self._core.cavity_state(self._handle)
         return CavityState(**{**values, "body": self._world._body(values["body"])})
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Present arguments of World.add_cavity(): pressure and volume of a filling are those of the present."""
+        values: dict[str, Any] = self._core.cavity_settings(self._handle)
+        return {**values, "body": self._world._body(values["body"])}
 
     @property
     def pressure(self) -> float:
@@ -75,10 +81,6 @@ class Cavity(WorldObject):
         """Sets the volume of a liquid at ambient pressure: a number or pairs (time, value) [m^3]."""
         self._core.set_liquid_volume(self._handle, time_table(volume, "volume"))
 
-    def remove(self) -> None:
-        """Removes the cavity and its pipes."""
-        self._world.remove(self)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PipeState:
@@ -96,7 +98,7 @@ class PipeState:
     flow: float
 
 
-class Pipe(WorldObject):
+class Pipe(NamedObject):
     """A pipe between two cavities with the same gas, or between a cavity and a reservoir."""
 
     __slots__ = ()
@@ -104,11 +106,12 @@ class Pipe(WorldObject):
     @property
     def state(self) -> PipeState:
         """Ends, conductance and flow."""
-        values = self._core.pipe_state(self._handle)
-        for name in ("first", "second"):
-            if values[name] is not None:
-                values[name] = self._world._cavity(values[name])
-        return PipeState(**values)
+        return PipeState(**self._with_cavities(self._core.pipe_state(self._handle)))
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Arguments of World.add_pipe()."""
+        return self._with_cavities(self._core.pipe_settings(self._handle))
 
     def set_conductance(self, conductance: float) -> None:
         """Sets the mass flow divided by the pressure difference, >= 0 [kg/(s Pa)]."""
@@ -118,9 +121,12 @@ class Pipe(WorldObject):
         """Sets the pressure of the reservoir above ambient: a number or pairs (time, value) [Pa]."""
         self._core.set_reservoir(self._handle, time_table(pressure, "pressure"))
 
-    def remove(self) -> None:
-        """Removes the pipe."""
-        self._world.remove(self)
+    def _with_cavities(self, values: dict[str, Any]) -> dict[str, Any]:
+        """Values of the extension module with cavities in place of handles."""
+        for name in ("first", "second"):
+            if values[name] is not None:
+                values[name] = self._world._cavity(values[name])
+        return values
 
 
 class CavityBuilding:
@@ -179,14 +185,14 @@ class CavityBuilding:
         return self._pipe(handle)
 
     @property
-    def cavities(self) -> list[Cavity]:
-        """The cavities in the order added. They have no names."""
-        return [self._cavity(handle) for handle in self._core.cavities()]
+    def cavities(self) -> ObjectList[Cavity]:
+        """The cavities in the order added."""
+        return ObjectList(self._cavity(handle) for handle in self._core.cavities())
 
     @property
-    def pipes(self) -> list[Pipe]:
-        """The pipes in the order added. They have no names."""
-        return [self._pipe(handle) for handle in self._core.pipes()]
+    def pipes(self) -> ObjectList[Pipe]:
+        """The pipes in the order added."""
+        return ObjectList(self._pipe(handle) for handle in self._core.pipes())
 
     def _cavity(self, handle: Any) -> Cavity:
         name = self._core.name(self._core.cavity_state(handle)["body"])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._arrays import Vector, checked, real
 from .._settings import JointKind, JointPassive, Motor
-from .objects import WorldObject
+from .objects import NamedObject
 
 if TYPE_CHECKING:
     from .body import Body
@@ -52,7 +52,7 @@ class JointState:
     error: float
 
 
-class Joint(WorldObject):
+class Joint(NamedObject):
     """A joint between two rigid bodies, or between a rigid body and the world. Removing a body removes its joints."""
 
     __slots__ = ()
@@ -120,10 +120,6 @@ class Joint(WorldObject):
     def set_passive(self, passive: JointPassive) -> None:
         """Sets spring, damper and dry friction of a hinge or a slider."""
         self._core.set_passive(self._handle, checked(passive, "passive", JointPassive))
-
-    def remove(self) -> None:
-        """Removes the joint."""
-        self._world.remove(self)
 
 
 def joint_label(kind: str, first: str, second: str | None) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 from numpy.typing import ArrayLike
 
 from .._arrays import TimeTableLike, Vector, VectorLike, index_array, real, real_array, time_table
-from .objects import WorldObject
+from .objects import NamedObject, ObjectList
 
 if TYPE_CHECKING:
     from .body import Body
@@ -38,7 +38,7 @@ class LoadState:
     force: Vector
 
 
-class Load(WorldObject):
+class Load(NamedObject):
     """A load on nodes or faces, or a force field. Removing a body removes its loads."""
 
     __slots__ = ()
@@ -46,10 +46,12 @@ class Load(WorldObject):
     @property
     def state(self) -> LoadState:
         """Present values and force."""
-        values = self._core.load_state(self._handle)
-        if values["body"] is not None:
-            values["body"] = self._world._body(values["body"])
-        return LoadState(**values)
+        return LoadState(**self._with_body(self._core.load_state(self._handle)))
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Arguments of the method of World that adds such a load: add_force(), add_traction() and so on."""
+        return self._with_body(self._core.load_settings(self._handle))
 
     def set_scale(self, scale: TimeTableLike) -> None:
         """Replaces the scale: a number, or pairs (time [s], value)."""
@@ -59,9 +61,11 @@ class Load(WorldObject):
         """Replaces the force [N], traction [Pa], acceleration [m/s^2] or velocity of the wind [m/s], shape (3,)."""
         self._core.set_load_vector(self._handle, real_array(vector, "vector", (3,)))
 
-    def remove(self) -> None:
-        """Removes the load."""
-        self._world.remove(self)
+    def _with_body(self, values: dict[str, Any]) -> dict[str, Any]:
+        """Values of the extension module with a body in place of its handle."""
+        if values["body"] is not None:
+            values["body"] = self._world._body(values["body"])
+        return values
 
 
 class WorldLoads:
@@ -136,9 +140,9 @@ class WorldLoads:
         )
 
     @property
-    def loads(self) -> list[Load]:
-        """The loads in the order added. They have no names. Forces of Body.set_loads() are not listed."""
-        return [self._new_load(handle) for handle in self._core.loads_of_world()]
+    def loads(self) -> ObjectList[Load]:
+        """The loads in the order added. Forces of Body.set_loads() are not listed."""
+        return ObjectList(self._new_load(handle) for handle in self._core.loads_of_world())
 
     def _new_load(self, handle: Any) -> Load:
         state = self._core.load_state(handle)

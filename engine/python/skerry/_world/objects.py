@@ -6,7 +6,7 @@ import copy
 import dataclasses
 import operator
 from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
-from typing import TYPE_CHECKING, Any, Generic, Self, SupportsIndex, TypeVar, Unpack
+from typing import TYPE_CHECKING, Any, Generic, Self, SupportsIndex, TypeVar, Unpack, overload
 
 from .._arrays import Reals, VectorLike, checked, real, real_array, whole
 from .._errors import BusyError, SceneError
@@ -86,6 +86,46 @@ class WorldObject:
         except BusyError:
             text = f": {self._label}, in use by another thread"
         return f"<skerry.{type(self).__name__}{text}>"
+
+
+class NamedObject(WorldObject):
+    """An object of a world whose name can be changed."""
+
+    __slots__ = ()
+
+    @property
+    def name(self) -> str:
+        """Name, by default the kind and a number, such as "cable_0". It affects no step."""
+        return str(self._core.name(self._handle))
+
+    @name.setter
+    def name(self, name: str) -> None:
+        self._core.set_name(self._handle, checked(name, "name", str))
+
+    def remove(self) -> None:
+        """Removes the object."""
+        self._world.remove(self)  # type: ignore[arg-type]
+
+
+Named = TypeVar("Named", bound=NamedObject)
+
+
+class ObjectList(list[Named]):
+    """Objects in the order added. An index may also be a name: world.cables["tendon"]."""
+
+    @overload
+    def __getitem__(self, key: SupportsIndex | str) -> Named: ...
+    @overload
+    def __getitem__(self, key: slice) -> list[Named]: ...
+    def __getitem__(self, key: SupportsIndex | slice | str) -> Named | list[Named]:
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        found = [item for item in self if item.name == key]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise KeyError(f"{len(found)} objects have the name '{key}'; use their numbers")
+        raise KeyError(f"no object has the name '{key}'; the names are {[item.name for item in self]}")
 
 
 class PosedObject(WorldObject):

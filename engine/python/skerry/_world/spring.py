@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from .._arrays import TimeTableLike, real, time_table
 from .anchor import Anchor, anchor_of, core_anchor
-from .objects import WorldObject
+from .objects import NamedObject
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,7 +32,7 @@ class SpringState:
     energy: float
 
 
-class Spring(WorldObject):
+class Spring(NamedObject):
     """A spring, a damper, or both in parallel, between two anchors. Removing a body or a collider of an anchor removes
     the spring."""
 
@@ -44,6 +45,14 @@ class Spring(WorldObject):
         for name in ("first", "second"):
             values[name] = anchor_of(self._world, values[name])
         return SpringState(**values)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Present arguments of World.add_spring()."""
+        values: dict[str, Any] = self._core.spring_settings(self._handle)
+        for name in ("first", "second"):
+            values[name] = anchor_of(self._world, values[name])
+        return values
 
     def set_second(self, anchor: Anchor) -> None:
         """Moves the second anchor. The rest length does not change. With `strength`, this drags a body to a moving
@@ -61,7 +70,3 @@ class Spring(WorldObject):
     def set_damping(self, damping: float) -> None:
         """Sets the damping [N s/m]."""
         self._core.set_damping(self._handle, real(damping, "damping"))
-
-    def remove(self) -> None:
-        """Removes the spring."""
-        self._world.remove(self)

@@ -13,10 +13,10 @@ from .body import Body, Indices
 from .building import Building
 from .changes import SurfaceChanges, SurfaceSetChanges
 from .material import MaterialHandle
-from .objects import WorldObject, changed_surface
+from .objects import NamedObject, ObjectList, changed_surface
 
 
-class SurfaceSet(WorldObject):
+class SurfaceSet(NamedObject):
     """A part of the surface of a body with its own friction and restitution: faces with their edges and nodes, and
     nodes with the edges and faces between them. Removing a body removes its sets."""
 
@@ -64,10 +64,6 @@ class SurfaceSet(WorldObject):
         across = values.pop("friction_across", self.friction_across)
         given = changed_surface(self.surface_values, surface, values)
         self._core.set_set_surface(self._handle, given, None if across is None else real(across, "friction_across"))
-
-    def remove(self) -> None:
-        """Removes the set."""
-        self._world.remove(self)
 
     @property
     def _values(self) -> dict[str, Any]:
@@ -145,9 +141,9 @@ class SurfaceRules(Building):
         return self._surface_set(handle)
 
     @property
-    def surface_sets(self) -> list[SurfaceSet]:
-        """The surface sets in the order added. They have no names."""
-        return [self._surface_set(handle) for handle in self._core.surface_sets()]
+    def surface_sets(self) -> ObjectList[SurfaceSet]:
+        """The surface sets in the order added."""
+        return ObjectList(self._surface_set(handle) for handle in self._core.surface_sets())
 
     def _surface_set(self, handle: Any) -> SurfaceSet:
         body = self._core.name(self._core.surface_set(handle)["body"])

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Vector, real
 from .._settings import TieKind
-from .objects import WorldObject
+from .objects import NamedObject
 
 if TYPE_CHECKING:
     from .body import Body
@@ -49,7 +49,7 @@ class TieState:
     broken: NDArray[np.float64]
 
 
-class Tie(WorldObject):
+class Tie(NamedObject):
     """A tie between nodes of a deformable body and another object. Removing one of the two removes the tie."""
 
     __slots__ = ()
@@ -57,17 +57,21 @@ class Tie(WorldObject):
     @property
     def state(self) -> TieState:
         """Present forces, errors and broken nodes."""
-        values = self._core.tie_state(self._handle)
-        body, collider = values.pop("to_body"), values.pop("to_collider")
-        to = self._world._body(body) if body is not None else None
-        values["to"] = self._world._collider(collider) if collider is not None else to
-        values["body"] = self._world._body(values["body"])
-        return TieState(**values)
+        return TieState(**self._with_objects(self._core.tie_state(self._handle)))
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Arguments of World.add_tie()."""
+        return self._with_objects(self._core.tie_settings(self._handle))
 
     def set_break_force(self, force: float) -> None:
         """Sets the force at which a node breaks off [N]. Nodes that have broken off stay so."""
         self._core.set_break_force(self._handle, real(force, "force"))
 
-    def remove(self) -> None:
-        """Removes the tie."""
-        self._world.remove(self)
+    def _with_objects(self, values: dict[str, Any]) -> dict[str, Any]:
+        """Values of the extension module with objects in place of handles."""
+        body, collider = values.pop("to_body"), values.pop("to_collider")
+        to = self._world._body(body) if body is not None else None
+        values["to"] = self._world._collider(collider) if collider is not None else to
+        values["body"] = self._world._body(values["body"])
+        return values

@@ -1,0 +1,39 @@
+// The part that the views of joints, ties, cables, cavities, loads, springs and surface sets have in common.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "components/types.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+class World;
+
+/// A view of all objects of one kind of a world. It is valid until the world is moved or destroyed. Functions of views
+/// that change something may only be called between calls of advance. They throw SceneError and change nothing if a
+/// handle is stale or a value is out of range. The objects belong to the state of the world: they are saved, cloned and
+/// hashed. They are removed with each body and collider that they name. The header of each view declares the instance
+/// of this template with the attribute that makes the shared library export it.
+template <class HandleType>
+class ObjectView {
+public:
+    explicit ObjectView(World& world) : world_(&world) {}
+
+    /// Removes an object, and wakes its bodies.
+    void remove(HandleType object);
+    bool alive(HandleType object) const;
+    std::vector<HandleType> all() const;  // in the order added
+    /// Name of an object for users and files, by default KIND_SLOT, such as "cable_0". It affects no step.
+    std::string name(HandleType object) const;
+    void set_name(HandleType object, const std::string& name);
+    /// Returns the object of a name. Throws SceneError if there is none, or more than one.
+    HandleType find(const std::string& name) const;
+
+protected:
+    World* world_;
+};
+
+}  // namespace skerry
+#pragma GCC visibility pop
