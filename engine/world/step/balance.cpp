@@ -96,7 +96,8 @@ void add_step(const StepScratch& step, Balance& balance) {
     const ExternalWork& external = step.findings.external;
     const std::array<Vec3, 9> impulses{step.parameters.kick * step.awake_mass * step.parameters.gravity,
                                        external.impulse,
-                                       step.findings.held.impulse + step.findings.held_again.impulse,
+                                       step.findings.held.impulse + step.findings.held_rows.impulse +
+                                           step.findings.held_again.impulse,
                                        step.findings.strained.impulse,
                                        contacts.outer_impulse,
                                        step.findings.joints.impulse,
@@ -106,7 +107,8 @@ void add_step(const StepScratch& step, Balance& balance) {
     Real push_work = 0;
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;
-    const Real work = push_work + external.work + step.findings.held.work + step.findings.held_again.work +
+    const Real work = push_work + external.work + step.findings.held.work + step.findings.held_rows.work +
+                      step.findings.held_again.work +
                       step.findings.joints.work + step.findings.ties.work + step.findings.cables.work +
                       contacts.outer_work - contacts.dissipated - step.findings.damped - step.findings.strained.damped -
                       step.findings.relaxed - step.findings.viscous - step.findings.rest.energy -
