@@ -47,7 +47,10 @@ def test_a_traction_acts_on_faces() -> None:
     bar = world.add_body(sk.Mesh.box((0.2, 0.1, 0.1), (4, 2, 2)), RUBBER, dynamics="explicit")
     right = bar.surface[(bar.positions[bar.surface][:, :, 0] > 0.0999).all(axis=1)]
     load = world.add_traction(bar, right, (100, 0, 0))
+    present = world.add_traction(bar, right, (100, 0, 0), present_area=True)
+    bar.positions = 2 * bar.positions
     assert load.state.force == pytest.approx((1, 0, 0))
+    assert present.state.force == pytest.approx((4, 0, 0))
 
 
 def test_a_hanging_bar_relaxes() -> None:
