@@ -275,6 +275,8 @@ TEST_CASE("loads are counted in the balance of energy", "[scene]") {
                                .scale = pulse,
                                .area = LoadArea::present});
         REQUIRE(flight.world.advance(0.5).ok());
+        CHECK(flight.velocity().x() > 0);
+        CHECK(flight.velocity().y() > 0.1);
         CHECK(flight.world.report().energy_error_share < 5e-3);
         CHECK(flight.world.report().momentum_error_share < 1e-12);
     }
@@ -332,6 +334,7 @@ TEST_CASE("loads do not depend on how often advance is called", "[scene]") {
         Flight flight(weightless(1.0 / 1024), BodyDynamics::explicit_elastic);
         Loads(flight.world).add(ForceLoad{flight.body, {0}, {0.1, 0, 0}, pulse});
         for (int i = 0; i < calls; ++i) REQUIRE(flight.world.advance(0.25 / calls).ok());
+        CHECK(flight.velocity().x() > 0);
         return flight.world.state_hash();
     };
     CHECK(run(1) == run(16));

@@ -350,6 +350,7 @@ TEST_CASE("every solver method gives the same motion of tied bodies", "[scene][t
                 worst = std::max(worst, (positions[n] - expected[n]).norm());
             CAPTURE(static_cast<int>(dynamics), name);
             CHECK(worst < 1e-9);
+            CHECK(bar.world.velocity(bar.right).velocity.x() > 0.01);  // it starts at rest
             CHECK(bar.world.report().unconverged == 0);
         }
     }
@@ -366,6 +367,7 @@ TEST_CASE("a tied world goes on bitwise from files and with any number of thread
             TwoHalves bar(settings, {.break_force = 1}, BodyDynamics::implicit_elastic);
             bar.world.add_collider(Plane{}, {.position = {0, 0, -0.1}});
             CHECK(bar.world.advance(0.12).ok());
+            CHECK(Ties(bar.world).state(bar.tie).force.norm() > 0);
             return Course{std::move(bar.world)};
         },
         [](World& world) { CHECK(world.advance(0.1).ok()); });
