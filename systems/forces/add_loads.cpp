@@ -40,8 +40,7 @@ void add_to_faces(const LoadInputs& loads, std::size_t load, Real scale, std::sp
     const Index first = loads.body_nodes[static_cast<std::size_t>(loads.load_body[load])].begin;
     loads.for_each_face(load, [&](std::size_t k, const Mat3& corners) {
         const Vec3 of_node = area_of(corners).norm() / 3 * scale * loads.vector[load];
-        for (std::size_t c = k; c < k + 3; ++c)
-            force[static_cast<std::size_t>(first + loads.share_node[c])] += of_node;
+        for (std::size_t c = k; c < k + 3; ++c) force[static_cast<std::size_t>(first + loads.share_node[c])] += of_node;
     });
 }
 

@@ -41,9 +41,9 @@ struct LoadInputs {
     std::span<const BodyKind> body_kind;
     std::span<const Range> body_nodes, body_implicit;
     std::span<const Index> node_body;
-    std::span<const Real> mass;      // [kg]
+    std::span<const Real> mass;                // [kg]
     std::span<const Vec3> position, velocity;  // at the start of the step [m, m/s]
-    Vec3 gravity = Vec3::Zero();     // gravity of the settings [m/s^2]
+    Vec3 gravity = Vec3::Zero();               // gravity of the settings [m/s^2]
     ForceIntervals intervals;
 
     static LoadInputs bind(const Binder& binder, const LoadTable& load, const BodyTable& body, const NodeTable& node,
@@ -78,8 +78,7 @@ struct LoadInputs {
     /// Calls visit(first, corners) for each face of a traction on the present area: the row of its first node in
     /// `share_node`, and the present places of its nodes as columns [m].
     void for_each_face(std::size_t load, auto&& visit) const {
-        const std::span<const Vec3> place =
-            rows_of(position, body_nodes[static_cast<std::size_t>(load_body[load])]);
+        const std::span<const Vec3> place = rows_of(position, body_nodes[static_cast<std::size_t>(load_body[load])]);
         for (auto k = static_cast<std::size_t>(load_nodes[load].begin);
              k < static_cast<std::size_t>(load_nodes[load].end); k += 3) {
             Mat3 corners;
@@ -93,7 +92,8 @@ struct LoadInputs {
 /// Adds the forces of all loads to `applied_force`, by node [N]. A scale that changes over time acts with its exact
 /// mean in the interval of the step, so the sum of impulses over the steps equals the integral over time. Drag uses the
 /// velocities at the start of the step, and a traction on the present area the positions. Parallel over nodes: loads on
-/// nodes are added in the order of LoadTable, and then the sum of all fields. `fields`: working memory. Returns false if there is no load.
+/// nodes are added in the order of LoadTable, and then the sum of all fields. `fields`: working memory. Returns false
+/// if there is no load.
 bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& fields, std::span<Vec3> applied_force);
 
 /// The columns that decide on which bodies a load changes.

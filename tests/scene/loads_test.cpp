@@ -227,13 +227,11 @@ TEST_CASE("a traction on the present area shortens the stable step by its bound"
     const Real longest = 0.05 * std::sqrt(2);  // edge of all faces [m]
     Real most = 0;                             // of faces per mass [1/kg]
     for (std::size_t n = 0; n < mass.size(); ++n)
-        most = std::max(most, static_cast<Real>(std::ranges::count_if(top,
-                                                                      [&](const auto& face) {
-                                                                          return std::ranges::find(
-                                                                                     face, static_cast<Index>(n)) !=
-                                                                                 face.end();
-                                                                      })) /
-                                  mass[n]);
+        most = std::max(
+            most,
+            static_cast<Real>(std::ranges::count_if(
+                top, [&](const auto& face) { return std::ranges::find(face, static_cast<Index>(n)) != face.end(); })) /
+                mass[n]);
     const Real with = flight.world.stable_step();
     CHECK(4 / (with * with) - 4 / (free * free) == Approx(2 * pull / 2 * longest * most).epsilon(1e-6));
     Loads(flight.world).set_scale(load, 0);

@@ -267,9 +267,9 @@ TEST_CASE("load steps find the share of each kind of load at which a block begin
 TEST_CASE("load steps end in the equilibrium of the whole loads", "[scene]") {
     const auto lowest_after = [](int load_steps) {
         World world(accurate());
-        const auto bar = world.add_body(mesh::box({0.1, 0.1, 0.2}, {2, 2, 4}),
-                                        {.material = world.add_material({.young_modulus = 1e5}),
-                                         .dynamics = BodyDynamics::explicit_elastic});
+        const auto bar = world.add_body(
+            mesh::box({0.1, 0.1, 0.2}, {2, 2, 4}),
+            {.material = world.add_material({.young_modulus = 1e5}), .dynamics = BodyDynamics::explicit_elastic});
         world.attach(bar, nodes_above(world, bar, 0.0999));
         const LoadHandle load = Loads(world).add(ForceLoad{bar, {0, 1}, {0, 0, -1}, TimeTable({{0, 2}, {1, 5}})});
         const RelaxReport report = relax(world, {.tolerance = 1e-5, .load_steps = load_steps});

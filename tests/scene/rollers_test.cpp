@@ -146,8 +146,7 @@ TEST_CASE("a block on rollers resists a blow along them like a held block, and c
     const auto strike = [&](const std::vector<Vec3>& directions) {
         World world(accurate(Vec3::Zero(), 1e-10));
         const MaterialHandle smooth = world.add_material({.young_modulus = young, .friction = 0, .restitution = 0});
-        const BodyHandle block =
-            world.add_body(mesh, {.material = smooth, .dynamics = BodyDynamics::explicit_elastic});
+        const BodyHandle block = world.add_body(mesh, {.material = smooth, .dynamics = BodyDynamics::explicit_elastic});
         world.attach(block, all, {}, Vec3::Zero(), directions);
         // A vertex of the ball comes down on the middle of the block.
         const BodyHandle ball = world.add_body(mesh::ball(0.03, 2), {.material = smooth,
@@ -201,7 +200,8 @@ TEST_CASE("rollers survive saving and cloning, and give the same bits on any num
     settings.threads = 1;
     RolledBar bar(settings, linear(), {.velocity = {0.05, 0, 0}});
     // It lies across a row of nodes that a roller holds.
-    bar.world.add_body(mesh::ball(0.03, 4), {.material = bar.world.add_material(linear()), .position = {0, -0.03, 0.08}});
+    bar.world.add_body(mesh::ball(0.03, 4),
+                       {.material = bar.world.add_material(linear()), .position = {0, -0.03, 0.08}});
     REQUIRE(bar.world.advance(0.05).ok());
     REQUIRE(bar.world.report().mean_contacts > 0);
     World loaded = World::from_bytes(bar.world.to_bytes(), {.threads = 3}), copy = bar.world.clone();

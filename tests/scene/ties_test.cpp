@@ -2,6 +2,7 @@
 #include "skerry/tie.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -364,10 +365,13 @@ TEST_CASE("a tied world goes on bitwise from files and with any number of thread
         [](int threads) {
             Settings settings;
             settings.threads = threads;
-            TwoHalves bar(settings, {.break_force = 1}, BodyDynamics::implicit_elastic);
+            TwoHalves bar(settings, {.break_force = 10}, BodyDynamics::implicit_elastic);
             bar.world.add_collider(Plane{}, {.position = {0, 0, -0.1}});
             CHECK(bar.world.advance(0.12).ok());
-            CHECK(Ties(bar.world).state(bar.tie).force.norm() > 0);
+            // Some of its nodes have broken off. Others carry forces, and break off later.
+            const TieState state = Ties(bar.world).state(bar.tie);
+            CHECK(std::ranges::any_of(state.nodes, [](const TiedNode& node) { return node.broken.has_value(); }));
+            CHECK(state.force.norm() > 0);
             return Course{std::move(bar.world)};
         },
         [](World& world) { CHECK(world.advance(0.1).ok()); });

@@ -27,9 +27,9 @@ struct Arm {
               settings.sleep = sleep;
               return settings;
           }()) {
-        body = world.add_body(mesh::box({length, side, side}, {2, 1, 1}), {.material = world.add_material({}),
-                                                                           .position = {reach, 0, 0},
-                                                                           .dynamics = BodyDynamics::rigid});
+        body = world.add_body(
+            mesh::box({length, side, side}, {2, 1, 1}),
+            {.material = world.add_material({}), .position = {reach, 0, 0}, .dynamics = BodyDynamics::rigid});
         JointSettings settings = joint;
         settings.kind = JointKind::hinge;
         settings.first = body;

@@ -41,8 +41,8 @@ struct TwoHalves {
         : world(settings) {
         const MaterialHandle of = world.add_material(material);
         const auto add = [&](const Mesh& mesh, Real x, BodyDynamics dynamics) {
-            return world.add_body(
-                mesh, {.material = of, .position = {x, 0, 0}, .dynamics = dynamics, .element = element});
+            return world.add_body(mesh,
+                                  {.material = of, .position = {x, 0, 0}, .dynamics = dynamics, .element = element});
         };
         left = add(coarse, -half / 2, of_left);
         right = add(fine, half / 2, of_right);

@@ -118,9 +118,8 @@ Vec3 force_of_load(const Model& model, std::size_t row, Real scale) {
         LoadInputs::bind({}, table, model.bodies, model.nodes, model.settings.gravity, ForceIntervals{});
     Vec3 sum = Vec3::Zero();
     if (loads.is_on_present_area(row)) {
-        loads.for_each_face(row, [&](std::size_t, const Mat3& corners) {
-            sum += area_of(corners).norm() * scale * table.vector[row];
-        });
+        loads.for_each_face(
+            row, [&](std::size_t, const Mat3& corners) { sum += area_of(corners).norm() * scale * table.vector[row]; });
         return sum;
     }
     for (const Real weight : table.weights_of(row)) sum += weight * scale * table.vector[row];

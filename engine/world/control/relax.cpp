@@ -50,8 +50,8 @@ void hold_values(Model& model, Real t) {
     std::ranges::fill(model.ties.break_force, infinity);
 }
 
-/// Sets the loads, prescribed pressures and prescribed tensions to a share of their values at the time `t`. `given`: the
-/// same tables before hold_values.
+/// Sets the loads, prescribed pressures and prescribed tensions to a share of their values at the time `t`. `given`:
+/// the same tables before hold_values.
 void set_load_share(Model& model, const Model& given, Real t, Real share) {
     const auto set = [&](auto& table, const auto& from, std::size_t row) {
         hold_keys(table, row, share * value_at(from.keys_of(row), t));
@@ -322,8 +322,7 @@ RelaxReport relax(World& world, const RelaxSettings& settings, const std::functi
     if (!(settings.tolerance > 0 && settings.tolerance < 1))
         refuse("relax", "tolerance", short_text(settings.tolerance), "a number > 0 and < 1");
     if (settings.max_steps < 1) refuse("relax", "max_steps", std::to_string(settings.max_steps), "a number >= 1");
-    if (settings.load_steps < 1)
-        refuse("relax", "load_steps", std::to_string(settings.load_steps), "a number >= 1");
+    if (settings.load_steps < 1) refuse("relax", "load_steps", std::to_string(settings.load_steps), "a number >= 1");
     WorldAccess::state_of(world).require_between_steps("relax");
     const ArithmeticScope arithmetic;  // the decisions must not depend on the floating-point mode of the caller
     world.settle_start();

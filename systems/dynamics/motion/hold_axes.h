@@ -61,9 +61,9 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
 /// of ContactTable.
 struct HeldRows {
     struct Node {
-        Mat3 held = Mat3::Zero();       // projection onto the directions along which attachments hold the node
-        Vec3 impulse = Vec3::Zero();    // sum of the impulses with which the solver starts at the node [N s]
-        bool in_region = false;         // true if a contact, tie or cable can move the node
+        Mat3 held = Mat3::Zero();     // projection onto the directions along which attachments hold the node
+        Vec3 impulse = Vec3::Zero();  // sum of the impulses with which the solver starts at the node [N s]
+        bool in_region = false;       // true if a contact, tie or cable can move the node
     };
     Column<Index> entry;  // by row of the problem: row of AttachmentTable::node
     Column<Node> node;    // working memory: by row of NodeTable
@@ -81,7 +81,8 @@ ExternalWork take_held_rows(const AxisHoldInputs& inputs, std::span<const Vec3> 
                             const HeldRows& rows, std::span<Vec3> held_impulse);
 
 /// Removes the error that the contact solver has left in the prescribed velocities, and adds the impulses that this
-/// takes to `held_impulse`. Also removes the parts along these directions from `push_out`. Returns the sum and the work of the added impulses.
+/// takes to `held_impulse`. Also removes the parts along these directions from `push_out`. Returns the sum and the work
+/// of the added impulses.
 ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec3> velocity_next,
                              std::span<Vec3> push_out, std::span<Vec3> held_impulse);
 

@@ -69,7 +69,8 @@ TEST_CASE("wrong loads of a scene are refused with file, object and field", "[un
     CHECK_THAT(refusal_of(R"({"kind": "force", "body": "cube", "set": "top"})"), Contains("no key \"force\""));
     CHECK_THAT(refusal_of(R"({"kind": "gravity", "scale": 1, "wind": [1, 0, 0]})"),
                Contains("wind") && Contains("not used by a load of the kind \"gravity\""));
-    CHECK_THAT(refusal_of(R"({"kind": "drag", "rate": 1, "area": "present"})"), Contains("area") && Contains("not used"));
+    CHECK_THAT(refusal_of(R"({"kind": "drag", "rate": 1, "area": "present"})"),
+               Contains("area") && Contains("not used"));
     CHECK_THAT(refusal_of(R"({"kind": "drag", "rate": 0})"), Contains("rate"));
     CHECK_THAT(refusal_of(R"({"kind": "gravity", "scale": [[1, 0], [0, 1]]})"), Contains("scale"));
 }

@@ -362,7 +362,8 @@ TEST_CASE("a saved world with a load on a node that does not exist, or with wron
     Loads(world).add(ForceLoad{body, {1, 2}, {1, 0, 0}, TimeTable({{0, 0}, {1, 1}})});
     const FileOfWorld saved(world);
     CHECK(saved.refusal(saved.bytes).empty());
-    CHECK_THAT(saved.refusal_with("loads/node", 1, 8), Contains("loads: node: found a node that the body does not have"));
+    CHECK_THAT(saved.refusal_with("loads/node", 1, 8),
+               Contains("loads: node: found a node that the body does not have"));
     CHECK_THAT(saved.refusal_with("loads/nodes", 1, 3), Contains("loads: nodes: found a range that does not exist"));
     CHECK_THAT(saved.refusal_with("loads/nodes", 1, 1), Contains("loads: node: found 2 rows, expected 1"));
     CHECK_THAT(saved.refusal_with("loads/scale_keys", 0, 1), Contains("loads: scale_keys"));
@@ -383,10 +384,14 @@ TEST_CASE("a saved world with a pipe whose bodies or ends do not fit its cavitie
     Cavities(world).add(PipeSettings{.first = cavities[1], .conductance = 1e-9});
     const FileOfWorld saved(world);
     CHECK(saved.refusal(saved.bytes).empty());
-    CHECK_THAT(saved.refusal_with("pipes/first_body", 0, 1), Contains("pipes: first_body: found 1 at row 0, expected 0"));
-    CHECK_THAT(saved.refusal_with("pipes/first_body", 1, -1), Contains("pipes: first_body: found -1 at row 1, expected 1"));
-    CHECK_THAT(saved.refusal_with("pipes/second_body", 0, -1), Contains("pipes: second_body: found -1 at row 0, expected 1"));
-    CHECK_THAT(saved.refusal_with("pipes/second_body", 1, 0), Contains("pipes: second_body: found 0 at row 1, expected -1"));
+    CHECK_THAT(saved.refusal_with("pipes/first_body", 0, 1),
+               Contains("pipes: first_body: found 1 at row 0, expected 0"));
+    CHECK_THAT(saved.refusal_with("pipes/first_body", 1, -1),
+               Contains("pipes: first_body: found -1 at row 1, expected 1"));
+    CHECK_THAT(saved.refusal_with("pipes/second_body", 0, -1),
+               Contains("pipes: second_body: found -1 at row 0, expected 1"));
+    CHECK_THAT(saved.refusal_with("pipes/second_body", 1, 0),
+               Contains("pipes: second_body: found 0 at row 1, expected -1"));
     CHECK_THAT(saved.refusal_with("pipes/second", 1, 0), Contains("pipes: second: found 0 at row 1, expected 1"));
 }
 
