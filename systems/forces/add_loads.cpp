@@ -1,5 +1,8 @@
 #include "systems/forces/add_loads.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "jobs/parallel_for.h"
 #include "systems/forces/cavities.h"
 
@@ -101,6 +104,18 @@ bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& f
         }
     });
     return true;
+}
+
+Real traction_rate(const LoadInputs& loads, std::size_t load, std::span<const Real> inverse_mass) {
+    const Index first = loads.body_nodes[static_cast<std::size_t>(loads.load_body[load])].begin;
+    Real scale = 0, most = 0;
+    for (const TimeKey& key : rows_of(loads.key, loads.scale_keys[load])) scale = std::max(scale, std::abs(key.value));
+    loads.for_each_face(load, [&](std::size_t k, const Mat3& corners) {
+        for (std::size_t c = k; c < k + 3; ++c)
+            most = std::max(most, loads.weight[c] * longest_edge(corners) *
+                                      inverse_mass[static_cast<std::size_t>(first + loads.share_node[c])]);
+    });
+    return scale * loads.vector[load].norm() / 2 * most;
 }
 
 bool mark_loaded(const LoadedBodies& loads, Real t, Real h, std::span<std::uint8_t> marked) {

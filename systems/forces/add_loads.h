@@ -96,6 +96,10 @@ struct LoadInputs {
 /// if there is no load.
 bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& fields, std::span<Vec3> applied_force);
 
+/// Bound of docs/methods/loads.md 2 for a traction on the present area of an explicit body [1/s^2]. `inverse_mass`: by
+/// node [1/kg]
+Real traction_rate(const LoadInputs& loads, std::size_t load, std::span<const Real> inverse_mass);
+
 /// The columns that decide on which bodies a load changes.
 struct LoadedBodies {
     std::span<const Index> load_body;

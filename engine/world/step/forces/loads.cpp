@@ -1,9 +1,6 @@
 // Force element for loads and force fields.
-#include <algorithm>
-
 #include "engine/world/step/seams.h"
 #include "systems/forces/add_loads.h"
-#include "systems/forces/cavities.h"
 
 namespace skerry {
 
@@ -31,24 +28,12 @@ LoadInputs loads_of(const Model& model) {
     return LoadInputs::bind({}, model.loads, model.bodies, model.nodes, model.settings.gravity, {});
 }
 
-/// Adds the bound of docs/methods/loads.md 2 for tractions on the present area.
 void add_traction_rates(const Model& model, std::span<Real> of_body) {
     const LoadInputs loads = loads_of(model);
     for (std::size_t load = 0; load < model.loads.size(); ++load) {
         if (!loads.is_on_present_area(load)) continue;
-        const auto body = static_cast<std::size_t>(loads.load_body[load]);
-        if (model.has_frame(body)) continue;
-        const Index first = loads.body_nodes[body].begin;
-        Real pull = 0, most = 0;
-        for (const TimeKey& key : model.loads.keys_of(load))
-            pull = std::max(pull, std::abs(key.value) * loads.vector[load].norm());
-        loads.for_each_face(load, [&](std::size_t k, const Mat3& corners) {
-            for (std::size_t c = k; c < k + 3; ++c) {
-                const auto n = static_cast<std::size_t>(first + loads.share_node[c]);
-                most = std::max(most, loads.weight[c] * longest_edge(corners) * model.nodes.inverse_mass[n]);
-            }
-        });
-        of_body[body] += pull / 2 * most;
+        if (const auto body = static_cast<std::size_t>(loads.load_body[load]); !model.has_frame(body))
+            of_body[body] += traction_rate(loads, load, model.nodes.inverse_mass);
     }
 }
 
