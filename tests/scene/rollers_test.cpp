@@ -162,6 +162,38 @@ TEST_CASE("a block on rollers resists a blow along them like a held block, and c
     CHECK(strike({Vec3::UnitZ()}) == Approx(strike({})).margin(1e-6));
 }
 
+TEST_CASE("rollers of a block carry the weight of a block that lies on it", "[scene]") {
+    World world(accurate({0, 0, -standard_gravity}, 1e-10));
+    const MaterialHandle smooth = world.add_material({.young_modulus = young, .friction = 0, .damping = 100});
+    const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
+    const BodyHandle below = world.add_body(mesh, {.material = smooth, .dynamics = BodyDynamics::explicit_elastic}),
+                     above = world.add_body(
+                         mesh, {.material = smooth, .position = {0, 0, 0.102}, .dynamics = BodyDynamics::rigid});
+    std::vector<Index> all(mesh.nodes.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    const AttachmentHandle rollers = world.attach(below, all, {}, Vec3::Zero(), {Vec3::UnitZ()});
+    world.measure_forces(true);
+    REQUIRE(world.advance(0.3).ok());
+    const Vec3 force = world.forces().by(rollers).force();
+    CHECK(force.z() == Approx((world.mass(below) + world.mass(above)) * standard_gravity).epsilon(1e-6));
+}
+
+TEST_CASE("rollers that press a block into a plane prevail, and every step converges", "[scene]") {
+    World world(accurate(Vec3::Zero()));
+    const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
+    const BodyHandle block = world.add_body(
+        mesh, {.material = world.add_material(linear()), .dynamics = BodyDynamics::explicit_elastic});
+    std::vector<Index> all(mesh.nodes.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    world.attach(block, all, {.velocity = {0, 0, -0.01}}, Vec3::Zero(), {Vec3::UnitZ()});
+    world.add_collider(Plane{{0, 0, 1}, {0, 0, -0.0505}});
+    REQUIRE(world.advance(0.1).ok());
+    CHECK(world.report().mean_contacts > 0);
+    CHECK(world.report().unconverged == 0);
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+        CHECK(std::abs(world.positions(block)[n].z() - mesh.nodes[n].z() + 1e-3) < 1e-12);
+}
+
 TEST_CASE("a node on an inclined roller moves along the incline only", "[scene]") {
     World world(weightless());
     const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
