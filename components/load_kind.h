@@ -24,4 +24,14 @@ struct EnumNames<LoadKind> {
     }};
 };
 
+/// Area on which a traction acts: of the faces in the rest shape (dead load), or of the deformed faces.
+enum class LoadArea : std::uint8_t { reference, present };
+template <>
+struct EnumNames<LoadArea> {
+    static constexpr std::array<std::pair<LoadArea, std::string_view>, 2> table{{
+        {LoadArea::reference, "reference"},
+        {LoadArea::present, "present"},
+    }};
+};
+
 }  // namespace skerry

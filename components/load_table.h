@@ -20,11 +20,13 @@ struct LoadTable {
     Column<Index> body;        // row of BodyTable; no_index for a field that acts on all bodies
     Column<Vec3> vector;       // force [N], traction [Pa], acceleration [m/s^2] or velocity of the wind [m/s]
     Column<Real> rate;         // rate of a drag [1/s]
+    Column<LoadArea> area;     // area on which a traction acts
     Column<Range> nodes;       // range of rows in the columns `node` and `weight`; empty for fields
     Column<Range> faces;       // range of rows in the column `face`; empty except for tractions
     Column<Range> scale_keys;  // range of rows in the column `key`; never empty
     // Nodes of all forces and tractions, as numbers in the meshes of their bodies, and their weights: fractions of a
-    // force, or areas of a traction [1 or m^2].
+    // force, or areas of a traction [1 or m^2]. A traction on the present area lists the three nodes of each face, and
+    // as weight the number of its faces that have the node.
     Column<Index> node;
     Column<Real> weight;
     Column<std::array<Index, 3>> face;  // faces of all tractions, by the nodes of their meshes
@@ -49,6 +51,7 @@ struct LoadTable {
         visit("body", body, ColumnRole::body);
         visit("vector", vector, ColumnRole::state);
         visit("rate", rate, ColumnRole::state);
+        visit("area", area, ColumnRole::state);
         visit("nodes", nodes, ColumnRole::link);
         visit("faces", faces, ColumnRole::link);
         visit("scale_keys", scale_keys, ColumnRole::link);

@@ -17,7 +17,7 @@ KeysOfLoad keys_of_load(LoadKind kind) {
         case LoadKind::force:
             return {{"body", "force"}, {"scale"}, true};
         case LoadKind::traction:
-            return {{"body", "traction"}, {"scale"}, true};
+            return {{"body", "traction"}, {"area", "scale"}, true};
         case LoadKind::acceleration:
             return {{"acceleration"}, {"body", "scale"}};
         case LoadKind::gravity:
@@ -40,6 +40,7 @@ void check_load_keys(const Place& place, const LoadEntry& load) {
                                                           {"force", load.force.has_value()},
                                                           {"traction", load.traction.has_value()},
                                                           {"acceleration", load.acceleration.has_value()},
+                                                          {"area", load.area.has_value()},
                                                           {"rate", load.rate.has_value()},
                                                           {"wind", load.wind.has_value()},
                                                           {"scale", load.scale.has_value()}};
@@ -66,7 +67,7 @@ const Rule<LoadEntry>& rule_of<LoadEntry>() {
             .key("name", &Entry::name, {.meaning = "name in messages"})
             .key("kind", &Entry::kind,
                  {.meaning = "force: total force on nodes, shared in proportion to their masses; traction: force per "
-                             "rest area of surface faces, in a fixed direction; acceleration: uniform acceleration; "
+                             "area of surface faces, in a fixed direction; acceleration: uniform acceleration; "
                              "gravity: factor of the weight; drag: force towards the velocity of a wind, in "
                              "proportion to mass and relative velocity",
                   .required = true})
@@ -77,6 +78,8 @@ const Rule<LoadEntry>& rule_of<LoadEntry>() {
             .key("force", &Entry::force, {.meaning = "for a force: total force, in world axes", .unit = "N"})
             .key("traction", &Entry::traction,
                  {.meaning = "for a traction: force per area, in world axes", .unit = "Pa"})
+            .key("area", &Entry::area,
+                 {.meaning = "for a traction: reference (area in the rest shape; default) or present area"})
             .key("acceleration", &Entry::acceleration,
                  {.meaning = "for an acceleration: value, in world axes", .unit = "m/s^2"})
             .key("rate", &Entry::rate,

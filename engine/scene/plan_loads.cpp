@@ -13,8 +13,10 @@ LoadPlan plan_load(const LoadEntry& entry, const ScenePlan& plan) {
                 .nodes = nodes_of(entry, plan.bodies[*load.body], plan), .force = *entry.force, .scale = scale};
             break;
         case LoadKind::traction:
-            load.load = TractionLoad{
-                .faces = faces_of(entry, plan.bodies[*load.body], plan), .traction = *entry.traction, .scale = scale};
+            load.load = TractionLoad{.faces = faces_of(entry, plan.bodies[*load.body], plan),
+                                     .traction = *entry.traction,
+                                     .scale = scale,
+                                     .area = entry.area.value_or(LoadArea::reference)};
             break;
         case LoadKind::acceleration:
             load.load = AccelerationField{.acceleration = *entry.acceleration, .scale = scale};

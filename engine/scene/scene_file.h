@@ -256,6 +256,7 @@ struct LoadEntry : PartEntry {
     std::optional<std::string> body;
     std::optional<Vec3> force, traction, acceleration, wind;  // [N, Pa, m/s^2, m/s]
     std::optional<Real> rate;                                 // [1/s]
+    std::optional<LoadArea> area;
     std::optional<TimeTable> scale;
 };
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "components/ask_for_lines.h"
+#include "components/write_contact.h"
 #include "jobs/parallel_for.h"
 #include "systems/collision/contact_rows.h"
 #include "systems/collision/cylinders/rigid_cylinder.h"
@@ -127,29 +128,7 @@ void test_block(const CollisionInputs& inputs, const CollisionSettings& settings
 }
 
 void write_rows(std::span<const ContactRow> found, std::size_t first, ContactTable& contacts) {
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        const ContactRow& row = found[i];
-        const std::size_t c = first + i;
-        contacts.key[c] = row.key;
-        contacts.kind[c] = row.kind;
-        contacts.stencil[c] = row.stencil;
-        contacts.point[c] = row.point;
-        contacts.normal[c] = row.normal;
-        contacts.gap[c] = row.gap;
-        contacts.distance[c] = row.distance;
-        contacts.surface_velocity[c] = row.surface_velocity;
-        contacts.static_friction[c] = row.static_friction;
-        contacts.dynamic_friction[c] = row.dynamic_friction;
-        contacts.restitution[c] = row.restitution;
-        contacts.friction_axis[c] = {};
-        contacts.first_body[c] = row.first_body;
-        contacts.second_body[c] = row.second_body;
-        contacts.collider[c] = row.collider;
-        contacts.impulse[c] = Vec3::Zero();
-        contacts.region[c] = no_index;
-        contacts.slip[c] = Vec3::Zero();
-        contacts.state[c] = ContactState::open;
-    }
+    for (std::size_t i = 0; i < found.size(); ++i) write_contact(found[i], first + i, contacts);
 }
 
 /// Writes the contacts. If a crossing and a contact have the same features, the crossing replaces the contact.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "components/check.h"
+#include "components/write_contact.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -151,27 +151,22 @@ ContactKey key_of(const TieTable& tie, std::size_t t, std::size_t k) {
     return {of_ties | tie.slot[t], static_cast<std::uint64_t>(k) - static_cast<std::uint64_t>(tie.nodes[t].begin)};
 }
 
-void append(const TieTable& tie, std::size_t t, std::size_t k, const TieRow& row, const Vec3& impulse,
-            ContactTable& contacts) {
-    contacts.key.push_back(key_of(tie, t, k));
-    contacts.kind.push_back(ContactKind::point_triangle);
-    contacts.stencil.push_back(row.stencil());
-    contacts.point.push_back(row.point());
-    contacts.normal.push_back(row.normal());
-    contacts.gap.push_back(0);
-    contacts.distance.push_back(0);
-    contacts.surface_velocity.push_back(row.demanded());
-    contacts.static_friction.push_back(tie.kind[t] == TieKind::weld ? infinity : 0);
-    contacts.dynamic_friction.push_back(infinity);
-    contacts.restitution.push_back(0);
-    contacts.friction_axis.push_back({});
-    contacts.first_body.push_back(tie.first[t]);
-    contacts.second_body.push_back(tie.second[t]);
-    contacts.collider.push_back(tie.collider[t]);
-    contacts.impulse.push_back(impulse);
-    contacts.region.push_back(no_index);
-    contacts.slip.push_back(Vec3::Zero());
-    contacts.state.push_back(ContactState::open);
+/// Contact row of a tied node.
+ContactRow contact_row_of(const TieTable& tie, std::size_t t, std::size_t k, const TieRow& row) {
+    return {.key = key_of(tie, t, k),
+            .kind = ContactKind::point_triangle,
+            .stencil = row.stencil(),
+            .point = row.point(),
+            .normal = row.normal(),
+            .gap = 0,
+            .distance = 0,
+            .surface_velocity = row.demanded(),
+            .static_friction = tie.kind[t] == TieKind::weld ? infinity : 0,
+            .dynamic_friction = infinity,
+            .restitution = 0,
+            .first_body = tie.first[t],
+            .second_body = tie.second[t],
+            .collider = tie.collider[t]};
 }
 
 }  // namespace
@@ -218,17 +213,13 @@ bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& cont
             const auto at = static_cast<std::size_t>(k);
             if (tie.broken[at] < infinity) continue;
             const TieRow row(ties, step, t, at);
-            append(tie, t, at, row, scale * tie.impulse[at], contacts);
+            append_row(contact_row_of(tie, t, at, row), scale * tie.impulse[at], contacts);
             rows.tie.push_back(static_cast<Index>(t));
             rows.node.push_back(k);
             rows.stencil.push_back(row.stencil());
             rows.point.push_back(row.point());
         }
     }
-    contacts.for_each_column([&](const char*, const auto& column, ColumnRole) {
-        SKERRY_CHECK(column.size() == contacts.size());
-        (void)column;
-    });
     return tie.size() > 0;
 }
 

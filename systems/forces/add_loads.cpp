@@ -1,6 +1,10 @@
 #include "systems/forces/add_loads.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "jobs/parallel_for.h"
+#include "systems/forces/cavities.h"
 
 namespace skerry {
 
@@ -31,6 +35,15 @@ void add_to_nodes(Executor& executor, const LoadInputs& loads, std::size_t load,
     parallel_for(executor, nodes.size(), loaded_nodes_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             force[static_cast<std::size_t>(first + nodes[i])] += weight[i] * whole;
+    });
+}
+
+/// Adds a traction on the present area. Sequential, because faces share nodes.
+void add_to_faces(const LoadInputs& loads, std::size_t load, Real scale, std::span<Vec3> force) {
+    const Index first = loads.body_nodes[static_cast<std::size_t>(loads.load_body[load])].begin;
+    loads.for_each_face(load, [&](std::size_t k, const Mat3& corners) {
+        const Vec3 of_node = area_of(corners).norm() / 3 * scale * loads.vector[load];
+        for (std::size_t c = k; c < k + 3; ++c) force[static_cast<std::size_t>(first + loads.share_node[c])] += of_node;
     });
 }
 
@@ -73,7 +86,10 @@ bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& f
         const MeanScales scales(loads, load);
         if (loads.load_nodes[load].size() > 0) {
             const Real scale = scales.of(loads, static_cast<std::size_t>(loads.load_body[load]));
-            add_to_nodes(executor, loads, load, scale, applied_force);
+            if (loads.is_on_present_area(load))
+                add_to_faces(loads, load, scale, applied_force);
+            else
+                add_to_nodes(executor, loads, load, scale, applied_force);
             continue;
         }
         any_field = true;
@@ -88,6 +104,18 @@ bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& f
         }
     });
     return true;
+}
+
+Real traction_rate(const LoadInputs& loads, std::size_t load, std::span<const Real> inverse_mass) {
+    const Index first = loads.body_nodes[static_cast<std::size_t>(loads.load_body[load])].begin;
+    Real scale = 0, most = 0;
+    for (const TimeKey& key : rows_of(loads.key, loads.scale_keys[load])) scale = std::max(scale, std::abs(key.value));
+    loads.for_each_face(load, [&](std::size_t k, const Mat3& corners) {
+        for (std::size_t c = k; c < k + 3; ++c)
+            most = std::max(most, loads.weight[c] * longest_edge(corners) *
+                                      inverse_mass[static_cast<std::size_t>(first + loads.share_node[c])]);
+    });
+    return scale * loads.vector[load].norm() / 2 * most;
 }
 
 bool mark_loaded(const LoadedBodies& loads, Real t, Real h, std::span<std::uint8_t> marked) {

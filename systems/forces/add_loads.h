@@ -32,6 +32,7 @@ struct LoadInputs {
     std::span<const Index> load_body;
     std::span<const Vec3> vector;
     std::span<const Real> rate;
+    std::span<const LoadArea> area;
     std::span<const Range> load_nodes, scale_keys;
     std::span<const Index> share_node;
     std::span<const Real> weight;
@@ -40,9 +41,9 @@ struct LoadInputs {
     std::span<const BodyKind> body_kind;
     std::span<const Range> body_nodes, body_implicit;
     std::span<const Index> node_body;
-    std::span<const Real> mass;      // [kg]
-    std::span<const Vec3> velocity;  // at the start of the step [m/s]
-    Vec3 gravity = Vec3::Zero();     // gravity of the settings [m/s^2]
+    std::span<const Real> mass;                // [kg]
+    std::span<const Vec3> position, velocity;  // at the start of the step [m, m/s]
+    Vec3 gravity = Vec3::Zero();               // gravity of the settings [m/s^2]
     ForceIntervals intervals;
 
     static LoadInputs bind(const Binder& binder, const LoadTable& load, const BodyTable& body, const NodeTable& node,
@@ -51,6 +52,7 @@ struct LoadInputs {
                 .load_body = binder.read(load.body),
                 .vector = binder.read(load.vector),
                 .rate = binder.read(load.rate),
+                .area = binder.read(load.area),
                 .load_nodes = binder.read(load.nodes),
                 .scale_keys = binder.read(load.scale_keys),
                 .share_node = binder.read(load.node),
@@ -61,6 +63,7 @@ struct LoadInputs {
                 .body_implicit = binder.read(body.implicit),
                 .node_body = binder.read(node.body),
                 .mass = binder.read(node.mass),
+                .position = binder.read(node.position),
                 .velocity = binder.read(node.velocity),
                 .gravity = binder.value(gravity),
                 .intervals = binder.value(intervals)};
@@ -69,13 +72,33 @@ struct LoadInputs {
     /// True if a field acts on a body. A factor of the weight that is given for the body replaces the one for all
     /// bodies.
     bool acts_on(std::size_t load, std::size_t body) const;
+    bool is_on_present_area(std::size_t load) const {
+        return kind[load] == LoadKind::traction && area[load] == LoadArea::present;
+    }
+    /// Calls visit(first, corners) for each face of a traction on the present area: the row of its first node in
+    /// `share_node`, and the present places of its nodes as columns [m].
+    void for_each_face(std::size_t load, auto&& visit) const {
+        const std::span<const Vec3> place = rows_of(position, body_nodes[static_cast<std::size_t>(load_body[load])]);
+        for (auto k = static_cast<std::size_t>(load_nodes[load].begin);
+             k < static_cast<std::size_t>(load_nodes[load].end); k += 3) {
+            Mat3 corners;
+            for (Index c = 0; c < 3; ++c)
+                corners.col(c) = place[static_cast<std::size_t>(share_node[k + static_cast<std::size_t>(c)])];
+            visit(k, corners);
+        }
+    }
 };
 
 /// Adds the forces of all loads to `applied_force`, by node [N]. A scale that changes over time acts with its exact
 /// mean in the interval of the step, so the sum of impulses over the steps equals the integral over time. Drag uses the
-/// velocities at the start of the step. Parallel over nodes: loads on nodes are added in the order of LoadTable, and
-/// then the sum of all fields. `fields`: working memory. Returns false if there is no load.
+/// velocities at the start of the step, and a traction on the present area the positions. Parallel over nodes: loads on
+/// nodes are added in the order of LoadTable, and then the sum of all fields. `fields`: working memory. Returns false
+/// if there is no load.
 bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& fields, std::span<Vec3> applied_force);
+
+/// Bound of docs/methods/loads.md 2 for a traction on the present area of an explicit body [1/s^2]. `inverse_mass`: by
+/// node [1/kg]
+Real traction_rate(const LoadInputs& loads, std::size_t load, std::span<const Real> inverse_mass);
 
 /// The columns that decide on which bodies a load changes.
 struct LoadedBodies {

@@ -24,6 +24,11 @@ Vec3 area_of(const Mat3& corners) {
     return cross_of_edges(corners) / 2;
 }
 
+Real longest_edge(const Mat3& corners) {
+    return std::max({(corners.col(1) - corners.col(0)).norm(), (corners.col(2) - corners.col(1)).norm(),
+                     (corners.col(0) - corners.col(2)).norm()});
+}
+
 Mat3 CavityInputs::corners_now(std::size_t c, std::size_t f) const {
     const Index first = body_nodes[static_cast<std::size_t>(body[c])].begin;
     Mat3 x;

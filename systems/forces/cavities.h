@@ -62,6 +62,8 @@ struct CavityInputs {
 
 /// Area vector of a triangle, which is its area times its normal [m^2]. `corners`: positions as columns [m].
 Vec3 area_of(const Mat3& corners);
+/// Length of the longest edge of a triangle [m].
+Real longest_edge(const Mat3& corners);
 
 /// State of the filling of a cavity.
 struct CavityFilling {

@@ -275,6 +275,25 @@ TEST_CASE("joints that motors turn and that mimic others allocate nothing, eithe
     CHECK(Joints(world).state(hinges[1]).speed == Approx(-2).epsilon(1e-3));
 }
 
+TEST_CASE("contacts of a block on rollers, under a traction on its present area, allocate nothing, either",
+          "[determinism]") {
+    Settings settings = two_threads();
+    settings.sleep = false;
+    World world(settings);
+    const auto stiff = world.add_material({.young_modulus = 1e6, .friction = 0.3, .damping = 20});
+    const Mesh mesh = mesh::box({0.2, 0.2, 0.1}, {3, 3, 1});
+    const BodyHandle block = world.add_body(mesh, {.material = stiff, .dynamics = BodyDynamics::explicit_elastic});
+    std::vector<Index> all(mesh.nodes.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    world.attach(block, all, {}, Vec3::Zero(), {Vec3::UnitZ()});
+    const auto faces = world.surface(block);
+    Loads(world).add(TractionLoad{
+        .body = block, .faces = {faces.begin(), faces.end()}, .traction = {1, 0, 0}, .area = LoadArea::present});
+    world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}), {.material = stiff, .position = {0.01, 0.02, 0.102}});
+    for (int k = 0; k < 5; ++k) REQUIRE(world.advance(0.1).ok());
+    CHECK(allocations_of_a_fifth_second(world) == 0);
+}
+
 TEST_CASE("implicit bodies allocate nothing in steps that are longer than those of what lies on them",
           "[determinism]") {
     Settings settings = two_threads();

@@ -47,7 +47,10 @@ def test_a_traction_acts_on_faces() -> None:
     bar = world.add_body(sk.Mesh.box((0.2, 0.1, 0.1), (4, 2, 2)), RUBBER, dynamics="explicit")
     right = bar.surface[(bar.positions[bar.surface][:, :, 0] > 0.0999).all(axis=1)]
     load = world.add_traction(bar, right, (100, 0, 0))
+    present = world.add_traction(bar, right, (100, 0, 0), present_area=True)
+    bar.positions = 2 * bar.positions
     assert load.state.force == pytest.approx((1, 0, 0))
+    assert present.state.force == pytest.approx((4, 0, 0))
 
 
 def test_a_hanging_bar_relaxes() -> None:
@@ -55,8 +58,9 @@ def test_a_hanging_bar_relaxes() -> None:
     rubber = sk.Material(young_modulus=1e6, poisson_ratio=0.0)
     bar = world.add_body(sk.Mesh.box((0.1, 0.1, 0.5), (2, 2, 10)), rubber, dynamics="explicit", name="bar")
     bar.attach(np.flatnonzero(bar.positions[:, 2] > 0.249))
-    report = world.relax(tolerance=1e-5)
+    report = world.relax(tolerance=1e-5, load_steps=2)
     assert report.converged and report.worst == bar and report.residual < 1e-5 and report.message == ""
+    assert report.load == 1
     assert world.time == 0
     stretch = -0.25 - bar.positions[:, 2].min()
     assert stretch == pytest.approx(1000 * 9.81 * 0.25 / 2e6, rel=0.01)
@@ -67,6 +71,7 @@ def test_a_falling_body_has_no_equilibrium() -> None:
     report = world.relax(max_steps=50)
     assert not report.converged and report.steps == 50 and report.worst == cube and report.residual > 0.9
     assert np.all(cube.velocity == 0)
+    assert report.load == 0
 
 
 def test_wrong_values_are_refused() -> None:
@@ -77,3 +82,5 @@ def test_wrong_values_are_refused() -> None:
         world.add_gravity_scale([1, 2, 3])
     with pytest.raises(sk.SceneError, match="tolerance"):
         world.relax(tolerance=2)
+    with pytest.raises(sk.SceneError, match="load_steps"):
+        world.relax(load_steps=0)

@@ -297,6 +297,7 @@ TEST_CASE("a tenth of the step gives the same motion of a cable with friction", 
     for (const Real h : {1e-4, 1e-5}) {
         Flying flying({.rate = TimeTable({{0, 0}, {0.05, -0.5}})}, 0.3, h);
         REQUIRE(flying.world.advance(0.05).ok());
+        CHECK(Cables(flying.world).state(flying.cable).tension[0] > 0);
         place.push_back(flying.world.pose(flying.cube).position);
     }
     CHECK((place[0] - place[1]).norm() < 1e-4 * (place[1] - Vec3(0.1, 0.3, 0.1)).norm() + 1e-6);
@@ -308,6 +309,7 @@ TEST_CASE("a world with cables continues with the same bits", "[scene][cables]")
             [&](Index threads) {
                 Flying flying(drive, 0.3, 1e-4, threads == 1 ? 1 : 3);
                 REQUIRE(flying.world.advance(0.01).ok());
+                CHECK(Cables(flying.world).state(flying.cable).tension[0] > 0);
                 return flying;
             },
             [](World& world) { REQUIRE(world.advance(0.01).ok()); });

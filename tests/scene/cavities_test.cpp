@@ -167,6 +167,7 @@ TEST_CASE("a body that breathes on its gas keeps its energy for ten seconds", "[
     for (int second = 0; second < 10; ++second) {
         REQUIRE(sphere.world.advance(1).ok());
         CHECK(energy() == Approx(start).epsilon(0.05));
+        CHECK(sphere.world.report().energy.elastic > 0);
     }
     CHECK(sphere.world.report().energy_error_share < 0.01);
 }

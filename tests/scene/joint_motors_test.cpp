@@ -3,48 +3,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "skerry/joint.h"
+#include "tests/support/hinged_arm.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/worlds.h"
 
 namespace skerry::test::joint_motors_test {
 
-namespace {
-
-constexpr Real length = 0.4, side = 0.04, reach = 0.2;  // of an arm along x from the hinge at the origin [m]
-const Mesh arm_mesh = mesh::box({length, side, side}, {2, 1, 1});
-const Real mass = 1000 * side * side * length;                                            // kg
-const Real inertia = mass * (length * length + side * side) / 12 + mass * reach * reach;  // about the hinge [kg m^2]
-const Real weight_moment = mass * standard_gravity * reach;  // for the horizontal arm [N m]
-
-/// An arm on a hinge. A rotation about -y raises it.
-struct Arm {
-    World world;
-    BodyHandle body;
-    JointHandle hinge;
-
-    Arm(const JointSettings& joint, const Vec3& gravity = {0, 0, -standard_gravity}, bool sleep = false)
-        : world([&] {
-              Settings settings = accurate(gravity, 1e-10);
-              settings.step_size = 1.0 / 500;
-              settings.sleep = sleep;
-              return settings;
-          }()) {
-        body = world.add_body(
-            arm_mesh, {.material = world.add_material({}), .position = {reach, 0, 0}, .dynamics = BodyDynamics::rigid});
-        JointSettings settings = joint;
-        settings.kind = JointKind::hinge;
-        settings.first = body;
-        settings.axis = {0, -1, 0};
-        hinge = Joints(world).add(settings);
-    }
-    JointState state() { return Joints(world).state(hinge); }
-};
-
-}  // namespace
+using namespace hinged_arm;
 
 TEST_CASE("a hinge stops at its limits, which carry the weight", "[scene][joints]") {
-    Arm arm({.lower = -0.5, .upper = 0.3});
+    Arm arm({.lower = -0.5, .upper = 0.3}, down);
     REQUIRE(arm.world.advance(2).ok());
     CHECK(arm.state().coordinate == Approx(-0.5).epsilon(1e-6));
     CHECK(arm.state().speed == Approx(0).margin(1e-9));
@@ -85,12 +52,12 @@ TEST_CASE("a motor speeds up with its strength, and goes on at its speed", "[sce
 }
 
 TEST_CASE("a motor holds what it can, and what it cannot falls with what is left", "[scene][joints]") {
-    Arm holds({.motor = JointMotor{.position = 0, .strength = 1.01 * weight_moment}});
+    Arm holds({.motor = JointMotor{.position = 0, .strength = 1.01 * weight_moment}}, down);
     REQUIRE(holds.world.advance(2).ok());
     CHECK(std::abs(holds.state().coordinate) < 1e-9);
     CHECK(holds.state().moment.y() == Approx(-weight_moment).epsilon(1e-6));
 
-    Arm falls({.motor = JointMotor{.position = 0, .strength = 0.4 * weight_moment}});
+    Arm falls({.motor = JointMotor{.position = 0, .strength = 0.4 * weight_moment}}, down);
     REQUIRE(falls.world.advance(0.05).ok());
     CHECK(falls.state().speed == Approx(-0.05 * 0.6 * weight_moment / inertia).epsilon(2e-3));
     CHECK(falls.state().moment.y() == Approx(-0.4 * weight_moment).epsilon(1e-6));
@@ -98,7 +65,7 @@ TEST_CASE("a motor holds what it can, and what it cannot falls with what is left
 
 TEST_CASE("a motor takes a hinge to a position at its speed, and stops there", "[scene][joints]") {
     const Real target = std::numbers::pi / 3, fastest = 1.5;
-    Arm arm({.motor = JointMotor{.position = target, .strength = 50, .fastest = fastest}});
+    Arm arm({.motor = JointMotor{.position = target, .strength = 50, .fastest = fastest}}, down);
     REQUIRE(arm.world.advance(0.2).ok());
     CHECK(arm.state().coordinate == Approx(0.2 * fastest).epsilon(1e-2));
     CHECK(arm.state().speed == Approx(fastest).epsilon(1e-6));
@@ -118,7 +85,7 @@ TEST_CASE("a motor takes a hinge to a position at its speed, and stops there", "
 
 TEST_CASE("a setter that gives what was there changes no bit", "[scene][joints]") {
     const JointMotor motor{.speed = 1, .strength = 2};
-    Arm arm({.lower = -1, .motor = motor});
+    Arm arm({.lower = -1, .motor = motor}, down);
     REQUIRE(arm.world.advance(0.2).ok());
     const std::uint64_t before = arm.world.state_hash();
     Joints(arm.world).set_motor(arm.hinge, motor);
@@ -134,7 +101,7 @@ TEST_CASE("a motor with keys follows positions that change linearly between them
     const JointMotor motor{
         .strength = 50,
         .keys = {{.time = 0.2, .position = 0.1}, {.time = 0.7, .position = 0.6}, {.time = 1, .position = 0}}};
-    Arm arm({.motor = motor});
+    Arm arm({.motor = motor}, down);
     REQUIRE(arm.world.advance(0.2).ok());
     CHECK(arm.state().coordinate == Approx(0.1).epsilon(1e-6));
     REQUIRE(arm.world.advance(0.3).ok());
@@ -173,7 +140,7 @@ TEST_CASE("a pulse of speed within one step turns a joint by its mean", "[scene]
 }
 
 TEST_CASE("keys of motors are refused by number, and change nothing", "[scene][joints]") {
-    Arm arm({.motor = JointMotor{.strength = 1, .keys = {{.time = 0, .speed = 1}, {.time = 1, .speed = 2}}}});
+    Arm arm({.motor = JointMotor{.strength = 1, .keys = {{.time = 0, .speed = 1}, {.time = 1, .speed = 2}}}}, down);
     REQUIRE(arm.world.advance(0.1).ok());
     const std::uint64_t before = arm.world.state_hash();
     const auto refused = [&](const JointMotor& motor, const std::string& message) {
@@ -194,7 +161,7 @@ TEST_CASE("keys of motors are part of the state: equal keys change no bit, other
     const auto keys = [](Real last) {
         return JointMotor{.strength = 50, .keys = {{.time = 0, .position = 0}, {.time = 0.4, .position = last}}};
     };
-    Arm arm({.motor = keys(1)});
+    Arm arm({.motor = keys(1)}, down);
     const JointHandle other =
         Joints(arm.world).add({.kind = JointKind::hinge,
                                .first = arm.body,
@@ -233,7 +200,7 @@ TEST_CASE("a body at rest wakes when the target of its motor changes", "[scene][
 
 TEST_CASE("the moment along the axis is that of the motor and that of the limit", "[scene][joints]") {
     // The motor presses the arm against its upper limit with all its strength. The limit carries the rest.
-    Arm arm({.upper = 0.3, .motor = JointMotor{.speed = 1, .strength = 3 * weight_moment}});
+    Arm arm({.upper = 0.3, .motor = JointMotor{.speed = 1, .strength = 3 * weight_moment}}, down);
     REQUIRE(arm.world.advance(2).ok());
     const Real carried = weight_moment * std::cos(0.3);
     CHECK(arm.state().motor == Approx(3 * weight_moment).epsilon(1e-6));

@@ -185,6 +185,59 @@ TEST_CASE("tractions on both ends of a bar cause a uniform stress", "[scene]") {
     }
 }
 
+TEST_CASE("a traction on the present area is the Cauchy stress, one on the rest area keeps its force", "[scene]") {
+    constexpr Real pull = 4e4, rest_area = 0.01;  // [Pa, m^2]
+    for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic})
+        for (const LoadArea on : {LoadArea::reference, LoadArea::present}) {
+            CAPTURE(static_cast<int>(dynamics), static_cast<int>(on));
+            World world(weightless());
+            const auto rubber = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3});
+            const auto bar =
+                world.add_body(mesh::box({0.2, 0.1, 0.1}, {4, 2, 2}), {.material = rubber, .dynamics = dynamics});
+            Loads loads(world);
+            const auto left = faces_where(world, bar, [](const Vec3& x) { return x.x() < -0.0999; });
+            const auto right = faces_where(world, bar, [](const Vec3& x) { return x.x() > 0.0999; });
+            loads.add(TractionLoad{.body = bar, .faces = left, .traction = {-pull, 0, 0}, .area = on});
+            const LoadHandle load =
+                loads.add(TractionLoad{.body = bar, .faces = right, .traction = {pull, 0, 0}, .area = on});
+            REQUIRE(relax(world, {.tolerance = 1e-5}).converged);
+            // The bar is stretched uniformly, so its width follows from its corners.
+            const auto nodes = world.positions(bar);
+            const Real width = nodes.back().y() - nodes.front().y();
+            CHECK(width < 0.095);
+            const Real area = on == LoadArea::present ? width * width : rest_area;
+            CHECK(loads.state(load).force.x() == Approx(pull * area).epsilon(1e-4));
+            for (const Mat3& stress : world.stress(bar))
+                CHECK(stress(0, 0) == Approx(pull * area / (width * width)).epsilon(1e-3));
+        }
+}
+
+TEST_CASE("a traction on the present area shortens the stable step by its bound", "[scene]") {
+    Flight flight(weightless(), BodyDynamics::explicit_elastic, lossless({}));
+    const Real free = flight.world.stable_step();
+    constexpr Real pull = 3e7;  // [Pa]
+    const auto top = faces_where(flight.world, flight.body, [](const Vec3& x) { return x.z() > 0.0499; });
+    const LoadHandle load = Loads(flight.world)
+                                .add(TractionLoad{.body = flight.body,
+                                                  .faces = top,
+                                                  .traction = {0, pull, 0},
+                                                  .scale = TimeTable({{0, 0}, {1, -2}}),
+                                                  .area = LoadArea::present});
+    const std::vector<Real> mass = node_masses(flight.world, flight.body, cube, 1000);
+    const Real longest = 0.05 * std::sqrt(2);  // edge of all faces [m]
+    Real most = 0;                             // of faces per mass [1/kg]
+    for (std::size_t n = 0; n < mass.size(); ++n)
+        most = std::max(
+            most,
+            static_cast<Real>(std::ranges::count_if(
+                top, [&](const auto& face) { return std::ranges::find(face, static_cast<Index>(n)) != face.end(); })) /
+                mass[n]);
+    const Real with = flight.world.stable_step();
+    CHECK(4 / (with * with) - 4 / (free * free) == Approx(2 * pull / 2 * longest * most).epsilon(1e-6));
+    Loads(flight.world).set_scale(load, 0);
+    CHECK(flight.world.stable_step() == free);
+}
+
 TEST_CASE("a force on the tip bends a beam as the beam formula says", "[scene]") {
     // Timoshenko: F L^3 / (3 E I) + F L / (k G A) with k = 5/6. The clamped end, where Poisson's ratio is 0, has no
     // boundary layer.
@@ -214,7 +267,14 @@ TEST_CASE("loads are counted in the balance of energy", "[scene]") {
         loads.add(AccelerationField{.acceleration = {0, 5, 0}, .scale = pulse});
         loads.add(DragField{.rate = 2, .wind = {1, 0, 0}, .scale = pulse});
         loads.add(GravityScale{.scale = TimeTable({{0, 1}, {0.3, 0.5}})});
+        loads.add(TractionLoad{.body = flight.body,
+                               .faces = faces_where(flight.world, flight.body, [](const Vec3& x) { return x.z() > 0; }),
+                               .traction = {0, 0, 500},
+                               .scale = pulse,
+                               .area = LoadArea::present});
         REQUIRE(flight.world.advance(0.5).ok());
+        CHECK(flight.velocity().x() > 0);
+        CHECK(flight.velocity().y() > 0.1);
         CHECK(flight.world.report().energy_error_share < 5e-3);
         CHECK(flight.world.report().momentum_error_share < 1e-12);
     }
@@ -235,6 +295,10 @@ World busy_loads(int threads) {
             {.material = rubber, .position = {0.15 * k, 0, 0.055}, .dynamics = all_kinds[static_cast<std::size_t>(k)]});
         loads.add(ForceLoad{body, {k, 4, 7}, {0.5, 0, 1}, pulse});
         loads.add(GravityScale{body, TimeTable({{0, 1}, {0.3, 0.8 - 0.1 * k}})});
+        loads.add(TractionLoad{.body = body,
+                               .faces = {world.surface(body)[0], world.surface(body)[1]},
+                               .traction = {20, 0, 0},
+                               .area = LoadArea::present});
     }
     loads.add(DragField{.rate = 2, .wind = {0.1, 0, 0}, .scale = pulse});
     loads.add(AccelerationField{.acceleration = {1, 0, 0}, .scale = pulse});
@@ -268,6 +332,7 @@ TEST_CASE("loads do not depend on how often advance is called", "[scene]") {
         Flight flight(weightless(1.0 / 1024), BodyDynamics::explicit_elastic);
         Loads(flight.world).add(ForceLoad{flight.body, {0}, {0.1, 0, 0}, pulse});
         for (int i = 0; i < calls; ++i) REQUIRE(flight.world.advance(0.25 / calls).ok());
+        CHECK(flight.velocity().x() > 0);
         return flight.world.state_hash();
     };
     CHECK(run(1) == run(16));

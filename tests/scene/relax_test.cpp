@@ -1,7 +1,9 @@
 // Static equilibria by dynamic relaxation, against closed forms and dynamic runs (docs/methods/loads.md 3).
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
@@ -213,6 +215,72 @@ TEST_CASE("a tie breaks after a relaxation, and only if it would break at rest",
     CHECK(weak.broken() > 0);
 }
 
+TEST_CASE("load steps find the share of each kind of load at which a block begins to slide", "[scene]") {
+    constexpr Real friction = 0.5, pull = 0.8;  // pull: fraction of the weight
+    const Mesh mesh = mesh::box({0.2, 0.2, 0.1}, {1, 1, 1});
+    const Real weight = 1000 * 0.2 * 0.2 * 0.1 * standard_gravity, traction = pull * weight / (0.2 * 0.1);
+    const auto right = [&](const World& world, BodyHandle block) {
+        std::vector<std::array<Index, 3>> faces;
+        for (const auto& face : world.surface(block))
+            if (std::ranges::all_of(face, [&](Index n) { return mesh.nodes[static_cast<std::size_t>(n)].x() > 0; }))
+                faces.push_back(face);
+        return faces;
+    };
+    const auto nodal = [&](World& world, BodyHandle block) {
+        world.set_loads(block, std::vector<Vec3>(8, Vec3(pull * weight / 8, 0, 0)));
+    };
+    const auto force = [&](World& world, BodyHandle block) {
+        Loads(world).add(ForceLoad{block, {0, 1, 2, 3, 4, 5, 6, 7}, {pull * weight, 0, 0}});
+    };
+    const auto on_faces = [&](World& world, BodyHandle block) {
+        Loads(world).add(TractionLoad{block, right(world, block), {traction, 0, 0}});
+    };
+    const auto field = [&](World& world, BodyHandle block) {
+        Loads(world).add(AccelerationField{block, {pull * standard_gravity, 0, 0}});
+    };
+    const auto pressure = [&](World& world, BodyHandle block) {
+        Cavities(world).add({.body = block, .faces = right(world, block), .filling = TimeTable(traction)});
+    };
+    const auto cable = [&](World& world, BodyHandle block) {
+        Cables(world).add({.points = {{.point = {1, 0, 0.05}}, {.body = block, .point = {0, 0, 0.05}}},
+                           .drive = {.tension = pull * weight}});
+    };
+    const std::array<std::function<void(World&, BodyHandle)>, 6> kinds{nodal, force, on_faces, field, pressure, cable};
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+        CAPTURE(kind);
+        World world(accurate());
+        const MaterialHandle rough = world.add_material({.density = 1000, .friction = friction});
+        world.add_collider(Plane{});
+        const BodyHandle block =
+            world.add_body(mesh, {.material = rough, .position = {0, 0, 0.05}, .dynamics = BodyDynamics::rigid});
+        kinds[kind](world, block);
+        world.settle_start();
+        const auto hash = world.state_hash();
+        const RelaxReport slides = relax(world, {.tolerance = 1e-4, .max_steps = 100, .load_steps = 4});
+        CHECK(!slides.converged);
+        CHECK(slides.load <= friction / pull);
+        CHECK(slides.load > friction / pull - 1.0 / 128);
+        CHECK(world.state_hash() == hash);
+    }
+}
+
+TEST_CASE("load steps end in the equilibrium of the whole loads", "[scene]") {
+    const auto lowest_after = [](int load_steps) {
+        World world(accurate());
+        const auto bar = world.add_body(
+            mesh::box({0.1, 0.1, 0.2}, {2, 2, 4}),
+            {.material = world.add_material({.young_modulus = 1e5}), .dynamics = BodyDynamics::explicit_elastic});
+        world.attach(bar, nodes_above(world, bar, 0.0999));
+        const LoadHandle load = Loads(world).add(ForceLoad{bar, {0, 1}, {0, 0, -1}, TimeTable({{0, 2}, {1, 5}})});
+        const RelaxReport report = relax(world, {.tolerance = 1e-5, .load_steps = load_steps});
+        CHECK(report.converged);
+        CHECK(report.load == 1);
+        CHECK(Loads(world).state(load).scale == 2);
+        return lowest(world, bar);
+    };
+    CHECK(lowest_after(3) + 0.1 == Approx(lowest_after(1) + 0.1).epsilon(1e-3));
+}
+
 TEST_CASE("a relaxation that fails or is refused leaves the world whole", "[scene]") {
     World world;
     const auto rubber = world.add_material({.young_modulus = 1e5});
@@ -224,9 +292,11 @@ TEST_CASE("a relaxation that fails or is refused leaves the world whole", "[scen
     const RelaxReport report = relax(world);
     CHECK(!report.converged);
     CHECK(!report.message.empty());
+    CHECK(report.load == 0);
     CHECK(world.state_hash() == hash);
     CHECK_THROWS_WITH(relax(world, {.tolerance = 0}), Catch::Contains("tolerance") && Catch::Contains("> 0 and < 1"));
     CHECK_THROWS_WITH(relax(world, {.max_steps = 0}), Catch::Contains("max_steps"));
+    CHECK_THROWS_WITH(relax(world, {.load_steps = 0}), Catch::Contains("load_steps") && Catch::Contains("found 0"));
 }
 
 }  // namespace skerry::test::relax_test

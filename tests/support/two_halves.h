@@ -37,11 +37,12 @@ struct TwoHalves {
     explicit TwoHalves(const Settings& settings = without_gravity(), const TieSettings& with = {},
                        BodyDynamics of_left = BodyDynamics::explicit_elastic,
                        BodyDynamics of_right = BodyDynamics::explicit_elastic,
-                       const MaterialSettings& material = rubber)
+                       const MaterialSettings& material = rubber, ElementKind element = ElementKind::smoothed)
         : world(settings) {
         const MaterialHandle of = world.add_material(material);
         const auto add = [&](const Mesh& mesh, Real x, BodyDynamics dynamics) {
-            return world.add_body(mesh, {.material = of, .position = {x, 0, 0}, .dynamics = dynamics});
+            return world.add_body(mesh,
+                                  {.material = of, .position = {x, 0, 0}, .dynamics = dynamics, .element = element});
         };
         left = add(coarse, -half / 2, of_left);
         right = add(fine, half / 2, of_right);

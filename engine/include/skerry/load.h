@@ -27,14 +27,15 @@ struct ForceLoad {
     TimeTable scale = 1;
 };
 
-/// A traction on some surface faces of a body. Its direction is fixed in the world, and it acts on the area of the
-/// faces in the rest shape (dead load). The nodes of a face share its force equally.
+/// A traction on some surface faces of a body. Its direction is fixed in the world. The nodes of a face share its force
+/// equally.
 struct TractionLoad {
     BodyHandle body{};
     // Faces as World::surface(body) lists them: numbers of nodes in any order; at least one face, each at most once.
     std::vector<std::array<Index, 3>> faces{};
     Vec3 traction = Vec3::Zero();  // force per area, in world axes [Pa]
     TimeTable scale = 1;
+    LoadArea area = LoadArea::reference;  // the area of the faces in the rest shape (dead load), or the present area
 };
 
 /// A uniform acceleration, for example that of a shaken frame of reference. It is added to the gravity of the settings.

@@ -16,11 +16,16 @@ class World;
 struct RelaxSettings {
     // Largest out-of-balance force of a body at rest, relative to the sum of the forces that act on it, > 0 and < 1.
     Real tolerance = 1e-3;
-    int max_steps = 100000;  // largest number of steps, >= 1
+    int max_steps = 100000;  // largest number of steps for each share of the loads, >= 1
+    // 1: the loads act as a whole. More: forces, tractions and accelerations of loads and of World::set_loads, and
+    // prescribed pressures and tensions, grow from zero in this number of equal load steps, each of which ends in
+    // equilibrium. If a load step finds none, it is halved, at most six times.
+    int load_steps = 1;
 };
 
 struct RelaxReport {
     bool converged = false;
+    Real load = 0;  // share of the loads in the last equilibrium that was found: 1 if converged
     // The largest out-of-balance force of a body in the last step, relative to the sum of the magnitudes of the
     // weights, loads and contact forces on its nodes.
     Real residual = 0;

@@ -70,18 +70,20 @@ nb::dict advance(WorldObject& object, Real dt, const nb::object& check, const nb
 }
 
 /// Relaxes a world without the GIL.
-nb::dict relax_world(WorldObject& object, Real tolerance, int max_steps) {
+nb::dict relax_world(WorldObject& object, Real tolerance, int max_steps, int load_steps) {
     Use use(object);
     require_no_views(object, "relax");
     const RelaxReport report = without_gil([&] {
         SignalWatch signals;
-        return relax(object.world, {.tolerance = tolerance, .max_steps = max_steps}, [&](const RelaxReport&) {
-            signals.check();
-            return true;
-        });
+        return relax(object.world, {.tolerance = tolerance, .max_steps = max_steps, .load_steps = load_steps},
+                     [&](const RelaxReport&) {
+                         signals.check();
+                         return true;
+                     });
     });
     nb::dict values;
     values["converged"] = report.converged;
+    values["load"] = report.load;
     values["residual"] = report.residual;
     values["worst"] = report.worst ? object_of(*report.worst) : nb::none();
     values["speed"] = report.speed;

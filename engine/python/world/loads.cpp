@@ -39,6 +39,8 @@ nb::dict settings_of_load(World& world, const LoadHandle& load) {
     values["body"] = body ? object_of(*body) : nb::none();
     if (const auto* const force = std::get_if<ForceLoad>(&settings))
         values["nodes"] = array_of<Index>(std::span<const Index>(force->nodes));
+    if (const auto* const traction = std::get_if<TractionLoad>(&settings))
+        values["present_area"] = traction->area == LoadArea::present;
     return values;
 }
 
@@ -51,8 +53,9 @@ void bind_loads(WorldClass& type) {
                  return Loads(world).add(ForceLoad{body, nodes_in(nodes), force, table_of(scale)});
              }))
         .def("add_traction", guarded([](World& world, const BodyHandle& body, const IndexRows<3>& faces,
-                                        const Vec3& traction, const Pairs& scale) {
-                 return Loads(world).add(TractionLoad{body, faces_in(faces), traction, table_of(scale)});
+                                        const Vec3& traction, const Pairs& scale, bool present_area) {
+                 return Loads(world).add(TractionLoad{body, faces_in(faces), traction, table_of(scale),
+                                                      present_area ? LoadArea::present : LoadArea::reference});
              }))
         .def("add_acceleration",
              guarded([](World& world, std::optional<BodyHandle> body, const Vec3& acceleration, const Pairs& scale) {

@@ -49,7 +49,8 @@ void require_axes(const Model& model, std::size_t body, std::span<const Index> n
                   .found = std::string("the ") + (model.is_rigid(body) ? "rigid" : "implicit") + " body '" + name + "'",
                   .expected = "an explicit body",
                   .hint = model.is_rigid(body) ? "join a rigid body to the world by a slider or another joint"
-                                               : "set the dynamics of the body to explicit"}
+                                               : "set the dynamics of the body to explicit, or tie its nodes to a "
+                                                 "plane collider by a tie of kind slide"}
             .raise();
     const AttachmentTable& table = model.attachments;
     for (std::size_t a = 0; a < table.slot.size(); ++a) {

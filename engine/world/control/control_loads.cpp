@@ -16,6 +16,7 @@
 #include "engine/world/world_state.h"
 #include "skerry/load.h"
 #include "systems/forces/add_loads.h"
+#include "systems/forces/cavities.h"
 
 namespace skerry {
 
@@ -27,6 +28,7 @@ struct LoadRow {
     Index body;  // no_index: all bodies
     Vec3 vector;
     Real rate = 0;
+    LoadArea area = LoadArea::reference;
     std::vector<Index> node{};
     std::vector<Real> weight{};
     std::vector<std::array<Index, 3>> face{};
@@ -59,6 +61,7 @@ LoadHandle append_load(World& world, const LoadRow& row, const TimeTable& scale)
     table.body[place] = row.body;
     table.vector[place] = row.vector;
     table.rate[place] = row.rate;
+    table.area[place] = row.area;
     const auto first = static_cast<Index>(table.node.size());
     for (const Index node : row.node) table.node.push_back(node);
     for (const Real weight : row.weight) table.weight.push_back(weight);
@@ -119,6 +122,11 @@ Vec3 force_of_load(const Model& model, std::size_t row, Real scale) {
     const LoadInputs loads =
         LoadInputs::bind({}, table, model.bodies, model.nodes, model.settings.gravity, ForceIntervals{});
     Vec3 sum = Vec3::Zero();
+    if (loads.is_on_present_area(row)) {
+        loads.for_each_face(
+            row, [&](std::size_t, const Mat3& corners) { sum += area_of(corners).norm() * scale * table.vector[row]; });
+        return sum;
+    }
     for (const Real weight : table.weights_of(row)) sum += weight * scale * table.vector[row];
     if (table.nodes[row].size() > 0) return sum;
     for (std::size_t body = 0; body < model.bodies.slot.size(); ++body) {
@@ -160,6 +168,18 @@ LoadHandle Loads::add(const TractionLoad& load) {
     const std::span<const Vec3> rest =
         rows_of(model.nodes.rest_position, model.bodies.nodes[static_cast<std::size_t>(body)]);
     require_faces(load.faces, model, static_cast<std::size_t>(body));
+    LoadRow row{.kind = LoadKind::traction, .body = body, .vector = load.traction, .area = load.area, .face = load.faces};
+    if (load.area == LoadArea::present) {
+        std::vector<Real> faces_at(rest.size(), 0);  // number of faces of each node
+        for (const auto& face : load.faces)
+            for (const Index node : face) ++faces_at[static_cast<std::size_t>(node)];
+        for (const auto& face : load.faces)
+            for (const Index node : face) {
+                row.node.push_back(node);
+                row.weight.push_back(faces_at[static_cast<std::size_t>(node)]);
+            }
+        return append_load(*world_, row, load.scale);
+    }
     std::vector<Real> of_node(rest.size(), 0);  // area [m^2]
     for (const auto& [a, b, c] : load.faces) {
         const Vec3& first = rest[static_cast<std::size_t>(a)];
@@ -167,7 +187,6 @@ LoadHandle Loads::add(const TractionLoad& load) {
             (rest[static_cast<std::size_t>(b)] - first).cross(rest[static_cast<std::size_t>(c)] - first);
         for (const Index node : {a, b, c}) of_node[static_cast<std::size_t>(node)] += twice_area.norm() / 6;
     }
-    LoadRow row{.kind = LoadKind::traction, .body = body, .vector = load.traction, .face = load.faces};
     for (std::size_t n = 0; n < of_node.size(); ++n) {
         if (!(of_node[n] > 0)) continue;
         row.node.push_back(static_cast<Index>(n));
@@ -235,7 +254,7 @@ AnyLoad Loads::settings(LoadHandle load) const {
         case LoadKind::force:
             return ForceLoad{*body, {nodes.begin(), nodes.end()}, table.vector[row], scale};
         case LoadKind::traction:
-            return TractionLoad{*body, {faces.begin(), faces.end()}, table.vector[row], scale};
+            return TractionLoad{*body, {faces.begin(), faces.end()}, table.vector[row], scale, table.area[row]};
         case LoadKind::acceleration:
             return AccelerationField{body, table.vector[row], scale};
         case LoadKind::gravity:
@@ -253,6 +272,7 @@ void Loads::set_scale(LoadHandle load, const TimeTable& scale) {
     if (std::ranges::equal(model.loads.keys_of(row), scale.keys)) return;
     set_keys(model.loads.scale_keys, model.loads.key, row, scale.keys);
     wake_loaded(model, model.loads.body[row]);
+    note_forces(model);
 }
 
 void Loads::set_vector(LoadHandle load, const Vec3& vector) {
@@ -266,6 +286,7 @@ void Loads::set_vector(LoadHandle load, const Vec3& vector) {
     if (model.loads.vector[row] == vector) return;
     model.loads.vector[row] = vector;
     wake_loaded(model, model.loads.body[row]);
+    note_forces(model);
 }
 
 }  // namespace skerry

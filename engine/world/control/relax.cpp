@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,24 @@ void hold_values(Model& model, Real t) {
         if (model.cables.control[c] == CableControl::rate) hold_keys(model.cables, c, 0);
     std::ranges::fill(model.pipes.conductance, 0);
     std::ranges::fill(model.ties.break_force, infinity);
+}
+
+/// Sets the loads, prescribed pressures and prescribed tensions to a share of their values at the time `t`. `given`:
+/// the same tables before hold_values.
+void set_load_share(Model& model, const Model& given, Real t, Real share) {
+    const auto set = [&](auto& table, const auto& from, std::size_t row) {
+        hold_keys(table, row, share * value_at(from.keys_of(row), t));
+    };
+    for (std::size_t l = 0; l < model.loads.size(); ++l)
+        if (const LoadKind kind = model.loads.kind[l];
+            kind == LoadKind::force || kind == LoadKind::traction || kind == LoadKind::acceleration)
+            set(model.loads, given.loads, l);
+    for (std::size_t c = 0; c < model.cavities.size(); ++c)
+        if (model.cavities.law[c] == CavityLaw::pressure) set(model.cavities, given.cavities, c);
+    for (std::size_t c = 0; c < model.cables.size(); ++c)
+        if (model.cables.control[c] == CableControl::tension) set(model.cables, given.cables, c);
+    for (std::size_t n = 0; n < model.nodes.load.size(); ++n) model.nodes.load[n] = share * given.nodes.load[n];
+    note_forces(model);
 }
 
 /// Stops colliders or attachments at their poses at the time `t`.
@@ -147,20 +166,20 @@ public:
             if (moves(b)) stop_body(state_.model, b);
     }
 
-    RelaxReport run(const std::function<bool(const RelaxReport&)>& go_on) {
-        RelaxReport report;
+    /// Adds the steps to the report. Returns whether the bodies came into equilibrium.
+    bool run(const std::function<bool(const RelaxReport&)>& go_on, RelaxReport& report) {
+        bool balanced = false;
         int calm = 0;
         Real calm_time = 0;  // [s]
-        while (report.steps < settings_.max_steps) {
+        for (int taken = 0; taken < settings_.max_steps;) {
             const NodeTable& nodes = state_.model.nodes;
             before_.assign(nodes.velocity.begin(), nodes.velocity.end());
             const Real start = state_.clock.time;
             const StepReport step = world_.advance(trusted());
+            taken += step.steps;
             report.steps += step.steps;
-            if (!step.ok()) {
-                report.message = step.message();
-                return report;
-            }
+            report.message = step.ok() ? std::string() : step.message();
+            if (!step.ok()) return false;
             const Real h = state_.clock.time - start;
             report.seconds += h;
             measure_bodies(h);
@@ -168,16 +187,13 @@ public:
             const bool in_balance = find_worst(calm_time, report);
             calm = in_balance ? calm + 1 : 0;
             if (!in_balance) calm_time = 0;
-            if (calm >= calm_steps) {
-                report.converged = true;
-                break;
-            }
-            if (go_on && !go_on(std::as_const(report))) break;
+            balanced = calm >= calm_steps;
+            if (balanced || !go_on(std::as_const(report))) break;
             damp();
         }
         for (std::size_t b = 0; b < bodies_.size(); ++b)
             if (moves(b)) stop_body(state_.model, b);
-        return report;
+        return balanced;
     }
 
 private:
@@ -259,27 +275,64 @@ private:
     Real largest_ = 0;                   // largest out-of-balance force of a body so far [N]
 };
 
+/// Stops everything that changes over time, and wakes all bodies.
+void prepare(WorldState& world, Real t, Real tolerance) {
+    set_for_relaxation(world, false, tolerance);
+    hold_values(world.model, t);
+    hold_poses(world.model.colliders, t);
+    hold_poses(world.model.attachments, t);
+    world.model.wake_all();
+    note_changed_seams(world.model);
+}
+
+/// Relaxes `copy` with growing shares of the loads of `given`, until the whole loads are reached.
+RelaxReport grow_loads(World& copy, const WorldState& given, const RelaxSettings& settings,
+                       const std::function<bool(const RelaxReport&)>& go_on) {
+    constexpr Real smallest = 1.0 / 64;  // smallest increment of the loads, as a fraction of a load step
+    RelaxReport report;
+    bool stopped = false;
+    const auto watch = [&](const RelaxReport& so_far) {
+        stopped = go_on && !go_on(so_far);
+        return !stopped;
+    };
+    const bool grows = settings.load_steps > 1;
+    const Real load_step = 1.0 / settings.load_steps;
+    Real increment = load_step;
+    std::optional<World> balanced;  // the world in the last equilibrium
+    if (grows) balanced = copy.clone();
+    while (!report.converged) {
+        const Real left = 1 - report.load, share = left < 1.5 * increment ? 1 : report.load + increment;
+        set_load_share(WorldAccess::state_of(copy).model, given.model, given.clock.time, share);
+        if (Relaxation(copy, settings).run(watch, report)) {
+            report.load = share;
+            report.converged = share == 1;
+            if (grows) balanced = copy.clone();
+            continue;
+        }
+        increment /= 2;
+        if (stopped || !grows || increment < smallest * load_step) break;
+        copy = balanced->clone();
+    }
+    return report;
+}
+
 }  // namespace
 
 RelaxReport relax(World& world, const RelaxSettings& settings, const std::function<bool(const RelaxReport&)>& go_on) {
     if (!(settings.tolerance > 0 && settings.tolerance < 1))
         refuse("relax", "tolerance", short_text(settings.tolerance), "a number > 0 and < 1");
     if (settings.max_steps < 1) refuse("relax", "max_steps", std::to_string(settings.max_steps), "a number >= 1");
+    if (settings.load_steps < 1) refuse("relax", "load_steps", std::to_string(settings.load_steps), "a number >= 1");
     WorldAccess::state_of(world).require_between_steps("relax");
     const ArithmeticScope arithmetic;  // the decisions must not depend on the floating-point mode of the caller
     world.settle_start();
     World copy = world.clone();
     WorldState& before = WorldAccess::state_of(world);
-    WorldState& now = WorldAccess::state_of(copy);
     const Settings& given = before.model.settings;
-    set_for_relaxation(now, false, std::min(given.tolerance, settings.tolerance / 10));
-    hold_values(now.model, before.clock.time);
-    hold_poses(now.model.colliders, before.clock.time);
-    hold_poses(now.model.attachments, before.clock.time);
-    now.model.wake_all();
-    note_changed_seams(now.model);
-    const RelaxReport report = Relaxation(copy, settings).run(go_on);
+    prepare(WorldAccess::state_of(copy), before.clock.time, std::min(given.tolerance, settings.tolerance / 10));
+    const RelaxReport report = grow_loads(copy, before, settings, go_on);
     if (!report.converged) return report;
+    WorldState& now = WorldAccess::state_of(copy);
     take_values(now.model, before.model);
     take_motion(now.model.colliders, before.model.colliders);
     take_motion(now.model.attachments, before.model.attachments);

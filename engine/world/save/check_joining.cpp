@@ -255,6 +255,8 @@ void check_loads(const SavedFile& file, const Model& model) {
         const Index count = model.bodies.nodes[static_cast<std::size_t>(table.body[row])].size();
         require(std::ranges::all_of(table.nodes_of(row), [&](Index n) { return n >= 0 && n < count; }), "node",
                 "a node that the body does not have", "numbers of nodes of the body");
+        require(table.area[row] == LoadArea::reference || nodes.size() % 3 == 0, "nodes",
+                "a number of nodes that is no multiple of three", "three nodes for each face of the present area");
     }
     if (listed != static_cast<Index>(table.node.size()))
         file.complain("loads/node", std::to_string(table.node.size()) + " rows",

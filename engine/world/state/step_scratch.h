@@ -24,6 +24,7 @@
 #include "systems/dynamics/checks/measure_work.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
 #include "systems/dynamics/joints/measure_joints.h"
+#include "systems/dynamics/motion/hold_axes.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "systems/forces/add_loads.h"
@@ -68,8 +69,8 @@ struct StepFindings {
     Index crossings = 0;  // number of crossings found in this attempt; if nonzero, the step is repeated
     ContactMeasures measures;
     ExternalWork external;
-    // impulse and work that hold nodes along single directions, before contacts and because of contacts
-    ExternalWork held, held_again;
+    // impulse and work that hold nodes along single directions: before contacts, in the contact problem, and after it
+    ExternalWork held, held_rows, held_again;
     TakenByRest rest;
     JointMeasures joints;
     TieMeasures ties;
@@ -141,7 +142,8 @@ struct StepScratch {
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;
     ForceScratch forces;
-    Column<Vec3> axis_impulse;         // impulses of hold_axes and hold_axes_again [N s]
+    HeldRows held_rows;
+    Column<Vec3> axis_impulse;         // impulses that hold nodes along single directions, by held node [N s]
     Column<Real> stiffness_sum;        // one entry per node; working memory of stable_step
     Column<std::uint8_t> beside_fast;  // one entry per node; working memory of check_state
     Column<Vec3> cluster_kick;         // used by kick_clusters

@@ -94,23 +94,24 @@ void add_step(const StepScratch& step, Balance& balance) {
     if (!balance.open) return;
     const ContactMeasures& contacts = step.findings.measures;
     const ExternalWork& external = step.findings.external;
-    const std::array<Vec3, 9> impulses{step.parameters.kick * step.awake_mass * step.parameters.gravity,
-                                       external.impulse,
-                                       step.findings.held.impulse + step.findings.held_again.impulse,
-                                       step.findings.strained.impulse,
-                                       contacts.outer_impulse,
-                                       step.findings.joints.impulse,
-                                       step.findings.ties.impulse,
-                                       step.findings.cables.impulse,
-                                       -step.findings.rest.momentum};
+    const std::array<Vec3, 9> impulses{
+        step.parameters.kick * step.awake_mass * step.parameters.gravity,
+        external.impulse,
+        step.findings.held.impulse + step.findings.held_rows.impulse + step.findings.held_again.impulse,
+        step.findings.strained.impulse,
+        contacts.outer_impulse,
+        step.findings.joints.impulse,
+        step.findings.ties.impulse,
+        step.findings.cables.impulse,
+        -step.findings.rest.momentum};
     Real push_work = 0;
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;
-    const Real work = push_work + external.work + step.findings.held.work + step.findings.held_again.work +
-                      step.findings.joints.work + step.findings.ties.work + step.findings.cables.work +
-                      contacts.outer_work - contacts.dissipated - step.findings.damped - step.findings.strained.damped -
-                      step.findings.relaxed - step.findings.viscous - step.findings.rest.energy -
-                      step.findings.springs.work - step.findings.springs.dissipated;
+    const Real work = push_work + external.work + step.findings.held.work + step.findings.held_rows.work +
+                      step.findings.held_again.work + step.findings.joints.work + step.findings.ties.work +
+                      step.findings.cables.work + contacts.outer_work - contacts.dissipated - step.findings.damped -
+                      step.findings.strained.damped - step.findings.relaxed - step.findings.viscous -
+                      step.findings.rest.energy - step.findings.springs.work - step.findings.springs.dissipated;
     ++balance.steps;
     // Impulses that cancel each other also count as exchanged momentum, for example those of weight and support.
     Vec3 impulse = Vec3::Zero();

@@ -71,7 +71,7 @@ struct ConstraintLaw {
 
 extern const ForceElement nodal_loads, cable_forces, cavity_pressures, loads_and_fields, spring_forces;
 extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies, held_axes;
-extern const ConstraintLaw contact_law, joint_law, tie_law, cable_law;
+extern const ConstraintLaw contact_law, joint_law, tie_law, cable_law, held_axes_law;
 
 /// All force elements. Nodal loads come first: their stage sets the total force on each node, to which the other force
 /// elements add.
@@ -81,8 +81,10 @@ inline constexpr std::array<const ForceElement*, 5> force_elements{&nodal_loads,
 /// frames of implicit bodies move like rigid bodies. Held axes come last, because they correct velocities.
 inline constexpr std::array<const MotionModel*, 5> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,
                                                                  &implicit_bodies, &held_axes};
-/// All constraint laws. Contacts come first, because the rows of ties follow the contacts in the contact table.
-inline constexpr std::array<const ConstraintLaw*, 4> constraint_laws{&contact_law, &joint_law, &tie_law, &cable_law};
+/// All constraint laws. Contacts come first, because the rows of ties follow the contacts in the contact table. Held
+/// axes come last, because they have rows for the nodes of all other rows. `take` is called in the reverse order.
+inline constexpr std::array<const ConstraintLaw*, 5> constraint_laws{&contact_law, &joint_law, &tie_law, &cable_law,
+                                                                     &held_axes_law};
 
 /// Condition of a stage that changes the state of the world: the stage runs only if the step can be committed.
 inline auto if_taken(const WorldState& world) {

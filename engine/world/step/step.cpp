@@ -4,6 +4,8 @@
 // struct lists the columns that the stage reads.
 #include "engine/world/step/step.h"
 
+#include <ranges>
+
 #include "engine/world/kernels.h"
 #include "engine/world/step/seams.h"
 #include "systems/contact/prepare_ties.h"
@@ -68,7 +70,8 @@ void build_step(WorldState& w) {
     of_models<&MotionModel::couple>(w, g);
     g.begin_phase("Solve regions as concurrent jobs");
     solve(w, g);
-    of_laws<&ConstraintLaw::take>(w, g);
+    for (const ConstraintLaw* law : constraint_laws | std::views::reverse)
+        if (law->take) law->take(w, g);
     of_laws<&ConstraintLaw::measure>(w, g);
     g.begin_phase("Apply impulses");
     of_models<&MotionModel::apply>(w, g);

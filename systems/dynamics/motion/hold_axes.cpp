@@ -1,7 +1,9 @@
 #include "systems/dynamics/motion/hold_axes.h"
 
 #include <cstddef>
+#include <cstdint>
 
+#include "components/write_contact.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -27,6 +29,33 @@ void for_each_held(const AxisHoldInputs& inputs, Real h, auto&& visit) {
     }
 }
 
+/// Calls visit(node) for each node of a stencil with a weight.
+void for_each_node(const Stencil& stencil, auto&& visit) {
+    for (std::size_t a = 0; a < 4; ++a)
+        if (stencil.weight[a] != 0) visit(static_cast<std::size_t>(stencil.node[a]), stencil.weight[a]);
+}
+
+/// True if the contact touches a held node, and motion of its nodes across the held directions changes its gap.
+bool moves_held_nodes(const AxisHoldInputs& inputs, const ContactTable& contacts, std::size_t c,
+                      std::span<const HeldRows::Node> node) {
+    // Least share of the mobility along the normal that the held directions must leave.
+    constexpr Real least_share = 1e-6;
+    Real all = 0, left = 0;
+    for_each_node(contacts.stencil[c], [&](std::size_t n, Real weight) {
+        const Real mobility = weight * weight * inputs.inverse_mass[n];
+        all += mobility;
+        left += mobility * (1 - contacts.normal[c].dot(node[n].held * contacts.normal[c]));
+    });
+    return left > least_share * all;
+}
+
+/// Key of a row: greater than all keys of contacts and ties.
+ContactKey key_of_held(std::size_t entry, const Vec3& direction) {
+    Index longest = 0;
+    direction.cwiseAbs().maxCoeff(&longest);
+    return {~std::uint64_t{0}, 3 * static_cast<std::uint64_t>(entry) + static_cast<std::uint64_t>(longest)};
+}
+
 }  // namespace
 
 ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag, std::span<Vec3> velocity_next,
@@ -48,6 +77,61 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
         sum.work -= (h - kick) * inputs.mass[n] * direction.dot(inputs.gravity) * during;
         if (!inputs.load.empty()) sum.work -= (h - kick) * direction.dot(inputs.load[n]) * during;
     });
+    return sum;
+}
+
+void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cables, Real h, ContactTable& contacts,
+                       HeldRows& rows) {
+    rows.entry.clear();
+    rows.node.assign(inputs.mass.size(), {});
+    const std::span<HeldRows::Node> node = rows.node.span();
+    for_each_held(inputs, h, [&](std::size_t, std::size_t n, const Vec3& direction, Real) {
+        node[n].held += direction * direction.transpose();
+    });
+    for (std::size_t c = 0; c < contacts.size(); ++c)
+        if (moves_held_nodes(inputs, contacts, c, node))
+            for_each_node(contacts.stencil[c], [&](std::size_t n, Real weight) {
+                node[n].in_region = true;
+                node[n].impulse += weight * contacts.impulse[c];
+            });
+    for (const CableBlock& cable : cables.solved())
+        for (const Stencil& of : rows_of(cables.stencil.span(), cable.points))
+            for_each_node(of, [&](std::size_t n, Real) { node[n].in_region = true; });
+    for_each_held(inputs, h, [&](std::size_t i, std::size_t n, const Vec3& direction, Real speed) {
+        if (!node[n].in_region) return;
+        const auto row = static_cast<Index>(n);
+        rows.entry.push_back(static_cast<Index>(i));
+        append_row({.key = key_of_held(i, direction),
+                    .kind = ContactKind::point_collider,
+                    .stencil = {{row, row, row, row}, {1, 0, 0, 0}},
+                    .point = inputs.position[n],
+                    .normal = direction,
+                    .gap = 0,
+                    .distance = 0,
+                    .surface_velocity = speed * direction,
+                    .static_friction = 0,
+                    .dynamic_friction = infinity,
+                    .restitution = 0,
+                    .first_body = inputs.body[n],
+                    .second_body = no_index,
+                    .collider = no_index},
+                   -direction.dot(node[n].impulse) * direction, contacts);
+    });
+}
+
+ExternalWork take_held_rows(const AxisHoldInputs& inputs, std::span<const Vec3> velocity_next, ContactTable& contacts,
+                            const HeldRows& rows, std::span<Vec3> held_impulse) {
+    const std::size_t first = contacts.size() - rows.entry.size();
+    ExternalWork sum;
+    for (std::size_t i = 0; i < rows.entry.size(); ++i) {
+        const auto entry = static_cast<std::size_t>(rows.entry[i]);
+        const auto n = static_cast<std::size_t>(inputs.node[entry]);
+        const Vec3& impulse = contacts.impulse[first + i];
+        held_impulse[entry] += impulse;
+        sum.impulse += impulse;
+        sum.work += impulse.dot(inputs.velocity[n] + velocity_next[n]) / 2;
+    }
+    contacts.resize(first);
     return sum;
 }
 

@@ -5,7 +5,9 @@
 
 #include "components/attachment_table.h"
 #include "components/body_table.h"
+#include "components/cable_table.h"
 #include "components/column.h"
+#include "components/contact_table.h"
 #include "components/external_work.h"
 #include "components/node_table.h"
 #include "components/resting_nodes.h"
@@ -24,6 +26,7 @@ struct AxisHoldInputs {
     std::span<const Vec3> position, velocity;  // at the start of the step
     std::span<const Vec3> load;                // applied force; empty if there are none [N]
     std::span<const Real> mass, inverse_mass;
+    std::span<const Index> body;  // row of BodyTable
     RestingNodes resting;
     Vec3 gravity = Vec3::Zero();  // m/s^2
 
@@ -39,6 +42,7 @@ struct AxisHoldInputs {
                 .load = binder.read_if(binder.value(forced), node.applied_force),
                 .mass = binder.read(node.mass),
                 .inverse_mass = binder.read(node.inverse_mass),
+                .body = binder.read(node.body),
                 .resting = {.node_body = binder.read_if(binder.value(any_asleep), node.body),
                             .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)},
                 .gravity = binder.value(gravity)};
@@ -53,8 +57,32 @@ struct AxisHoldInputs {
 ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag, std::span<Vec3> velocity_next,
                        Column<Vec3>& held_impulse);
 
-/// Restores the prescribed velocities after contact impulses, and adds the impulses that this takes to `held_impulse`.
-/// Also removes the parts along these directions from `push_out`. Returns the sum and the work of the added impulses.
+/// Rows of the contact problem that hold nodes along single directions. While regions are solved, they stand at the end
+/// of ContactTable.
+struct HeldRows {
+    struct Node {
+        Mat3 held = Mat3::Zero();     // projection onto the directions along which attachments hold the node
+        Vec3 impulse = Vec3::Zero();  // sum of the impulses with which the solver starts at the node [N s]
+        bool in_region = false;       // true if a contact, tie or cable can move the node
+    };
+    Column<Index> entry;  // by row of the problem: row of AttachmentTable::node
+    Column<Node> node;    // working memory: by row of NodeTable
+};
+
+/// Appends a row to the contacts for each direction along which a node is held that contacts, ties or solved cables can
+/// move. The row demands the prescribed velocity along the direction. Contacts that no motion across the held
+/// directions can open request no rows, because no impulses satisfy both. Sequential.
+void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cables, Real h, ContactTable& contacts,
+                       HeldRows& rows);
+
+/// Takes these rows out of the contacts after the solve, and adds their impulses to `held_impulse`. Returns the sum and
+/// the work of the impulses. Sequential.
+ExternalWork take_held_rows(const AxisHoldInputs& inputs, std::span<const Vec3> velocity_next, ContactTable& contacts,
+                            const HeldRows& rows, std::span<Vec3> held_impulse);
+
+/// Removes the error that the contact solver has left in the prescribed velocities, and adds the impulses that this
+/// takes to `held_impulse`. Also removes the parts along these directions from `push_out`. Returns the sum and the work
+/// of the added impulses.
 ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec3> velocity_next,
                              std::span<Vec3> push_out, std::span<Vec3> held_impulse);
 

@@ -35,7 +35,7 @@ std::string refusal_of(const std::string& loads) {
 TEST_CASE("loads of a scene act on the parts and bodies that it names", "[unit]") {
     Scene scene = build_scene(plan_with(
         R"({"kind": "force", "body": "cube", "nodes": [3, 5], "force": [1, 2, 3], "scale": [[0, 2], [1, 0]]},
-           {"kind": "traction", "body": "cube", "set": "top", "traction": [0, 0, 10]},
+           {"kind": "traction", "body": "cube", "set": "top", "traction": [0, 0, 10], "area": "present"},
            {"kind": "acceleration", "acceleration": [1, 0, 0], "scale": 0.5},
            {"kind": "gravity", "scale": 0.25, "body": "cube"},
            {"kind": "drag", "rate": 2, "wind": [0, 1, 0]})"));
@@ -50,6 +50,11 @@ TEST_CASE("loads of a scene act on the parts and bodies that it names", "[unit]"
     CHECK(loads.state(all[3]).body == scene.world.bodies()[0]);
     CHECK(loads.state(all[4]).force.isApprox(Vec3(0, 2000, 0), 1e-14));
     REQUIRE(scene.world.advance(0.01).ok());
+    const BodyHandle cube = scene.world.bodies()[0];
+    std::vector<Vec3> doubled;
+    for (const Vec3& x : scene.world.positions(cube)) doubled.push_back(2 * x);
+    scene.world.set_positions(cube, doubled);
+    CHECK(loads.state(all[1]).force.z() == Approx(40).epsilon(0.01));
 }
 
 TEST_CASE("wrong loads of a scene are refused with file, object and field", "[unit]") {
@@ -64,6 +69,8 @@ TEST_CASE("wrong loads of a scene are refused with file, object and field", "[un
     CHECK_THAT(refusal_of(R"({"kind": "force", "body": "cube", "set": "top"})"), Contains("no key \"force\""));
     CHECK_THAT(refusal_of(R"({"kind": "gravity", "scale": 1, "wind": [1, 0, 0]})"),
                Contains("wind") && Contains("not used by a load of the kind \"gravity\""));
+    CHECK_THAT(refusal_of(R"({"kind": "drag", "rate": 1, "area": "present"})"),
+               Contains("area") && Contains("not used"));
     CHECK_THAT(refusal_of(R"({"kind": "drag", "rate": 0})"), Contains("rate"));
     CHECK_THAT(refusal_of(R"({"kind": "gravity", "scale": [[1, 0], [0, 1]]})"), Contains("scale"));
 }

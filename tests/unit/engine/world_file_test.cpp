@@ -59,6 +59,16 @@ struct FileOfWorld {
     std::string refusal(std::span<const std::byte> content) const {
         return refusal(std::string_view(reinterpret_cast<const char*>(content.data()), content.size()));
     }
+    /// Error message for the file with one changed number.
+    std::string refusal_with(std::string_view column, std::size_t place, Index value) const {
+        const std::vector<ValuesInFile> sets = values_in(bytes);
+        const auto set = std::ranges::find(sets, column, &ValuesInFile::path);
+        REQUIRE(set != sets.end());
+        Bytes changed = bytes;
+        std::memcpy(changed.data() + set->begin + place * sizeof value, &value, sizeof value);
+        renew_checksum(changed);
+        return refusal(changed);
+    }
 };
 
 }  // namespace
@@ -352,20 +362,12 @@ TEST_CASE("a saved world with a load on a node that does not exist, or with wron
     Loads(world).add(ForceLoad{body, {1, 2}, {1, 0, 0}, TimeTable({{0, 0}, {1, 1}})});
     const FileOfWorld saved(world);
     CHECK(saved.refusal(saved.bytes).empty());
-    const std::vector<ValuesInFile> sets = values_in(saved.bytes);
-    const auto refusal = [&](const char* path, std::size_t place, Index value) {
-        const auto set = std::ranges::find(sets, path, &ValuesInFile::path);
-        REQUIRE(set != sets.end());
-        Bytes bytes = saved.bytes;
-        std::memcpy(bytes.data() + set->begin + place * sizeof value, &value, sizeof value);
-        renew_checksum(bytes);
-        return saved.refusal(bytes);
-    };
-    CHECK_THAT(refusal("loads/node", 1, 8), Contains("loads: node: found a node that the body does not have"));
-    CHECK_THAT(refusal("loads/nodes", 1, 3), Contains("loads: nodes: found a range that does not exist"));
-    CHECK_THAT(refusal("loads/nodes", 1, 1), Contains("loads: node: found 2 rows, expected 1"));
-    CHECK_THAT(refusal("loads/scale_keys", 0, 1), Contains("loads: scale_keys"));
-    CHECK_THAT(refusal("loads/body", 0, -1), Contains("loads: body: found -1"));
+    CHECK_THAT(saved.refusal_with("loads/node", 1, 8),
+               Contains("loads: node: found a node that the body does not have"));
+    CHECK_THAT(saved.refusal_with("loads/nodes", 1, 3), Contains("loads: nodes: found a range that does not exist"));
+    CHECK_THAT(saved.refusal_with("loads/nodes", 1, 1), Contains("loads: node: found 2 rows, expected 1"));
+    CHECK_THAT(saved.refusal_with("loads/scale_keys", 0, 1), Contains("loads: scale_keys"));
+    CHECK_THAT(saved.refusal_with("loads/body", 0, -1), Contains("loads: body: found -1"));
 }
 
 TEST_CASE("a saved world with a pipe whose bodies or ends do not fit its cavities is refused", "[unit]") {
@@ -382,20 +384,15 @@ TEST_CASE("a saved world with a pipe whose bodies or ends do not fit its cavitie
     Cavities(world).add(PipeSettings{.first = cavities[1], .conductance = 1e-9});
     const FileOfWorld saved(world);
     CHECK(saved.refusal(saved.bytes).empty());
-    const std::vector<ValuesInFile> sets = values_in(saved.bytes);
-    const auto refusal = [&](const char* path, std::size_t place, Index value) {
-        const auto set = std::ranges::find(sets, path, &ValuesInFile::path);
-        REQUIRE(set != sets.end());
-        Bytes bytes = saved.bytes;
-        std::memcpy(bytes.data() + set->begin + place * sizeof value, &value, sizeof value);
-        renew_checksum(bytes);
-        return saved.refusal(bytes);
-    };
-    CHECK_THAT(refusal("pipes/first_body", 0, 1), Contains("pipes: first_body: found 1 at row 0, expected 0"));
-    CHECK_THAT(refusal("pipes/first_body", 1, -1), Contains("pipes: first_body: found -1 at row 1, expected 1"));
-    CHECK_THAT(refusal("pipes/second_body", 0, -1), Contains("pipes: second_body: found -1 at row 0, expected 1"));
-    CHECK_THAT(refusal("pipes/second_body", 1, 0), Contains("pipes: second_body: found 0 at row 1, expected -1"));
-    CHECK_THAT(refusal("pipes/second", 1, 0), Contains("pipes: second: found 0 at row 1, expected 1"));
+    CHECK_THAT(saved.refusal_with("pipes/first_body", 0, 1),
+               Contains("pipes: first_body: found 1 at row 0, expected 0"));
+    CHECK_THAT(saved.refusal_with("pipes/first_body", 1, -1),
+               Contains("pipes: first_body: found -1 at row 1, expected 1"));
+    CHECK_THAT(saved.refusal_with("pipes/second_body", 0, -1),
+               Contains("pipes: second_body: found -1 at row 0, expected 1"));
+    CHECK_THAT(saved.refusal_with("pipes/second_body", 1, 0),
+               Contains("pipes: second_body: found 0 at row 1, expected -1"));
+    CHECK_THAT(saved.refusal_with("pipes/second", 1, 0), Contains("pipes: second: found 0 at row 1, expected 1"));
 }
 
 TEST_CASE("a saved world with a self-contact but without positions of its last search is refused", "[unit]") {

@@ -90,15 +90,24 @@ class WorldLoads:
             )
         )
 
-    def add_traction(self, body: Body, faces: ArrayLike, traction: VectorLike, *, scale: TimeTableLike = 1.0) -> Load:
+    def add_traction(
+        self,
+        body: Body,
+        faces: ArrayLike,
+        traction: VectorLike,
+        *,
+        scale: TimeTableLike = 1.0,
+        present_area: bool = False,
+    ) -> Load:
         """Adds a force per area (3,) [Pa] on some faces of a body, which are rows of body.surface, shape (n, 3). The
-        direction is fixed in the world, and the area is that of the rest shape."""
+        direction is fixed in the world. The area is that of the rest shape, or the present area."""
         return self._new_load(
             self._core.add_traction(
                 self._loaded(body),
                 index_array(faces, "faces", ("n", 3)),
                 real_array(traction, "traction", (3,)),
                 time_table(scale, "scale"),
+                bool(present_area),
             )
         )
 

@@ -14,6 +14,7 @@ class RelaxReport:
     """Report of World.relax().
 
     converged: True if the world is now in equilibrium; if False, it did not change.
+    load: share of the loads in the last equilibrium that was found; 1 if converged.
     residual: largest out-of-balance force of a body in the last step, relative to the sum of the magnitudes of the
         weights, loads and contact forces on its nodes.
     worst: the body with this force; None if no body can move.
@@ -24,6 +25,7 @@ class RelaxReport:
     """
 
     converged: bool
+    load: float
     residual: float
     worst: Body | None
     speed: float

@@ -222,14 +222,18 @@ class World(SurfaceRules, WorldLoads, WorldResults, WorldOutput):
                 break
         self._warn_of_run()
 
-    def relax(self, *, tolerance: float = 1e-3, max_steps: int = 100_000) -> RelaxReport:
+    def relax(self, *, tolerance: float = 1e-3, max_steps: int = 100_000, load_steps: int = 1) -> RelaxReport:
         """Moves the bodies to a static equilibrium, in which no body has a velocity, by steps with kinetic damping.
         Time does not advance: loads and motions stay at their present values. If there is no equilibrium, for example
         because a body slides, the world does not change.
 
         tolerance: largest out-of-balance force of a body, relative to the sum of the forces that act on it.
-        max_steps: largest number of steps. BufferError: arrays of views() are in use."""
-        values = self._core.relax(real(tolerance, "tolerance"), whole(max_steps, "max_steps"))
+        max_steps: largest number of steps for each share of the loads. load_steps: if > 1, loads, pressures and
+        tensions grow from zero in this number of steps, which are halved where no equilibrium is found.
+        BufferError: arrays of views() are in use."""
+        values = self._core.relax(
+            real(tolerance, "tolerance"), whole(max_steps, "max_steps"), whole(load_steps, "load_steps")
+        )
         if values["worst"] is not None:
             values["worst"] = self._body(values["worst"])
         return RelaxReport(**values)

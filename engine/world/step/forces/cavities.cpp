@@ -37,8 +37,7 @@ Real rate_of_nodes(const Model& model, const CavityInputs& cavities, std::size_t
          f < static_cast<std::size_t>(cavities.faces[c].end); ++f) {
         const Mat3 x = cavities.corners_now(c, f);
         const Vec3 third = area_of(x) / 3;
-        const Real longest =
-            std::max({(x.col(1) - x.col(0)).norm(), (x.col(2) - x.col(1)).norm(), (x.col(0) - x.col(2)).norm()});
+        const Real longest = longest_edge(x);
         for (const Index n : cavities.face[f]) {
             area[static_cast<std::size_t>(n)] += third;
             edges[static_cast<std::size_t>(n)] += longest;

@@ -24,9 +24,21 @@ void list_driven_loads(WorldState& w, TaskGraph& g) {
             value(w.scratch.parameters.h), write(w.scratch.driven), if_sleepy(w));
 }
 
+LoadInputs loads_of(const Model& model) {
+    return LoadInputs::bind({}, model.loads, model.bodies, model.nodes, model.settings.gravity, {});
+}
+
+void add_traction_rates(const Model& model, std::span<Real> of_body) {
+    const LoadInputs loads = loads_of(model);
+    for (std::size_t load = 0; load < model.loads.size(); ++load) {
+        if (!loads.is_on_present_area(load)) continue;
+        if (const auto body = static_cast<std::size_t>(loads.load_body[load]); !model.has_frame(body))
+            of_body[body] += traction_rate(loads, load, model.nodes.inverse_mass);
+    }
+}
+
 void add_drag_rates(const Model& model, std::span<Real> of_body) {
-    const Vec3 no_gravity = Vec3::Zero();
-    const LoadInputs loads = LoadInputs::bind({}, model.loads, model.bodies, model.nodes, no_gravity, {});
+    const LoadInputs loads = loads_of(model);
     for (std::size_t load = 0; load < model.loads.size(); ++load)
         for (std::size_t body = 0; body < of_body.size() && loads.kind[load] == LoadKind::drag; ++body)
             if (loads.acts_on(load, body)) of_body[body] += loads.rate[load];
@@ -42,6 +54,8 @@ bool a_load_changes(const Model& model, Real t, Real h) {
 
 constinit const ForceElement loads_and_fields{.any = any_of_loads,
                                               .add_forces = add_load_stages,
+                                              .add_rate = add_traction_rates,
+                                              .rate_moves = true,
                                               .add_drag = add_drag_rates,
                                               .mark_driven = list_driven_loads,
                                               .is_driven = a_load_changes};

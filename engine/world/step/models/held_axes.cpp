@@ -1,4 +1,5 @@
-// Motion model of nodes that attachments hold along single directions.
+// Motion model and constraint law of nodes that attachments hold along single directions. The rows of the law stand
+// behind all others in the contact table while regions are solved.
 #include <algorithm>
 
 #include "engine/world/step/seams.h"
@@ -31,8 +32,22 @@ void list_hold_again(WorldState& w, TaskGraph& g) {
                         write(w.model.nodes.push_out), write(w.scratch.axis_impulse), if_axes_held(w.model));
 }
 
+void list_held_rows(WorldState& w, TaskGraph& g) {
+    const StepParameters& p = w.scratch.parameters;
+    g.stage("dynamics/prepare_held_rows", prepare_held_rows, hold_inputs(w.model, p), read(w.scratch.cables),
+            value(p.h), make(w.scratch.contacts), make(w.scratch.held_rows), if_axes_held(w.model));
+}
+
+void list_taken_rows_of_axes(WorldState& w, TaskGraph& g) {
+    const StepParameters& p = w.scratch.parameters;
+    g.stage_with_result("dynamics/take_held_rows", w.scratch.findings.held_rows, take_held_rows,
+                        hold_inputs(w.model, p), read(w.model.nodes.velocity_next), make(w.scratch.contacts),
+                        read(w.scratch.held_rows), write(w.scratch.axis_impulse), if_axes_held(w.model));
+}
+
 }  // namespace
 
 constinit const MotionModel held_axes{.predict = list_hold, .apply = list_hold_again};
+constinit const ConstraintLaw held_axes_law{.find = list_held_rows, .take = list_taken_rows_of_axes};
 
 }  // namespace skerry
