@@ -137,6 +137,7 @@ bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& o
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const auto j = static_cast<std::size_t>(blocks.block[i].joint);
         (blocks.block[i].turning ? out.moment : out.impulse)[j] = blocks.impulse[i];
+        out.impulse_axes[j] = blocks.block[i].frame;
         if (!blocks.block[i].axis.locked) out.axis_impulse[j] = blocks.axis_impulse[i];
     }
     return out.step.size() > 0;

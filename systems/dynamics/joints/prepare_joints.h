@@ -108,6 +108,7 @@ bool mark_driven(const JointInputs& joints, Real t, Real h, std::span<std::uint8
 struct JointMemory {
     std::span<Real> coordinate;
     std::span<Vec3> impulse, moment;
+    std::span<Mat3> impulse_axes;
     std::span<AxisImpulses> axis_impulse;
     std::span<Real> step;
 
@@ -115,6 +116,7 @@ struct JointMemory {
         return {.coordinate = binder.write(joint.coordinate),
                 .impulse = binder.write(joint.impulse),
                 .moment = binder.write(joint.moment),
+                .impulse_axes = binder.write(joint.impulse_axes),
                 .axis_impulse = binder.write(joint.axis_impulse),
                 .step = binder.write(joint.step)};
     }
