@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the mesh files of the scenes, in metres: python3 scenes/meshes/make_meshes.py
-The meshes at the end need the package gmsh. Those of mesh_drop.json are in one of each family of formats."""
+"""Makes the mesh files of scenes/mesh_drop.json, one in each family of formats, and those of other scenes, in metres:
+python3 scenes/meshes/make_meshes.py"""
 import math
 import pathlib
 
@@ -13,7 +13,6 @@ KUHN = [(0, 1, 3, 7), (0, 1, 5, 7), (0, 2, 3, 7), (0, 2, 6, 7), (0, 4, 5, 7), (0
 class Builder:
     def __init__(self):
         self.nodes, self.tetrahedra, self.number = [], [], {}
-        self.labels, self.faces, self.names = [], [], []  # of tetrahedra; (label, corners); (dimension, label, name)
 
     def node(self, key, point):
         if key not in self.number:
@@ -68,15 +67,9 @@ def point_lines(mesh, first=None):
 
 
 def write_gmsh(mesh, name):
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat"]
-    if mesh.names:
-        lines += ["$PhysicalNames", str(len(mesh.names)), *(f'{d} {n} "{name}"' for d, n, name in mesh.names),
-                  "$EndPhysicalNames"]
-    elements = [(4, label, t) for label, t in zip(mesh.labels or [1] * len(mesh.tetrahedra), mesh.tetrahedra)]
-    elements += [(2, label, t) for label, t in mesh.faces]
-    lines += ["$Nodes", str(len(mesh.nodes)), *point_lines(mesh, 1), "$EndNodes", "$Elements", str(len(elements))]
-    lines += [f"{i + 1} {kind} 2 {label} {label} " + " ".join(str(n + 1) for n in corners)
-              for i, (kind, label, corners) in enumerate(elements)]
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(mesh.nodes)), *point_lines(mesh, 1),
+             "$EndNodes", "$Elements", str(len(mesh.tetrahedra))]
+    lines += [f"{i + 1} 4 2 1 1 " + " ".join(str(n + 1) for n in t) for i, t in enumerate(mesh.tetrahedra)]
     (FOLDER / name).write_text("\n".join(lines + ["$EndElements", ""]))
 
 
@@ -100,87 +93,64 @@ write_vtk(voxels([".x.", "xxx", ".x."], 0.04, 2), "cross.vtk")
 write_tetgen(voxels(["xxx", "x..", "xxx", "..x", "xxx"], 0.028, 2), "letter_s")
 
 
-def tetrahedra_of(shape, size):
-    """Fills the geometry that `shape` makes from the functions of gmsh.model.occ. `shape` returns physical groups as
-    pairs of names and tags of volumes, and as pairs of names and boxes around surfaces."""
+def fill(name, size, shape, deform=lambda *point: point):
+    """Fills a geometry with tetrahedra by the package gmsh, which must be installed, and writes the physical groups.
+    `shape` makes the geometry and the groups from the functions of gmsh.model."""
     import gmsh
     gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.option.setNumber("Mesh.MeshSizeMin", size)
     gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-    gmsh.option.setNumber("Mesh.Algorithm3D", 10)  # HXT
-    volumes, surfaces = shape(gmsh.model.occ)
+    gmsh.option.setNumber("Mesh.MshFileVersion", 2.2)
+    shape(gmsh.model)
     gmsh.model.mesh.generate(3)
-    mesh, at = Builder(), {}
-    tags, points, _ = gmsh.model.mesh.getNodes(3, includeBoundary=True)
+    tags, points, _ = gmsh.model.mesh.getNodes()
     for tag, point in zip(tags, points.reshape(-1, 3)):
-        at[tag] = mesh.node(tag, [round(c, 6) + 0.0 for c in point])
-
-    def corners(dimension, tag, count):
-        kinds, _, nodes = gmsh.model.mesh.getElements(dimension, tag)
-        return [[at[n] for n in row] for row in nodes[0].reshape(-1, count)] if len(kinds) else []
-
-    for number, (name, tag) in enumerate(volumes, 1):
-        mesh.names.append((3, number, name))
-        mesh.tetrahedra += corners(3, tag, 4)
-        mesh.labels += [number] * (len(mesh.tetrahedra) - len(mesh.labels))
-    for number, (name, box) in enumerate(surfaces, len(volumes) + 1):
-        mesh.names.append((2, number, name))
-        for _, tag in gmsh.model.getEntitiesInBoundingBox(*box, 2):
-            mesh.faces += [(number, face) for face in corners(2, tag, 3)]
+        gmsh.model.mesh.setNode(tag, [round(c, 6) + 0.0 for c in deform(*point)], [])
+    gmsh.write(str(FOLDER / name))
     gmsh.finalize()
-    return mesh
 
 
-def finger(occ):
+def notched_finger(model):
     """A bar along x with three notches in its lower side."""
     length, half_width, half_height = 0.1, 0.008, 0.01
     outline = [(0, -half_height)]
     for x in (0.03, 0.055, 0.08):
         outline += [(x - 0.008, -half_height), (x - 0.0015, 0.002), (x + 0.0015, 0.002), (x + 0.008, -half_height)]
     outline += [(length, -half_height), (length, half_height), (0, half_height)]
-    points = [occ.addPoint(x, -half_width, z) for x, z in outline]
-    lines = [occ.addLine(a, b) for a, b in zip(points, points[1:] + points[:1])]
-    face = occ.addPlaneSurface([occ.addCurveLoop(lines)])
-    solid = occ.extrude([(2, face)], 0, 2 * half_width, 0)
-    occ.synchronize()
-    volume = next(tag for dimension, tag in solid if dimension == 3)
-    return [("silicone", volume)], [("base", (-1e-4, -1, -1, 1e-4, 1, 1)), ("tip", (length - 1e-4, -1, -1, 1, 1, 1))]
+    points = [model.occ.addPoint(x, -half_width, z) for x, z in outline]
+    lines = [model.occ.addLine(a, b) for a, b in zip(points, points[1:] + points[:1])]
+    face = model.occ.addPlaneSurface([model.occ.addCurveLoop(lines)])
+    model.occ.extrude([(2, face)], 0, 2 * half_width, 0)
+    model.occ.synchronize()
+    model.addPhysicalGroup(3, [1], name="silicone")
+    base = model.getEntitiesInBoundingBox(-1e-4, -1, -1, 1e-4, 1, 1, 2)
+    model.addPhysicalGroup(2, [tag for _, tag in base], name="base")
 
 
-def ellipsoid(occ, center, axes):
-    ball = occ.addSphere(*center, 1)
-    occ.dilate([(3, ball)], *center, *axes)
-    return 3, ball
-
-
-def liver(occ):
+def liver(model):
     """A large and a small lobe, with a tumour in the large one."""
-    lobes, _ = occ.fuse([ellipsoid(occ, (0, 0, 0.03), (0.065, 0.05, 0.03))],
-                        [ellipsoid(occ, (0.06, 0.012, 0.03), (0.055, 0.035, 0.019))])
-    tumour = occ.addSphere(-0.022, 0.005, 0.034, 0.014)
-    occ.fragment(lobes, [(3, tumour)])
-    occ.synchronize()
-    size = {tag: occ.getMass(3, tag) for _, tag in occ.getEntities(3)}
-    inner, outer = sorted(size, key=size.get)
-    return [("parenchyma", outer), ("tumour", inner)], []
+    def ellipsoid(center, half_axes):
+        ball = [(3, model.occ.addSphere(*center, 1))]
+        model.occ.dilate(ball, *center, *half_axes)
+        return ball
+
+    lobes, _ = model.occ.fuse(ellipsoid((0, 0, 0.03), (0.065, 0.05, 0.03)),
+                              ellipsoid((0.06, 0.012, 0.03), (0.055, 0.035, 0.019)))
+    model.occ.fragment(lobes, [(3, model.occ.addSphere(-0.022, 0.005, 0.034, 0.014))])
+    model.occ.synchronize()
+    tumour, parenchyma = sorted((tag for _, tag in model.getEntities(3)), key=lambda tag: model.occ.getMass(3, tag))
+    model.addPhysicalGroup(3, [parenchyma], name="parenchyma")
+    model.addPhysicalGroup(3, [tumour], name="tumour")
 
 
-def egg(occ):
-    """A ball, which `to_egg` deforms."""
-    ball = occ.addSphere(0, 0, 0, 1)
-    occ.synchronize()
-    return [("egg", ball)], []
+def unit_ball(model):
+    model.occ.addSphere(0, 0, 0, 1)
+    model.occ.synchronize()
+    model.addPhysicalGroup(3, [1], name="egg")
 
 
-def to_egg(mesh, half_length, radius):
-    """Stretches a ball along x and narrows its end at +x."""
-    for i, (x, y, z) in enumerate(mesh.nodes):
-        across = radius * (1 - 0.15 * x)
-        mesh.nodes[i] = [round(c, 6) + 0.0 for c in (half_length * x, across * y, across * z)]
-    return mesh
-
-
-write_gmsh(tetrahedra_of(finger, 0.0045), "finger.msh")
-write_gmsh(tetrahedra_of(liver, 0.0095), "liver.msh")
-write_gmsh(to_egg(tetrahedra_of(egg, 0.28), 0.03, 0.022), "egg.msh")
+fill("notched_finger.msh", 0.005, notched_finger)
+fill("liver.msh", 0.0095, liver)
+# An egg of 60 mm along x and 44 mm across, narrower at +x.
+fill("egg.msh", 0.32, unit_ball, lambda x, y, z: (0.03 * x, 0.022 * (1 - 0.15 * x) * y, 0.022 * (1 - 0.15 * x) * z))
