@@ -17,9 +17,9 @@ namespace skerry {
 /// A tie of which nodes have broken off.
 struct BrokenTie {
     std::string name;
-    std::size_t nodes = 0, broken = 0;     // numbers of tied nodes, and of those that have broken off
+    std::size_t nodes = 0, broken = 0;          // numbers of tied nodes, and of those that have broken off
     Real first_time = infinity, last_time = 0;  // times at which the first and the last of them broke off [s]
-    Real largest_force = 0;                // largest force of the tie in a step [N]
+    Real largest_force = 0;                     // largest force of the tie in a step [N]
 };
 
 struct RunResult {

@@ -297,11 +297,11 @@ TEST_CASE("forces on fingers, pads and ball add up to their changes of momentum 
         const auto joint = [&](std::size_t j) { return joints.state(joints.all()[j]).force; };
         const auto tie = [&](std::size_t t) { return ties.state(ties.all()[t]).force; };
         const std::array<Vec3, 6> joined{joint(0) - joint(1) - joint(2),  // palm
-                                         joint(1) - tie(0),  // left finger
-                                         joint(2) - tie(1),  // right finger
-                                         tie(0),  // left pad
-                                         tie(1),  // right pad
-                                         Vec3::Zero()};  // ball
+                                         joint(1) - tie(0),               // left finger
+                                         joint(2) - tie(1),               // right finger
+                                         tie(0),                          // left pad
+                                         tie(1),                          // right pad
+                                         Vec3::Zero()};                   // ball
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             const Real mass = world.mass(bodies[b]);
             const Vec3 change = mass * world.velocity(bodies[b]).velocity - momentum[b];

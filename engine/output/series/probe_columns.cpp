@@ -182,7 +182,8 @@ void put_values(const World& world, TrackedProbe& probe, std::vector<Real>& valu
                 const TieState now = tie_state(WorldAccess::state_of(world), tie.tie);
                 put_vector(now.force, values);
                 put_vector(now.moment, values);
-                const auto broken = std::ranges::count_if(now.nodes, [](const TiedNode& of) { return bool(of.broken); });
+                const auto broken =
+                    std::ranges::count_if(now.nodes, [](const TiedNode& of) { return bool(of.broken); });
                 values.insert(values.end(), {now.error, static_cast<Real>(broken)});
             },
             [&](const CavityProbe& cavity) {
