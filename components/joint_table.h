@@ -89,6 +89,7 @@ struct JointTable {
     // Impulse and angular impulse of the joint on the first body in the last step, in the joint frame of the second
     // body [N s, N m s].
     Column<Vec3> impulse, moment;
+    Column<Mat3> impulse_axes;          // axes of this frame at the start of the last step, in the world
     Column<AxisImpulses> axis_impulse;  // parts of the impulse along the axis in the last step
     Column<Real> step;    // time for which the impulses acted in the last step; 0 before the first step [s]
     Column<TimeKey> key;  // keys of all motors: target speeds [rad/s or m/s] or positions [rad or m]
@@ -124,6 +125,7 @@ struct JointTable {
         visit("coordinate", coordinate, ColumnRole::state);
         visit("impulse", impulse, ColumnRole::state);
         visit("moment", moment, ColumnRole::state);
+        visit("impulse_axes", impulse_axes, ColumnRole::state);
         visit("axis_impulse", axis_impulse, ColumnRole::state);
         visit("step", step, ColumnRole::state);
     }

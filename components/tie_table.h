@@ -26,6 +26,7 @@ struct TieTable {
     Column<Index> collider;    // row of ColliderTable, or no_index; without body and collider: the world
     Column<Range> nodes;       // rows of the columns by tied node
     Column<Real> break_force;  // force at which a node breaks off; may be infinite [N]
+    Column<Real> largest_force;  // largest force of the tie in a step [N]
     Column<Real> step;         // time for which the impulses acted in the last step; 0 before the first step [s]
 
     // The next columns have one row per tied node. Nodes have their numbers in the meshes of the bodies.
@@ -64,6 +65,7 @@ struct TieTable {
         visit("collider", collider, ColumnRole::collider);
         visit("nodes", nodes, ColumnRole::link);
         visit("break_force", break_force, ColumnRole::state);
+        visit("largest_force", largest_force, ColumnRole::state);
         visit("step", step, ColumnRole::state);
     }
     /// Visits the columns with one row per tied node.

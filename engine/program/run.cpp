@@ -24,6 +24,7 @@
 #include "engine/scene/scene_plan.h"
 #include "jobs/executor.h"
 #include "skerry/relax.h"
+#include "skerry/tie.h"
 
 namespace skerry {
 
@@ -254,6 +255,24 @@ std::vector<std::string> separate_parts(const ScenePlan& plan) {
     return found;
 }
 
+std::vector<BrokenTie> broken_ties(const ScenePlan& plan, World& world) {
+    std::vector<BrokenTie> found;
+    const Ties ties(world);
+    const std::vector<TieHandle> handles = ties.all();
+    for (std::size_t t = 0; t < plan.ties.size(); ++t) {
+        const TieState state = ties.state(handles[t]);
+        BrokenTie tie{.name = plan.ties[t].name, .nodes = state.nodes.size(), .largest_force = state.largest_force};
+        for (const TiedNode& node : state.nodes) {
+            if (!node.broken) continue;
+            ++tie.broken;
+            tie.first_time = std::min(tie.first_time, *node.broken);
+            tie.last_time = std::max(tie.last_time, *node.broken);
+        }
+        if (tie.broken > 0) found.push_back(tie);
+    }
+    return found;
+}
+
 }  // namespace
 
 RunResult simulate(const RunOptions& asked) {
@@ -320,6 +339,7 @@ RunResult simulate(const RunOptions& asked) {
     }
 
     result.report = world.report();
+    result.broken_ties = broken_ties(plan, world);
     if (result.report.steps > 0 && result.report.max_contacts == 0) result.nearest = nearest_text(world);
     if (std::string distrust = result.report.distrust(); result.status == "ok" && !distrust.empty()) {
         result.status = std::move(distrust);

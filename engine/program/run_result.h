@@ -14,6 +14,14 @@
 
 namespace skerry {
 
+/// A tie of which nodes have broken off.
+struct BrokenTie {
+    std::string name;
+    std::size_t nodes = 0, broken = 0;          // numbers of tied nodes, and of those that have broken off
+    Real first_time = infinity, last_time = 0;  // times at which the first and the last of them broke off [s]
+    Real largest_force = 0;                     // largest force of the tie in a step [N]
+};
+
 struct RunResult {
     std::string scene;
     std::string scene_file;
@@ -36,6 +44,7 @@ struct RunResult {
     WorldReport report;
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;
+    std::vector<BrokenTie> broken_ties;
     // option and error message of each output that failed
     std::vector<std::pair<std::string, std::string>> outputs_failed;
     std::vector<std::string> plan_warnings;   // warnings about values in the scene

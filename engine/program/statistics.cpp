@@ -66,7 +66,7 @@ std::unique_ptr<Writer> statistics_file(const std::filesystem::path& file, const
 Json statistics_of(const RunResult& result) {
     const WorldReport& r = result.report;
     Json stages = Json::object(), probes = Json::object(), limits = Json::array(), failed = Json::object();
-    Json moves = Json::array(), self_crossings = Json::array();
+    Json moves = Json::array(), self_crossings = Json::array(), ties = Json::object();
     for (const auto& [option, failure] : result.outputs_failed) failed[option] = failure;
     for (const StartMove& move : r.start_moves)
         moves.push_back({{"body", move.name}, {"translation", vector_json(move.translation)}});
@@ -85,6 +85,12 @@ Json statistics_of(const RunResult& result) {
                           {"seconds", of.seconds}});
     for (const StageReport& stage : r.stages)
         stages[stage.name] = {{"seconds", stage.seconds}, {"runs", stage.runs}, {"skipped", stage.skipped}};
+    for (const BrokenTie& tie : result.broken_ties)
+        ties[tie.name] = {{"nodes", tie.nodes},
+                          {"broken", tie.broken},
+                          {"first_time", tie.first_time},
+                          {"last_time", tie.last_time},
+                          {"largest_force", tie.largest_force}};
     for (const ProbeRecord& probe : result.probes) probes[probe.name] = to_json(probe);
     const double simulated = result.seconds_simulated, wall = result.seconds_wall;
     return {
@@ -177,6 +183,7 @@ Json statistics_of(const RunResult& result) {
         {"mean_edge", result.mean_edge},
         {"trust", trust_of(result)},
         {"notes", result.notes},
+        {"broken_ties", ties},
         {"probes", probes},
         {"state_hash", hash_text(result.state_hash)},
     };

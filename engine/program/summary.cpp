@@ -93,6 +93,20 @@ std::string probe_lines(const RunResult& result) {
     return text;
 }
 
+std::string tie_lines(const RunResult& result) {
+    std::string text;
+    for (const BrokenTie& tie : result.broken_ties) {
+        const std::string last = with_unit(tie.last_time, "s");
+        const bool at_once = tie.first_time == tie.last_time;
+        text += summary_line(text.empty() ? "ties" : "",
+                             tie.name + ": " + grouped(tie.broken) + " of " + count_of(tie.nodes, "node", "nodes") +
+                                 " broke off" +
+                                 (at_once ? " at " + last : " from " + with_unit(tie.first_time, "s") + " to " + last) +
+                                 "; largest force of the tie " + with_unit(tie.largest_force, "N"));
+    }
+    return text;
+}
+
 std::string warning_lines(const RunResult& result) {
     std::string text;
     for (const std::string& warning : warnings_of(result)) text += summary_line("WARNING", warning);
@@ -136,8 +150,8 @@ std::string summary_of(const RunResult& result) {
     if (const std::string choices = choices_text(r); !choices.empty()) text += summary_line("dynamics", choices);
     text += summary_line("elements",
                          count_of(r.elements, "tetrahedron", "tetrahedra") + ", " + count_of(r.nodes, "node", "nodes"));
-    return text + start_lines(result) + step_lines(result) + warning_lines(result) + probe_lines(result) +
-           file_lines(result);
+    return text + start_lines(result) + step_lines(result) + warning_lines(result) + tie_lines(result) +
+           probe_lines(result) + file_lines(result);
 }
 
 }  // namespace skerry

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the mesh files of scenes/mesh_drop.json, one in each family of formats, and those of scenes/gripper.json and
-scenes/tyre.json, in metres: python3 scenes/meshes/make_meshes.py"""
+"""Makes the mesh files of scenes/mesh_drop.json, one in each family of formats, and those of other scenes, in metres:
+python3 scenes/meshes/make_meshes.py"""
 import collections
 import math
 import pathlib
@@ -161,5 +161,68 @@ write_gmsh(torus(0.06, 0.028, 3, 18), "torus.msh")
 write_vtk(voxels([".x.", "xxx", ".x."], 0.04, 2), "cross.vtk")
 write_tetgen(voxels(["xxx", "x..", "xxx", "..x", "xxx"], 0.028, 2), "letter_s")
 write_gmsh(finger(5, 0.006, 0.0045, [-0.015, -0.009, -0.0045, 0, 0.0045, 0.009, 0.015],
-                  [0, 0.006, 0.011, 0.017, 0.023, 0.029, 0.035]), "finger.msh")
+                  [0, 0.006, 0.011, 0.017, 0.023, 0.029, 0.035]), "air_finger.msh")
 write_gmsh(tyre(0.12, 0.06, 0.022, math.radians(60), 10, 2, 46), "tyre.msh")
+
+
+def fill(name, size, shape, deform=lambda *point: point):
+    """Fills a geometry with tetrahedra by the package gmsh, which must be installed, and writes the physical groups.
+    `shape` makes the geometry and the groups from the functions of gmsh.model."""
+    import gmsh
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", size)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+    gmsh.option.setNumber("Mesh.MshFileVersion", 2.2)
+    shape(gmsh.model)
+    gmsh.model.mesh.generate(3)
+    tags, points, _ = gmsh.model.mesh.getNodes()
+    for tag, point in zip(tags, points.reshape(-1, 3)):
+        gmsh.model.mesh.setNode(tag, [round(c, 6) + 0.0 for c in deform(*point)], [])
+    gmsh.write(str(FOLDER / name))
+    gmsh.finalize()
+
+
+def notched_finger(model):
+    """A bar along x with three notches in its lower side."""
+    length, half_width, half_height = 0.1, 0.008, 0.01
+    outline = [(0, -half_height)]
+    for x in (0.03, 0.055, 0.08):
+        outline += [(x - 0.008, -half_height), (x - 0.0015, 0.002), (x + 0.0015, 0.002), (x + 0.008, -half_height)]
+    outline += [(length, -half_height), (length, half_height), (0, half_height)]
+    points = [model.occ.addPoint(x, -half_width, z) for x, z in outline]
+    lines = [model.occ.addLine(a, b) for a, b in zip(points, points[1:] + points[:1])]
+    face = model.occ.addPlaneSurface([model.occ.addCurveLoop(lines)])
+    model.occ.extrude([(2, face)], 0, 2 * half_width, 0)
+    model.occ.synchronize()
+    model.addPhysicalGroup(3, [1], name="silicone")
+    base = model.getEntitiesInBoundingBox(-1e-4, -1, -1, 1e-4, 1, 1, 2)
+    model.addPhysicalGroup(2, [tag for _, tag in base], name="base")
+
+
+def liver(model):
+    """A large and a small lobe, with a tumour in the large one."""
+    def ellipsoid(center, half_axes):
+        ball = [(3, model.occ.addSphere(*center, 1))]
+        model.occ.dilate(ball, *center, *half_axes)
+        return ball
+
+    lobes, _ = model.occ.fuse(ellipsoid((0, 0, 0.03), (0.065, 0.05, 0.03)),
+                              ellipsoid((0.06, 0.012, 0.03), (0.055, 0.035, 0.019)))
+    model.occ.fragment(lobes, [(3, model.occ.addSphere(-0.022, 0.005, 0.034, 0.014))])
+    model.occ.synchronize()
+    tumour, parenchyma = sorted((tag for _, tag in model.getEntities(3)), key=lambda tag: model.occ.getMass(3, tag))
+    model.addPhysicalGroup(3, [parenchyma], name="parenchyma")
+    model.addPhysicalGroup(3, [tumour], name="tumour")
+
+
+def unit_ball(model):
+    model.occ.addSphere(0, 0, 0, 1)
+    model.occ.synchronize()
+    model.addPhysicalGroup(3, [1], name="egg")
+
+
+fill("notched_finger.msh", 0.005, notched_finger)
+fill("liver.msh", 0.0095, liver)
+# An egg of 60 mm along x and 44 mm across, narrower at +x.
+fill("egg.msh", 0.32, unit_ball, lambda x, y, z: (0.03 * x, 0.022 * (1 - 0.15 * x) * y, 0.022 * (1 - 0.15 * x) * z))

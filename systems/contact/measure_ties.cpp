@@ -60,6 +60,12 @@ Index store_ties(const TieRowTable& rows, std::span<const Range> body_implicit, 
         const auto is_broken = [](Real time) { return time < infinity; };
         released += std::ranges::all_of(rows_of(ties.broken, ties.nodes[t]), is_broken);
     }
+    for (std::size_t t = 0; t < ties.size(); ++t) {
+        if (rows.rests[t]) continue;
+        Vec3 sum = Vec3::Zero();
+        for (const Vec3& impulse : rows_of(ties.impulse, ties.nodes[t])) sum += impulse;
+        ties.largest_force[t] = std::max(ties.largest_force[t], sum.norm() / ties.step[t]);
+    }
     return released;
 }
 

@@ -42,8 +42,8 @@ struct TieTimes {
     Real end = 0, h = 0, kick = 0;
 };
 
-/// Stores the impulses of a committed step. A node breaks off if its force exceeds the limit of its tie. Returns the
-/// number of ties of which the last node has broken off.
+/// Stores the impulses and the largest forces of a committed step. A node breaks off if its force exceeds the limit of
+/// its tie. Returns the number of ties of which the last node has broken off.
 Index store_ties(const TieRowTable& rows, std::span<const Range> body_implicit, const TieTimes& times, TieTable& ties);
 
 }  // namespace skerry

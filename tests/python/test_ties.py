@@ -25,6 +25,7 @@ def test_a_tie_to_the_world_carries_the_weight_of_a_body() -> None:
     assert state.force == pytest.approx((0, 0, 9.81), abs=0.01)
     assert state.node_forces.sum(axis=0) == pytest.approx(state.force)
     assert state.error < 1e-9 and np.isinf(state.broken).all()
+    assert state.largest_force >= np.linalg.norm(state.force) > 0
     assert world.ties == [tie]
 
 

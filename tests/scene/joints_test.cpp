@@ -128,6 +128,28 @@ TEST_CASE("a chain of ten hangs at rest, and each joint carries what is below it
     }
 }
 
+TEST_CASE("the forces of joints on swinging bars add up to the changes of their momenta", "[scene][joints]") {
+    constexpr Real h = 1.0 / 480;
+    for (const JointKind kind : {JointKind::ball, JointKind::hinge, JointKind::fixed}) {
+        Bars bars(with_step(h), 2, 2.0, kind);
+        bars.world.set_velocity(bars.body[1], Vec3::Zero(), {0, 8, 0});
+        const auto momentum = [&](std::size_t b) -> Vec3 {
+            return bar_mass * bars.world.velocity(bars.body[b]).velocity;
+        };
+        const auto force = [&](std::size_t j) { return Joints(bars.world).state(bars.joint[j]).force; };
+        const Vec3 weight(0, 0, -bar_mass * standard_gravity);
+        Real worst = 0;
+        for (int k = 0; k < 200; ++k) {
+            const Vec3 first = momentum(0), second = momentum(1);
+            REQUIRE(bars.world.advance(h).steps == 1);
+            worst = std::max({worst, (momentum(0) - first - h * (force(0) - force(1) + weight)).norm(),
+                              (momentum(1) - second - h * (force(1) + weight)).norm()});
+        }
+        CAPTURE(static_cast<int>(kind));
+        CHECK(worst < 1e-12 * h * weight.norm());
+    }
+}
+
 TEST_CASE("joined bodies keep their common momenta", "[scene][joints]") {
     for (const JointKind kind : {JointKind::ball, JointKind::hinge, JointKind::slider, JointKind::fixed}) {
         World world(with_step(1.0 / 240, Vec3::Zero()));

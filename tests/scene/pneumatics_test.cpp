@@ -34,7 +34,7 @@ struct Finger {
         silicone.poisson_ratio = 0.4;
         silicone.friction = 0.3;
         silicone.damping = 60;
-        body = world.add_body(mesh::read(folder + "meshes/finger.msh"),
+        body = world.add_body(mesh::read(folder + "meshes/air_finger.msh"),
                               {.material = world.add_material(silicone), .rotation = {0, std::numbers::pi / 2, 0}});
         world.attach(body, Sets(world).nodes(body, "clamp"));
         wall = world.add_collider(Plane{.normal = {1, 0, 0}, .point = {-0.01, 0, 0}});

@@ -2,9 +2,17 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
 
 #include "jobs/executor.h"
+#include "skerry/cable.h"
+#include "skerry/joint.h"
 #include "skerry/scene.h"
+#include "skerry/tie.h"
+#include "tests/support/draws.h"
+#include "tests/support/same_bits.h"
 
 namespace skerry::test::shipped_scenes_test {
 
@@ -29,6 +37,20 @@ Real mean_edge(const World& world) {
     Real smallest = 1e9;
     for (BodyHandle body : world.bodies()) smallest = std::min(smallest, world.mean_edge(body));
     return smallest;
+}
+
+BodyHandle body_of(const World& world, std::string_view name) {
+    const std::vector<BodyHandle> bodies = world.bodies();
+    return *std::ranges::find(bodies, name, [&](BodyHandle body) { return world.name(body); });
+}
+
+/// Opens a scene with soft pads. Unless the tests run in full, its pads are coarse, so that its steps are longer.
+Scene open_with_pads(const char* name, const std::vector<int>& pads, const SceneOverrides& given = {}) {
+    SceneOverrides overrides = given;
+    if (!full_tests())
+        for (const int pad : pads)
+            overrides.assignments.push_back("bodies[" + std::to_string(pad) + "].mesh.box.cells=[1,1,2]");
+    return open_scene(name, overrides);
 }
 
 }  // namespace
@@ -166,6 +188,169 @@ TEST_CASE("bodies from mesh files drop and lie still", "[scene][slow]") {
     play(scene.world, scene.seconds, [](const StepReport&) {});
     CHECK(scene.world.report().max_penetration < 0.02 * mean_edge(scene.world));
     for (BodyHandle body : scene.world.bodies()) CHECK(scene.world.center_of_mass(body).z() > 0);
+}
+
+TEST_CASE("cables bend the finger around the post and open it again", "[scene][scenes]") {
+    Scene scene = open_scene("finger");
+    World& world = scene.world;
+    const BodyHandle finger = body_of(world, "finger");
+    const ColliderHandle post = world.colliders()[0];
+    std::vector<std::size_t> tip;
+    for (std::size_t n = 0; n < world.positions(finger).size(); ++n)
+        if (world.positions(finger)[n].x() > 0.0999) tip.push_back(n);
+    const auto mean_tip = [&] {
+        Vec3 sum = Vec3::Zero();
+        for (const std::size_t n : tip) sum += world.positions(finger)[n] / static_cast<Real>(tip.size());
+        return sum;
+    };
+    world.measure_forces(true);
+    const auto nothing = [](const StepReport&) {};
+    play(world, full_tests() ? 1.1 : 0.1, nothing);
+    CHECK(mean_tip().z() < (full_tests() ? -0.03 : -0.003));
+    const Cables cables(world);
+    for (const CableHandle cable : cables.all()) {
+        const CableState state = cables.state(cable);
+        const auto direction = [&](std::size_t s) {
+            return (state.points[s + 1].point - state.points[s].point).normalized();
+        };
+        for (std::size_t s = 1; s < state.tension.size(); ++s) {
+            const Real bend = std::acos(std::min(Real(1), direction(s - 1).dot(direction(s))));
+            // The bend is that at the end of the step, and the tensions belong to its start.
+            CHECK(std::abs(std::log(state.tension[s] / state.tension[s - 1])) < 0.1 * bend + 1e-3);
+        }
+        CHECK(state.dissipated > 0);
+    }
+    if (full_tests()) {
+        CHECK(world.forces().on(post).force().norm() > 2);
+        play(world, scene.seconds, nothing);
+        CHECK(mean_tip().z() > -0.01);
+        CHECK(world.forces().on(post).contacts == 0);
+    }
+    CHECK(world.report().energy_error_share < 1e-3);
+    CHECK(world.report().unconverged == 0);
+}
+
+TEST_CASE("each node of the ligament tears off the wall in the step in which its force exceeds the limit",
+          "[scene][scenes]") {
+    SceneOverrides overrides;
+    if (!full_tests())  // pulled sooner, and torn sooner
+        overrides.assignments = {"ties[0].break_force=0.1",
+                                 "bodies[0].pin.motion.keys=[{\"time\": 0, \"position\": [0, 0, 0]}, "
+                                 "{\"time\": 0.4, \"position\": [0.06, 0, 0.03]}]"};
+    Scene scene = open_scene("organ", overrides);
+    World& world = scene.world;
+    const Ties ties(world);
+    const TieHandle root = ties.all()[0], end = ties.all()[1];
+    TieState before = ties.state(root);
+    const Real limit = before.break_force;
+    const std::size_t count = before.nodes.size();
+    std::size_t broken = 0;
+    Real largest = 0;
+    while (broken < count && world.time() < scene.seconds) {
+        REQUIRE(world.advance(world.stable_step()).steps == 1);
+        const TieState now = ties.state(root);
+        largest = std::max(largest, now.force.norm());
+        for (std::size_t n = 0; n < count; ++n) {
+            const Real force = now.nodes[n].force.norm();
+            if (now.nodes[n].broken != world.time()) {
+                CHECK(force <= limit);
+                continue;
+            }
+            CHECK(force > limit);
+            CHECK(before.nodes[n].force.norm() <= limit);
+            // When others have torn off, the force on a node grows within few steps.
+            if (broken++ == 0) CHECK(force < 1.01 * limit);
+        }
+        before = now;
+    }
+    CHECK(broken == count);
+    CHECK(ties.state(root).largest_force == Approx(largest).epsilon(1e-12));
+    for (const TiedNode& node : ties.state(end).nodes) CHECK_FALSE(node.broken);
+    if (full_tests()) play(world, scene.seconds, [](const StepReport&) {});
+    CHECK(world.report().worst_volume_ratio > 0.3);
+    CHECK(world.report().inverted == 0);
+    CHECK(world.report().energy_error_share < 1e-3);
+    CHECK(world.report().momentum_error_share < 1e-9);
+}
+
+TEST_CASE("forces on fingers, pads and ball add up to their changes of momentum in each step", "[scene][scenes]") {
+    SceneOverrides overrides;
+    overrides.step_size = full_tests() ? 4e-5 : 1e-4;
+    overrides.assignments = {"joints[0].motor.keys[0].time=0.3", "joints[0].motor.keys[1].time=0.6",
+                             "joints[1].motor.keys[1].time=0.25", "joints[2].motor.keys[1].time=0.25"};
+    Scene scene = open_with_pads("pick_up", {3, 4}, overrides);
+    World& world = scene.world;
+    const Joints joints(world);
+    const Ties ties(world);
+    const BodyHandle ball = body_of(world, "ball");
+    CHECK(world.mass(ball) == Approx(0.02).epsilon(1e-4));
+    const Real h = *overrides.step_size;
+    world.measure_forces(true);
+    REQUIRE(world.advance(0.18).ok());  // shortly before the pads touch the ball
+    const std::vector<BodyHandle> bodies = world.bodies();
+    std::vector<Vec3> momentum(bodies.size());
+    Real worst = 0, grip = 0;
+    while (world.time() < 0.5) {
+        for (std::size_t b = 0; b < bodies.size(); ++b)
+            momentum[b] = world.mass(bodies[b]) * world.velocity(bodies[b]).velocity;
+        REQUIRE(world.advance(h).steps == 1);
+        const auto joint = [&](std::size_t j) { return joints.state(joints.all()[j]).force; };
+        const auto tie = [&](std::size_t t) { return ties.state(ties.all()[t]).force; };
+        const std::array<Vec3, 6> joined{joint(0) - joint(1) - joint(2),  // palm
+                                         joint(1) - tie(0),               // left finger
+                                         joint(2) - tie(1),               // right finger
+                                         tie(0),                          // left pad
+                                         tie(1),                          // right pad
+                                         Vec3::Zero()};                   // ball
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            const Real mass = world.mass(bodies[b]);
+            const Vec3 change = mass * world.velocity(bodies[b]).velocity - momentum[b];
+            const Vec3 contacts = world.forces().on(bodies[b]).impulse;
+            worst = std::max(worst, (change / h - contacts / h - joined[b] - mass * world.settings().gravity).norm());
+            if (bodies[b] != ball) grip = std::max(grip, contacts.norm() / h);
+        }
+    }
+    CHECK(grip > 0.5);
+    CHECK(worst < 1e-12 * grip);
+    CHECK(world.center_of_mass(ball).z() > 0.05);
+    CHECK(world.report().energy_error_share < 1e-3);
+}
+
+TEST_CASE("the egg turns with the hand that grips it, by one radian", "[scene][scenes]") {
+    Scene scene = open_with_pads("hand", {3, 6, 9});
+    World& world = scene.world;
+    const BodyHandle egg = body_of(world, "egg");
+    const auto nothing = [](const StepReport&) {};
+    play(world, 0.9, nothing);  // now the pads hold the egg
+    const Real before = world.pose(egg).rotation.z();
+    play(world, scene.seconds, nothing);
+    CHECK(world.pose(egg).rotation.z() - before == Approx(1).margin(0.1));  // the egg also rolls a little
+    CHECK(world.center_of_mass(egg).head<2>().norm() < 0.005);
+    const Ties ties(world);
+    for (const TieHandle tie : ties.all()) CHECK(ties.state(tie).error < 1e-6);
+    CHECK(world.report().energy_error_share < 1e-3);
+    CHECK(world.report().unconverged == 0);
+}
+
+TEST_CASE("scenes of fingers, organ and hand go on bitwise from files and on any number of threads",
+          "[scene][scenes][determinism]") {
+    const Real seconds = full_tests() ? 1 : 0.02;
+    const auto check = [&](const char* name, const std::vector<int>& pads) {
+        CAPTURE(name);
+        check_same_bits(
+            [&](int threads) {
+                SceneOverrides overrides;
+                overrides.threads = threads;
+                Scene scene = open_with_pads(name, pads, overrides);
+                CHECK(scene.world.advance(seconds).ok());
+                return scene;
+            },
+            [&](World& world) { CHECK(world.advance(seconds / 10).ok()); });
+    };
+    check("finger", {});
+    check("organ", {});
+    check("pick_up", {3, 4});
+    check("hand", {3, 6, 9});
 }
 
 }  // namespace skerry::test::shipped_scenes_test

@@ -49,6 +49,7 @@ struct TieState {
     Vec3 point = Vec3::Zero();    // mean position of the tied nodes [m]
     Vec3 force = Vec3::Zero();    // [N]
     Vec3 moment = Vec3::Zero();   // moment about `point` [N m]
+    Real largest_force = 0;       // largest magnitude of `force` in a step since the tie was added [N]
     Real error = 0;               // largest error of a node that has not broken off [m]
     std::vector<TiedNode> nodes{};
 };

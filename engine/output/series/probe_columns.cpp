@@ -182,7 +182,9 @@ void put_values(const World& world, TrackedProbe& probe, std::vector<Real>& valu
                 const TieState now = tie_state(WorldAccess::state_of(world), tie.tie);
                 put_vector(now.force, values);
                 put_vector(now.moment, values);
-                values.push_back(now.error);
+                const auto broken =
+                    std::ranges::count_if(now.nodes, [](const TiedNode& of) { return bool(of.broken); });
+                values.insert(values.end(), {now.error, static_cast<Real>(broken)});
             },
             [&](const CavityProbe& cavity) {
                 const CavityState now = cavity_state(WorldAccess::state_of(world), cavity.cavity);
@@ -346,6 +348,7 @@ void add_columns(const World& world, const RecordedProbe& probe, std::vector<Ser
                               three("force", "N");
                               three("moment", "N m");
                               one("error", "m");
+                              one("broken", "1");
                           },
                           [&](const CavityProbe&) {
                               one("pressure", "Pa");

@@ -41,6 +41,7 @@ nb::dict values_of(const TieState& state) {
     values["point"] = tuple_of(state.point);
     values["force"] = tuple_of(state.force);
     values["moment"] = tuple_of(state.moment);
+    values["largest_force"] = state.largest_force;
     values["error"] = state.error;
     values["nodes"] = array_of<Index>(std::span<const Index>(node));
     values["node_forces"] = array_of(force);

@@ -222,6 +222,7 @@ JointHandle Joints::add(const JointSettings& joint) {
     table.step[row] = 0;
     table.axis_impulse[row] = {};
     table.impulse[row] = table.moment[row] = Vec3::Zero();
+    table.impulse_axes[row] = Mat3::Identity();
     table.parts[row] = 0;
     if (second != no_index && !joint.bodies_touch) {
         table.parts[row] = world_->may_collide(joint.first, *joint.second) || parted_elsewhere(table, row);
@@ -263,8 +264,9 @@ JointState joint_state(const Model& model, JointHandle joint) {
     if (now.kind == JointKind::slider) apart -= now.axis.dot(apart) * now.axis;
     now.error = apart.norm();
     if (!(joints.step[j] > 0)) return now;
-    now.force = second.axes * joints.impulse[j] / joints.step[j];
-    now.moment = second.axes * joints.moment[j] / joints.step[j];
+    const Mat3& axes = model.joints.impulse_axes[j];
+    now.force = axes * joints.impulse[j] / joints.step[j];
+    now.moment = axes * joints.moment[j] / joints.step[j];
     if (!has_axis(now.kind)) return now;
     const Vec3& along = now.kind == JointKind::hinge ? joints.moment[j] : joints.impulse[j];
     const AxisImpulses& parts = model.joints.axis_impulse[j];

@@ -252,7 +252,7 @@ TieHandle Ties::add(const TieSettings& tie) {
     table.break_force[row] = tie.break_force;
     table.close_gap[row] = tie.close_gap;
     table.bodies_touch[row] = tie.bodies_touch;
-    table.step[row] = 0;
+    table.largest_force[row] = table.step[row] = 0;
     const auto begin = static_cast<Index>(table.node.size());
     for (const Index node : tie.nodes) tie_node(state, tie, objects, poses, node);
     table.nodes[row] = {begin, static_cast<Index>(table.node.size())};
@@ -303,6 +303,7 @@ TieState tie_state(const WorldState& world, TieHandle tie) {
     if (table.second[t] != no_index) now.to_body = handle_of_body(model, table.second[t]);
     if (table.collider[t] != no_index) now.to_collider = handle_of_collider(model, table.collider[t]);
     now.break_force = table.break_force[t];
+    now.largest_force = table.largest_force[t];
     const auto position = [&](std::size_t k) -> const Vec3& {
         return model.nodes.position[static_cast<std::size_t>(inputs.row_of(table.first[t], table.node[k]))];
     };

@@ -88,6 +88,8 @@ void check_joints(const SavedFile& file, const Model& model) {
                 "a negative stiffness, damping or friction", "numbers >= 0");
         require(table.motor_keys[j].size() == 0 || table.drive[j] != JointDrive::none, "motor_keys",
                 "keys without a motor", "no keys");
+        require(is_rotation(table.impulse_axes[j]), "impulse_axes", "a matrix that is not orthonormal",
+                "a rotation matrix");
         require(table.impulse[j].allFinite() && table.moment[j].allFinite(), "impulse", "a value that is not finite",
                 "finite numbers");
     }
@@ -101,6 +103,7 @@ void check_ties(const SavedFile& file, const Model& model) {
         if (!info.has_row_each)
             expect_size(file, std::string("ties/") + info.name, all.column(info).size(), table.node.size());
     expect_rows_of(file, "ties/collider", table.collider, model.colliders.slot.size(), true);
+    expect_between(file, "ties/largest_force", table.largest_force, 0.0, infinity);
     expect_between(file, "ties/step", table.step, 0.0, infinity);
     for (std::size_t t = 0; t < table.size(); ++t) {
         const auto require = [&](bool good, const char* column, const char* found, const char* expected) {

@@ -77,7 +77,9 @@ bool any_part(const SelfMotion& motion, const auto& near, const auto& visit) {
 }  // namespace
 
 void resize(const CollisionInputs& inputs, SelfSearch& self) {
-    for (Column<Vec3>* column : {&self.origin, &self.origin_step, &self.moved}) column->resize(inputs.position.size());
+    // Rows of nodes inside bodies are not used, but they are saved.
+    for (Column<Vec3>* column : {&self.origin, &self.origin_step, &self.moved})
+        column->resize(inputs.position.size(), Vec3::Zero());
     for (Column<Aabb>* box : {&self.origin_box, &self.origin_step_box, &self.moved_box, &self.speed_box})
         box->resize(inputs.bvh_node.size());
 }

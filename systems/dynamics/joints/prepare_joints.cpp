@@ -184,6 +184,7 @@ bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& o
             continue;
         }
         (blocks.block[i].turning ? out.moment : out.impulse)[j] = blocks.impulse[i];
+        out.impulse_axes[j] = blocks.block[i].frame;
         if (!blocks.block[i].axis.locked) out.axis_impulse[j] = blocks.axis_impulse[i];
     }
     return out.step.size() > 0;

@@ -114,6 +114,7 @@ bool mark_driven(const JointInputs& joints, Real t, Real h, std::span<std::uint8
 struct JointMemory {
     std::span<Real> coordinate;
     std::span<Vec3> impulse, moment;
+    std::span<Mat3> impulse_axes;
     std::span<AxisImpulses> axis_impulse;
     std::span<Real> mimic_impulse, step;
 
@@ -121,6 +122,7 @@ struct JointMemory {
         return {.coordinate = binder.write(joint.coordinate),
                 .impulse = binder.write(joint.impulse),
                 .moment = binder.write(joint.moment),
+                .impulse_axes = binder.write(joint.impulse_axes),
                 .axis_impulse = binder.write(joint.axis_impulse),
                 .mimic_impulse = binder.write(joint.mimic_impulse),
                 .step = binder.write(joint.step)};

@@ -61,6 +61,23 @@ class ProgramRunTest(ProgramCase):
         self.assertAlmostEqual(found["held"], 0.02, delta=1e-3)
         self.assertEqual((found["held_body"], found["held_in"]), ("cube", "floor"))
 
+    def test_the_summary_names_ties_that_broke_with_time_and_force(self):
+        block = {"mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [1, 1, 1]}}, "material": "rubber",
+                 "name": "block", "dynamics": "implicit"}
+        scene = {"seconds": 0.4, "settings": {"gravity": [0, 0, 0], "step_size": 1e-3},
+                 "materials": {"rubber": {"E": 1e6}}, "bodies": [block],
+                 "ties": [{"name": "weak", "body": "block", "nodes": [0], "break_force": 2}],
+                 "loads": [{"kind": "force", "body": "block", "nodes": [0], "force": [10, 0, 0],
+                            "scale": [[0, 0], [1, 1]]}]}
+        stats = self.folder / "stats.json"
+        summary = self.skerry("run", self.write("torn.json", scene), "--stats", stats).stdout
+        self.assertRegex(summary, r"  ties +weak: 1 of 1 node broke off at 20\d ms; largest force of the tie 2[.\d]* N")
+        tie = json.loads(stats.read_text())["broken_ties"]["weak"]
+        self.assertEqual((tie["nodes"], tie["broken"]), (1, 1))
+        self.assertEqual(tie["first_time"], tie["last_time"])
+        self.assertAlmostEqual(tie["first_time"], 0.2, delta=2e-3)
+        self.assertTrue(2 < tie["largest_force"] < 2.02, tie)
+
     def test_a_run_in_which_surfaces_cross_ends_with_its_own_status_and_exit_code(self):
         # Two boxes close on a cube until nothing is left between them.
         def finger(side):

@@ -28,6 +28,7 @@ class TieState:
     point: mean position of the tied nodes [m].
     force: sum of the forces on the nodes [N].
     moment: moment of these forces about `point` [N m].
+    largest_force: largest magnitude of `force` in a step since the tie was added [N].
     error: largest distance of a tied node from the place that the tie demands [m].
     nodes: numbers of the nodes, shape (n,).
     node_forces: force on each node, shape (n, 3) [N].
@@ -42,6 +43,7 @@ class TieState:
     point: Vector
     force: Vector
     moment: Vector
+    largest_force: float
     error: float
     nodes: NDArray[np.int32]
     node_forces: NDArray[np.float64]
