@@ -36,6 +36,9 @@ struct Mesh {
     // counted from 0 in their order. An empty list means that the numbers equal the indices in `nodes`.
     std::vector<Index> file_number{};
     std::map<std::string, MeshSet> sets{};  // sets by name
+    // Vectors of the tetrahedra, for example directions of fibres, by name: the arrays of three numbers in the cell
+    // data of a VTK file.
+    std::map<std::string, std::vector<Vec3>> vectors{};
 };
 
 /// A triangle surface, either closed or with a boundary. Triangles are counter-clockwise as seen from outside.
