@@ -83,22 +83,23 @@ TEST_CASE("the axes of an orthotropic material turn with the mesh, for all kinds
 }
 
 TEST_CASE("an orthotropic body keeps energy and momenta at its stable step, however it is turned", "[scene]") {
-    Real step = 0;
-    for (const Vec3& rotation : {Vec3(0, 0, 0), Vec3(1, 2, 0.5)}) {
-        Bar bar(wood(), BodyDynamics::explicit_elastic, ElementKind::smoothed, accurate(Vec3::Zero()), rotation);
-        if (step > 0) CHECK(bar.world.stable_step() == Approx(step).epsilon(1e-6));
-        step = bar.world.stable_step();
-        const Mat3 turn = rotation.norm() > 0
-                              ? Eigen::AngleAxis<Real>(rotation.norm(), rotation.normalized()).toRotationMatrix()
-                              : Mat3(Mat3::Identity());
-        bar.deform(turn * Mat3(Vec3(1.05, 0.97, 1.03).asDiagonal()));
-        const Real start = bar.energy();
-        for (int k = 0; k < 20; ++k) {
-            REQUIRE(bar.world.advance(2e-3).ok());
-            CHECK(bar.energy() == Approx(start).epsilon(0.1));
+    const Real step = Bar(wood()).world.stable_step();
+    // The energy of symplectic Euler oscillates in proportion to the step, but does not grow.
+    for (const Real share : {1.0, 0.05})
+        for (const Vec3& rotation : {Vec3(0, 0, 1e-9), Vec3(1, 2, 0.5)}) {
+            Settings settings = accurate(Vec3::Zero());
+            if (share < 1) settings.step_size = share * step;
+            Bar bar(wood(), BodyDynamics::explicit_elastic, ElementKind::smoothed, settings, rotation);
+            CHECK(bar.world.stable_step() == Approx(step).epsilon(1e-6));
+            const Mat3 turn = Eigen::AngleAxis<Real>(rotation.norm(), rotation.normalized()).toRotationMatrix();
+            bar.deform(turn * Mat3(Vec3(1.05, 0.97, 1.03).asDiagonal()));
+            const Real start = bar.energy(), tolerance = share < 1 ? 0.05 : 0.7;
+            for (int k = 0; k < 40; ++k) {
+                REQUIRE(bar.world.advance(2e-3).ok());
+                CHECK(bar.energy() == Approx(start).epsilon(tolerance));
+            }
+            CHECK(bar.world.report().momentum.norm() < 1e-12 * std::sqrt(start));
         }
-        CHECK(bar.world.report().momentum.norm() < 1e-12 * std::sqrt(start));
-    }
     // A wave along the stiff axis takes at least one step from node to node.
     CHECK(step < 0.03 / std::sqrt(2e6 / 800));
 }
