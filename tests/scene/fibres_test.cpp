@@ -198,14 +198,16 @@ TEST_CASE("the balance of energy accounts for cycles of activation, with both in
     for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
         Settings settings = accurate(Vec3::Zero());
         settings.integrator = integrator;
+        settings.step_size = 1e-4;
         std::vector<TimeKey> cycles;
         for (int k = 0; k < 20; ++k) cycles.push_back({0.02 * k, k % 2 == 0 ? 0.0 : 4e3});
         FibreSettings fibres = along_z();
         fibres.tension = TimeTable(cycles);
         Muscle muscle(fibres, soft(2), settings);
+        muscle.deform(Vec3(0.95, 0.95, 1.15).asDiagonal());  // the passive stress acts in the first cycles
         REQUIRE(muscle.world.advance(0.4).ok());
         const WorldReport report = muscle.world.report();
-        CHECK(report.energy_error_share < 0.01);
+        CHECK(report.energy_error_share < 1e-3);  // error of the scheme, in proportion to the step or its square
         CHECK(report.momentum_error_share < 1e-12);
     }
 }
