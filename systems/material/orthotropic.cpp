@@ -117,8 +117,9 @@ Orthotropic::Slope<T> Orthotropic::slope(const MaterialConstants& material, cons
     const T square = inner_product(F, F);
     Slope<T> slope;
     for (std::size_t k = 0; k < mode_count; ++k) slope.dyads[k] = multiply(F, in_lanes<T>(mode_of(material, k)));
-    slope.scale = square < 3.0 ? T(3.0 / at_least(square, 1e-3)) : T{} + 1.0;
-    slope.stress = at_least(mean + 2.0 * square_root(inner_product(deviator, deviator) * (1.0 / 6)), 0);
+    const Real at_rest = material.shear_modulus * largest_mode(material) + 3 * std::max(material.lame_lambda, 0.0);
+    slope.rest = at_rest * at_least(1.0 - square * (1.0 / 3), 0) +
+                 at_least(mean + 2.0 * square_root(inner_product(deviator, deviator) * (1.0 / 6)), 0);
     return slope;
 }
 

@@ -40,24 +40,23 @@ struct Orthotropic {
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J);
 
-    /// Upper bound of dP/dF: `scale` times mu sum_k D_k (x) D_k + lambda F (x) F with D_k = F M_k, plus `stress` times
-    /// the identity.
+    /// Upper bound of dP/dF: mu sum_k D_k (x) D_k + lambda F (x) F with D_k = F M_k, plus `rest` times the identity.
     template <class T>
     struct Slope {
         std::array<LaneMat3<T>, 6> dyads;
-        T scale, stress;
+        T rest;
     };
     template <class T>
     static Slope<T> slope(const MaterialConstants& material, const LaneMat3<T>& F);
 
-    /// Adds an upper bound of dP/dF to H. It is exact but for the part of the stress. Compressed elements count as if
-    /// |F|^2 were that of the rest shape, because their stiffness grows as soon as they expand again.
+    /// Adds an upper bound of dP/dF to H. It is exact but for the part of the stress, and for compressed elements.
+    /// Their stiffness, which grows as soon as they expand again, counts as nearly that of the rest shape.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const Slope<T> of = slope(material, F);
-        for (const LaneMat3<T>& dyad : of.dyads) H.add_dyad(material.shear_modulus * of.scale, dyad);
-        H.add_dyad(material.lame_lambda * of.scale, F);
-        H.add_identity(of.stress);
+        for (const LaneMat3<T>& dyad : of.dyads) H.add_dyad(T{} + material.shear_modulus, dyad);
+        H.add_dyad(T{} + material.lame_lambda, F);
+        H.add_identity(of.rest);
     }
 };
 
