@@ -7,7 +7,7 @@ set(skerry_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/skerry)
 # What public headers include of components/.
 set(skerry_public_components
     types.h options.h handle.h joint_kind.h tie_kind.h spring_side.h cable_control.h cavity_law.h load_kind.h time_key.h
-    column.h row_memory.h range.h access_check.h)
+    orthotropic_moduli.h column.h row_memory.h range.h access_check.h)
 
 foreach(type IN ITEMS static shared)
     install(TARGETS skerry_${type} EXPORT skerry_${type}_targets)

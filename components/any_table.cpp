@@ -11,6 +11,7 @@
 #include "components/collision_filter.h"
 #include "components/contact_table.h"
 #include "components/element_table.h"
+#include "components/fibre_table.h"
 #include "components/implicit_node_table.h"
 #include "components/joint_table.h"
 #include "components/load_table.h"
@@ -83,6 +84,7 @@ template std::span<const ColumnInfo> columns_of<DisabledPairTable>();
 template std::span<const ColumnInfo> columns_of<EdgeTable>();
 template std::span<const ColumnInfo> columns_of<ElementBlockTable>();
 template std::span<const ColumnInfo> columns_of<ElementNodeTable>();
+template std::span<const ColumnInfo> columns_of<FibreTable>();
 template std::span<const ColumnInfo> columns_of<ImplicitNodeTable>();
 template std::span<const ColumnInfo> columns_of<JointBlockTable>();
 template std::span<const ColumnInfo> columns_of<JointTable>();

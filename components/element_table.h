@@ -96,6 +96,8 @@ struct ElementBlockTable {
     Column<ElementLane> own_frequency;        // upper bound of the highest frequency of the element at rest [1/s]
     // ratio of the stiffness of the spring of each Maxwell element to the stiffness of the material law
     Column<Real> relaxing_share;
+    // Rotation from the mesh to the rest shape that the gradients describe; turns the axes of anisotropic materials
+    Column<Mat3> orientation;
     Column<Index> body;      // row of BodyTable
     Column<Index> material;  // row of MaterialTable
     Column<ElementPart> part;
@@ -114,6 +116,7 @@ struct ElementBlockTable {
         visit("frame_bound", frame_bound, ColumnRole::state);
         visit("implicit_modulus", implicit_modulus, ColumnRole::state);
         visit("rotation", rotation, ColumnRole::state);
+        visit("orientation", orientation, ColumnRole::state);
         visit("body", body, ColumnRole::link);
         visit("material", material, ColumnRole::link);
         visit("part", part, ColumnRole::state);

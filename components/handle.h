@@ -26,6 +26,7 @@ using MaterialHandle = Handle<struct MaterialTag>;
 using BodyHandle = Handle<struct BodyTag>;
 using ColliderHandle = Handle<struct ColliderTag>;
 using AttachmentHandle = Handle<struct AttachmentTag>;
+using FibreHandle = Handle<struct FibreTag>;
 
 /// Maps handles to rows of a table. Rows may move down when earlier rows are erased.
 template <class HandleType>

@@ -7,6 +7,7 @@
 #include "components/column.h"
 #include "components/column_role.h"
 #include "components/options.h"
+#include "components/orthotropic_moduli.h"
 #include "components/row_type.h"
 #include "components/types.h"
 
@@ -23,6 +24,15 @@ struct MaterialConstants {
     Real bulk_viscosity = 0;  // damping ratio of volume changes, at the highest frequency of an element
     // Terms of the law of Ogden: shares of the shear modulus, 0 if not used, and exponents of the stretches.
     std::array<Real, 3> share{1, 0, 0}, exponent{2, 2, 2};
+    // Law `orthotropic`: six matrices of strain, each with the entries xx, yy, zz, xy, yz, zx. They are the
+    // eigenvectors of the stiffness without its part lame_lambda, times the root of their eigenvalues over the shear
+    // modulus. These are the modes of an isotropic material.
+    std::array<Real, 36> strain_modes = [] {
+        constexpr Real root_two = 1.4142135623730951;
+        std::array<Real, 36> modes{};
+        for (std::size_t i = 0; i < 6; ++i) modes[7 * i] = i < 3 ? root_two : 1;
+        return modes;
+    }();
 
     bool relaxes() const { return loss_factor > 0 || bulk_viscosity > 0; }
 };
@@ -66,12 +76,15 @@ struct SurfaceProperties {
 };
 template <>
 struct NumbersOf<SurfaceProperties> : Reals<3> {};
+template <>
+struct NumbersOf<OrthotropicModuli> : Reals<15> {};
 
 struct MaterialTable {
     Column<MaterialConstants> constants;
     Column<SurfaceProperties> surface;
     Column<Real> young_modulus;  // [Pa]
     Column<Real> poisson_ratio;
+    Column<OrthotropicModuli> orthotropic;  // used by the law `orthotropic`
     Column<Real> damping;              // decay rate of the velocities of deformation; rigid motion is not damped [1/s]
     Column<std::uint8_t> sets_losses;  // 1 if the user has set a loss factor above 0
     Column<std::uint32_t> slot;        // handle slot
@@ -81,6 +94,7 @@ struct MaterialTable {
         visit("surface", surface, ColumnRole::state);
         visit("young_modulus", young_modulus, ColumnRole::state);
         visit("poisson_ratio", poisson_ratio, ColumnRole::state);
+        visit("orthotropic", orthotropic, ColumnRole::state);
         visit("damping", damping, ColumnRole::state);
         visit("sets_losses", sets_losses, ColumnRole::state);
         visit("slot", slot, ColumnRole::state);

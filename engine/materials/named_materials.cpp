@@ -3,8 +3,11 @@
 #include <array>
 #include <string>
 
+#include "engine/world/validate.h"
 #include "skerry/error.h"
 #include "skerry/materials.h"
+#include "systems/material/material_law.h"
+#include "systems/material/orthotropic.h"
 
 namespace skerry {
 
@@ -224,6 +227,18 @@ MaterialSettings mooney_rivlin(Real c10, Real c01, Real bulk_modulus, MaterialSe
     // mu_1 = 2 c10 with the exponent 2, mu_2 = -2 c01 with the exponent -2
     const std::array<OgdenTerm, 2> both{{{2 * c10, 2}, {-2 * c01, -2}}};
     return ogden(std::span(both).first(c01 == 0 ? 1 : 2), bulk_modulus, base);
+}
+
+MaterialSettings orthotropic(const OrthotropicModuli& moduli, MaterialSettings base) {
+    base.model = MaterialModel::orthotropic;
+    base.orthotropic = moduli;
+    validate(base);
+    MaterialConstants constants{.model = base.model, .shear_modulus = 0, .lame_lambda = 0, .density = base.density};
+    set_orthotropic(moduli, constants);
+    const IsotropicModuli softer = isotropic_moduli(constants);
+    base.young_modulus = softer.young_modulus;
+    base.poisson_ratio = softer.poisson_ratio;
+    return base;
 }
 
 }  // namespace skerry

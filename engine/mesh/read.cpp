@@ -140,6 +140,7 @@ Mesh take_tetrahedra(const std::string& path, RawMesh& raw, std::vector<std::str
     mesh.nodes = std::move(used.nodes);
     mesh.tetrahedra = std::move(raw.tetrahedra);
     mesh.label = std::move(raw.label);
+    mesh.vectors = std::move(raw.vectors);
     turn_valid(path, mesh, notes);
     if (!raw.sets.empty()) take_sets(path, raw.sets, used.number, raw_nodes, mesh, notes);
     if (mesh.nodes.size() < raw_nodes) mesh.file_number = std::move(used.number);

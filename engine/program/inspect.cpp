@@ -276,6 +276,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"cavities", plan.cavities.size()},
                            {"pipes", plan.pipes.size()},
                            {"loads", plan.loads.size()},
+                           {"fibres", plan.fibres.size()},
                            {"springs", plan.springs.size()},
                            {"pairs", plan.pairs.size()},
                            {"surfaces", surfaces},
@@ -310,6 +311,7 @@ int inspect_scene(const InspectOptions& options) {
                                                                     {plan.cavities.size(), "cavities"},
                                                                     {plan.pipes.size(), "pipes"},
                                                                     {plan.loads.size(), "loads"},
+                                                                    {plan.fibres.size(), "families of fibres"},
                                                                     {plan.springs.size(), "springs"},
                                                                     {plan.pairs.size(), "pairs of materials"},
                                                                     {surfaces, "surface sets"}})

@@ -67,6 +67,11 @@ void bind_materials(nb::module_& module) {
         for (const auto& [modulus, exponent] : pairs) terms.push_back({modulus, exponent});
         return values_of(ogden(terms, bulk_modulus, settings_of(base)));
     });
+    module.def("orthotropic", [](nb::handle moduli, nb::handle base) {
+        OrthotropicModuli settings;
+        read(moduli, settings);
+        return values_of(orthotropic(settings, settings_of(base)));
+    });
     module.def("mooney_rivlin", [](Real c10, Real c01, Real bulk_modulus, nb::handle base) {
         return values_of(mooney_rivlin(c10, c01, bulk_modulus, settings_of(base)));
     });

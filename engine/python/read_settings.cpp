@@ -208,6 +208,9 @@ void read(nb::handle from, Settings& to) {
 void read(nb::handle from, MaterialSettings& to) {
     read_members(from, to);
 }
+void read(nb::handle from, OrthotropicModuli& to) {
+    read_members(from, to);
+}
 void read(nb::handle from, BodySettings& to) {
     read_members(from, to);
 }
@@ -331,9 +334,9 @@ nb::object object_of(const TimeTable& table) {
 }
 
 void bind_settings(nb::module_& module) {
-    module.def("defaults", &defaults_of<Settings, MaterialSettings, SurfaceSettings, Pose, MotionKey, Motion,
-                                        JointPassive, MotorKey, JointMotor, GasFilling, LiquidFilling, ProblemSettings,
-                                        Plane, Sphere, Box, Capsule, Cylinder, Bucket>);
+    module.def("defaults", &defaults_of<Settings, MaterialSettings, OrthotropicModuli, SurfaceSettings, Pose, MotionKey,
+                                        Motion, JointPassive, MotorKey, JointMotor, GasFilling, LiquidFilling,
+                                        ProblemSettings, Plane, Sphere, Box, Capsule, Cylinder, Bucket>);
 }
 
 }  // namespace skerry::python

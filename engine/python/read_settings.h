@@ -20,6 +20,7 @@ namespace skerry::python {
 /// Python passes them as arguments.
 void read(nb::handle from, Settings& to);
 void read(nb::handle from, MaterialSettings& to);
+void read(nb::handle from, OrthotropicModuli& to);
 void read(nb::handle from, BodySettings& to);
 void read(nb::handle from, ColliderSettings& to);
 void read(nb::handle from, LoadSettings& to);

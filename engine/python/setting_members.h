@@ -58,6 +58,15 @@ void for_each_setting(Is<MaterialSettings> auto& s, auto&& visit) {
     visit("bulk_viscosity", s.bulk_viscosity);
     visit("model", s.model);
     visit("terms", s.terms);
+    visit("orthotropic", s.orthotropic);
+}
+
+void for_each_setting(Is<OrthotropicModuli> auto& s, auto&& visit) {
+    visit("young_modulus", s.young_modulus);
+    visit("poisson_ratio", s.poisson_ratio);
+    visit("shear_modulus", s.shear_modulus);
+    visit("first_axis", s.first_axis);
+    visit("second_axis", s.second_axis);
 }
 
 void for_each_setting(Is<BodySettings> auto& s, auto&& visit) {
@@ -259,7 +268,8 @@ inline constexpr bool has_size = sizeof(Struct) == numbers * sizeof(Real) + (siz
 static_assert(has_size<Settings, 17>);
 static_assert(
     has_size<BodySettings, 35, std::map<int, MaterialHandle>, std::map<std::string, MaterialHandle>, std::string>);
-static_assert(has_size<MaterialSettings, 20>);
+static_assert(has_size<MaterialSettings, 20, OrthotropicModuli>);
+static_assert(has_size<OrthotropicModuli, 15>);
 static_assert(has_size<ColliderSettings, 16, Motion, std::string>);
 static_assert(has_size<LoadSettings, 2>);
 static_assert(has_size<SurfaceSettings, 8>);
@@ -289,6 +299,8 @@ template <>
 inline constexpr const char* class_name<Settings> = "Settings";
 template <>
 inline constexpr const char* class_name<MaterialSettings> = "Material";
+template <>
+inline constexpr const char* class_name<OrthotropicModuli> = "OrthotropicModuli";
 template <>
 inline constexpr const char* class_name<LoadSettings> = "LoadSettings";
 template <>

@@ -184,6 +184,11 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         }));
     const std::vector<CavityHandle> cavities = add_cavities(plan, bodies, world);
     for (const LoadPlan& load : plan.loads) called_at(load.place, [&] { return add_planned(load, bodies, world); });
+    for (const FibrePlan& fibres : plan.fibres) {
+        FibreSettings settings = fibres.settings;
+        settings.body = bodies[fibres.body];
+        called_at(fibres.place, [&] { return Fibres(world).add(settings); });
+    }
     std::vector<SpringHandle> springs;
     for (const SpringPlan& spring : plan.springs) {
         SpringSettings settings = spring.settings;

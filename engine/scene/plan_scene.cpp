@@ -338,6 +338,7 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     for (std::size_t i = 0; i < scene.cables.size(); ++i) plan.cables.push_back(plan_cable(scene.cables[i], i, plan));
     plan_cavities(scene, plan);
     for (const LoadEntry& load : scene.loads) plan.loads.push_back(plan_load(load, plan));
+    for (const FibreEntry& fibres : scene.fibres) plan.fibres.push_back(plan_fibres(fibres, plan));
     for (std::size_t i = 0; i < scene.springs.size(); ++i) plan_spring(scene.springs[i], i, plan);
     for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);
     return plan;

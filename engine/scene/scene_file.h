@@ -13,6 +13,7 @@
 #include "engine/scene/values.h"
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
+#include "skerry/fibre.h"
 #include "skerry/joint.h"
 #include "skerry/settings.h"
 #include "skerry/spring.h"
@@ -259,6 +260,16 @@ struct LoadEntry : PartEntry {
     std::optional<LoadArea> area;
     std::optional<TimeTable> scale;
 };
+/// Fibres in a body, or in a set of its tetrahedra.
+struct FibreEntry {
+    std::string body;
+    std::optional<std::string> set;
+    std::optional<Vec3> direction;
+    std::optional<std::string> direction_array;  // name in Mesh::vectors
+    Real stiffness = FibreSettings{}.stiffness, exponent = FibreSettings{}.exponent;
+    TimeTable tension = FibreSettings{}.tension;
+    Place place;
+};
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
 enum class ProbeQuantity {
@@ -329,6 +340,7 @@ struct SceneFile {
     std::vector<CavityEntry> cavities;
     std::vector<PipeEntry> pipes;
     std::vector<LoadEntry> loads;
+    std::vector<FibreEntry> fibres;
     std::vector<SpringEntry> springs;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;

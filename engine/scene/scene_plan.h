@@ -101,6 +101,11 @@ struct LoadPlan {
     AnyLoad load{};
     Place place;
 };
+struct FibrePlan {
+    std::size_t body = 0;    // index in ScenePlan::bodies
+    FibreSettings settings;  // settings without body handle, because handles exist only in a built world
+    Place place;
+};
 struct SpringPlan {
     std::string name;
     AnchorPlan first, second;
@@ -149,6 +154,7 @@ struct ScenePlan {
     std::vector<CavityPlan> cavities;
     std::vector<PipePlan> pipes;
     std::vector<LoadPlan> loads;
+    std::vector<FibrePlan> fibres;
     std::vector<SpringPlan> springs;
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;
@@ -221,6 +227,9 @@ std::vector<CavityHandle> add_cavities(const ScenePlan& plan, const std::vector<
 LoadPlan plan_load(const LoadEntry& entry, const ScenePlan& plan);
 /// Adds a planned load to a world with the given bodies, in the order of ScenePlan::bodies.
 LoadHandle add_planned(const LoadPlan& load, std::span<const BodyHandle> bodies, World& world);
+
+/// Plans the fibres of an entry. `plan` already contains all bodies.
+FibrePlan plan_fibres(const FibreEntry& entry, const ScenePlan& plan);
 
 /// Adds a spring to a plan that already contains all bodies and colliders. `number` counts the springs from 0.
 void plan_spring(const SpringEntry& entry, std::size_t number, ScenePlan& plan);

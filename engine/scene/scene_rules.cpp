@@ -35,6 +35,9 @@ MaterialSettings law_of(const OgdenEntry& entry, const MaterialSettings& base) {
 MaterialSettings law_of(const MooneyRivlinEntry& entry, const MaterialSettings& base) {
     return mooney_rivlin(entry.c10, entry.c01, entry.bulk_modulus, base);
 }
+MaterialSettings law_of(const OrthotropicModuli& moduli, const MaterialSettings& base) {
+    return orthotropic(moduli, base);
+}
 template <class Entry>
 struct LawBy {};
 std::string_view no_hint(std::string_view) {
@@ -85,6 +88,23 @@ const Rule<MooneyRivlinEntry>& rule_of<MooneyRivlinEntry>() {
                  {.meaning = "modulus of the second invariant", .unit = "Pa", .limits = at_least(0), .required = true})
             .key("bulk_modulus", &Entry::bulk_modulus,
                  {.meaning = "bulk modulus", .unit = "Pa", .limits = above(0), .required = true});
+    return rule;
+}
+
+template <>
+const Rule<OrthotropicModuli>& rule_of<OrthotropicModuli>() {
+    using M = OrthotropicModuli;
+    static const auto rule =
+        Rule<M>("orthotropic", "Elastic constants along the three axes of a material.")
+            .key("young_modulus", &M::young_modulus, {.meaning = "E_1, E_2, E_3", .unit = "Pa", .required = true})
+            .key("poisson_ratio", &M::poisson_ratio,
+                 {.meaning = "nu_12, nu_23, nu_13: under a stress along axis i alone, the strain along axis j is "
+                             "-nu_ij times that along axis i",
+                  .required = true})
+            .key("shear_modulus", &M::shear_modulus, {.meaning = "G_12, G_23, G_13", .unit = "Pa", .required = true})
+            .key("first_axis", &M::first_axis, {.meaning = "direction of the first axis in the mesh"})
+            .key("second_axis", &M::second_axis,
+                 {.meaning = "direction of the second axis in the mesh, made orthogonal to the first"});
     return rule;
 }
 
@@ -289,11 +309,13 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
                                        {.meaning = "law of Ogden for rubber; sets the model and the elastic moduli"})
             .preset<LawBy<MooneyRivlinEntry>>(
                 "mooney_rivlin", {.meaning = "law of Mooney and Rivlin: the law of Ogden with the exponents 2 and -2"})
-            .at_most_one({"ogden", "mooney_rivlin", "model"})
-            .at_most_one({"ogden", "mooney_rivlin", "young_modulus"})
-            .at_most_one({"ogden", "mooney_rivlin", "E"})
-            .at_most_one({"ogden", "mooney_rivlin", "poisson_ratio"})
-            .at_most_one({"ogden", "mooney_rivlin", "nu"})
+            .preset<LawBy<OrthotropicModuli>>(
+                "orthotropic", {.meaning = "orthotropic elasticity; sets the model and the elastic constants"})
+            .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "model"})
+            .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "young_modulus"})
+            .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "E"})
+            .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "poisson_ratio"})
+            .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "nu"})
             .together({"static_friction", "dynamic_friction"})
             .at_most_one({"friction", "static_friction"})
             .at_most_one({"mu", "static_friction"})
@@ -431,6 +453,7 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("cavities", &SceneFile::cavities, {.meaning = "pressure on faces, and gas or liquid in cavities"})
             .key("pipes", &SceneFile::pipes, {.meaning = "pipes between cavities with gas"})
             .key("loads", &SceneFile::loads, {.meaning = "forces, tractions and force fields"})
+            .key("fibres", &SceneFile::fibres, {.meaning = "fibres in bodies, which resist stretch and contract"})
             .key("springs", &SceneFile::springs,
                  {.meaning = "springs and dampers between points of bodies, colliders and the world"})
             .key("probes", &SceneFile::probes,

@@ -88,6 +88,8 @@ const Rule<PipeEntry>& rule_of<PipeEntry>();
 template <>
 const Rule<LoadEntry>& rule_of<LoadEntry>();
 template <>
+const Rule<FibreEntry>& rule_of<FibreEntry>();
+template <>
 const Rule<SpringEntry>& rule_of<SpringEntry>();
 template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();

@@ -221,6 +221,37 @@ void require_terms(const MaterialSettings& material, const std::string& object) 
     require(std::abs(sum - 1) <= rounding, object, "terms", sum, "shares of the shear modulus that sum to 1");
 }
 
+/// Checks that the stiffness of an orthotropic material is positive definite.
+void require_orthotropic(const OrthotropicModuli& moduli, const std::string& object) {
+    const Vec3 &E = moduli.young_modulus, &nu = moduli.poisson_ratio, &G = moduli.shear_modulus;
+    const std::array<const char*, 3> pair{"12", "23", "13"};
+    for (Index i = 0; i < 3; ++i) {
+        const std::string entry = "[" + std::to_string(i) + "]";
+        require(E[i] > 0, object, ("orthotropic.young_modulus" + entry).c_str(), E[i], "a modulus > 0 (Pa)");
+        require(G[i] > 0, object, ("orthotropic.shear_modulus" + entry).c_str(), G[i], "a modulus > 0 (Pa)");
+    }
+    for (Index k = 0; k < 3; ++k) {
+        const Index first = k == 1 ? 1 : 0, second = k == 0 ? 1 : 2;
+        const std::string name = pair[static_cast<std::size_t>(k)];
+        const Real most = std::sqrt(E[first] / E[second]);
+        require(std::abs(nu[k]) < most, object, ("orthotropic.poisson_ratio[" + std::to_string(k) + "]").c_str(), nu[k],
+                ("a number between -" + shown(most) + " and " + shown(most) + ", the root of E" + name.substr(0, 1) +
+                 "/E" + name.substr(1) + ", for a positive definite stiffness")
+                    .c_str());
+    }
+    const Real rest = 1 - nu[0] * nu[0] * E[1] / E[0] - nu[1] * nu[1] * E[2] / E[1] - nu[2] * nu[2] * E[2] / E[0] -
+                      2 * nu[0] * nu[1] * nu[2] * E[2] / E[0];
+    constexpr Real least = 1e-6;
+    require(rest >= least, object, "orthotropic.poisson_ratio", rest,
+            "at least 1e-6 for 1 - nu12^2 E2/E1 - nu23^2 E3/E2 - nu13^2 E3/E1 - 2 nu12 nu23 nu13 E3/E1, for a positive "
+            "definite stiffness");
+    const Vec3 &first = moduli.first_axis, &second = moduli.second_axis;
+    if (!first.allFinite() || !second.allFinite() ||
+        !(first.cross(second).norm() > 1e-6 * first.norm() * second.norm()))
+        refuse(object, "orthotropic.first_axis, second_axis", shown(first) + " and " + shown(second),
+               "two directions that are not parallel");
+}
+
 }  // namespace
 
 void validate(const MaterialSettings& material) {
@@ -252,6 +283,7 @@ void validate(const MaterialSettings& material) {
     require(loss_factor >= 0 && loss_factor <= largest_loss_factor, object, "loss_factor", loss_factor,
             "a number from 0 to 0.3");
     require_terms(material, object);
+    if (material.model == MaterialModel::orthotropic) require_orthotropic(material.orthotropic, object);
     require(material.bulk_viscosity >= 0 && material.bulk_viscosity <= largest_bulk_viscosity, object, "bulk_viscosity",
             material.bulk_viscosity, "a number from 0 to 1");
 }

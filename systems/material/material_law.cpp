@@ -29,4 +29,9 @@ MaterialConstants material_constants(MaterialModel model, Real young_modulus, Re
             .density = density};
 }
 
+IsotropicModuli isotropic_moduli(const MaterialConstants& material) {
+    const Real mu = material.shear_modulus, sum = material.lame_lambda + mu;
+    return {mu * (2 * sum + material.lame_lambda) / sum, material.lame_lambda / (2 * sum)};
+}
+
 }  // namespace skerry

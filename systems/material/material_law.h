@@ -20,4 +20,11 @@ Tangent tangent(const MaterialConstants& material, const Mat3& F);
 /// [kg/m^3].
 MaterialConstants material_constants(MaterialModel model, Real young_modulus, Real poisson_ratio, Real density);
 
+struct IsotropicModuli {
+    Real young_modulus;  // [Pa]
+    Real poisson_ratio;
+};
+/// Young's modulus and Poisson's ratio of the Lame constants.
+IsotropicModuli isotropic_moduli(const MaterialConstants& material);
+
 }  // namespace skerry

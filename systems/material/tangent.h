@@ -1,6 +1,8 @@
 // Tangent of a material law for Newton steps: dP/dF without its negative eigenvalues.
 #pragma once
 
+#include <array>
+
 #include "components/types.h"
 
 namespace skerry {
@@ -14,6 +16,11 @@ struct Tangent {
     Mat3 left, right;
     Mat3 normal;
     Vec3 flip, twist;
+    // Further parts of dP/dF that only anisotropic laws have: dF is also mapped to sum_k (D_k : dF) D_k + dF S, with
+    // the matrices D_k of `dyads` and the symmetric matrix S = `second_stress` [Pa^(1/2) and Pa].
+    std::array<Mat3, 7> dyads{};
+    Mat3 second_stress{};
+    bool is_anisotropic = false;
 };
 
 /// Signed singular value decomposition F = left diag(stretch) right^T with rotations `left` and `right`. The smallest

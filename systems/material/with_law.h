@@ -6,6 +6,7 @@
 #include "systems/material/guard.h"
 #include "systems/material/linear.h"
 #include "systems/material/ogden.h"
+#include "systems/material/orthotropic.h"
 #include "systems/material/stable_neo_hookean.h"
 
 namespace skerry {
@@ -37,6 +38,8 @@ template <class Visit>
             return visit(Guard{});
         case MaterialModel::ogden:
             return visit(Ogden{});
+        case MaterialModel::orthotropic:
+            return visit(Orthotropic{});
         case MaterialModel::stable_neo_hookean:
             break;
     }

@@ -95,7 +95,7 @@ TEST_CASE("the list of stages captures nothing", "[contract]") {
             CHECK_FALSE(std::regex_search(file.lines[i], capture));
         }
     }
-    CHECK(found == 15);
+    CHECK(found == 16);
 }
 
 }  // namespace skerry::test::house_rules_test

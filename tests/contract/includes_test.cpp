@@ -67,11 +67,20 @@ bool same_folder(const std::string& a, const std::string& b) {
 }
 
 bool is_public(const std::string& path) {
-    static const std::set<std::string> components{
-        "components/types.h",         "components/options.h",    "components/handle.h",       "components/joint_kind.h",
-        "components/column.h",        "components/range.h",      "components/access_check.h", "components/tie_kind.h",
-        "components/cable_control.h", "components/cavity_law.h", "components/time_key.h",     "components/load_kind.h",
-        "components/spring_side.h"};
+    static const std::set<std::string> components{"components/types.h",
+                                                  "components/options.h",
+                                                  "components/handle.h",
+                                                  "components/joint_kind.h",
+                                                  "components/column.h",
+                                                  "components/range.h",
+                                                  "components/access_check.h",
+                                                  "components/tie_kind.h",
+                                                  "components/cable_control.h",
+                                                  "components/cavity_law.h",
+                                                  "components/time_key.h",
+                                                  "components/load_kind.h",
+                                                  "components/orthotropic_moduli.h",
+                                                  "components/spring_side.h"};
     return path.starts_with("engine/include/skerry/") || components.contains(path);
 }
 

@@ -11,6 +11,7 @@
 #include "jobs/executor.h"
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
+#include "skerry/fibre.h"
 #include "skerry/joint.h"
 #include "skerry/load.h"
 #include "skerry/rollout.h"
@@ -234,7 +235,7 @@ TEST_CASE("rigid and implicit bodies at rest allocate nothing, either", "[determ
     CHECK(allocations_of_a_fifth_second(world) == 0);
 }
 
-TEST_CASE("springs and dampers allocate nothing, either", "[determinism]") {
+TEST_CASE("springs, dampers and fibres allocate nothing, either", "[determinism]") {
     Settings settings = two_threads();
     settings.sleep = false;
     World world(settings);
@@ -251,6 +252,8 @@ TEST_CASE("springs and dampers allocate nothing, either", "[determinism]") {
                             .stiffness = 5,
                             .damping = 1,
                             .rest_length = TimeTable({{0, 0.9}, {10, 0.8}})});
+        if (dynamics != BodyDynamics::rigid)
+            Fibres(world).add({.body = body, .stiffness = 1e4, .tension = TimeTable({{0, 0}, {10, 1e4}})});
     }
     for (int k = 0; k < 10; ++k) REQUIRE(world.advance(0.2).ok());
     CHECK(allocations_of_a_fifth_second(world) == 0);

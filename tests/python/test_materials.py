@@ -63,6 +63,22 @@ def test_moduli_of_rubber_as_papers_give_them():
         world.add_material(model="ogden", terms=((0.25, 1.0),) * 4)
 
 
+def test_orthotropic_constants() -> None:
+    moduli = sk.OrthotropicModuli(
+        young_modulus=(2e6, 1e5, 5e4),
+        poisson_ratio=(0.3, 0.35, 0.25),
+        shear_modulus=(6e4, 2e4, 4e4),
+        first_axis=(0, 0, 1),
+    )
+    wood = sk.orthotropic(moduli, sk.Material(density=500.0))
+    assert wood.model == "orthotropic" and wood.density == 500 and wood.orthotropic == moduli
+    world = sk.World()
+    body = world.add_body(sk.Mesh.box((0.1, 0.1, 0.1), (1, 1, 1)), wood)
+    assert body.material.settings == wood
+    with pytest.raises(sk.SceneError, match=r"poisson_ratio\[0\]: found 9"):
+        sk.orthotropic(sk.OrthotropicModuli(poisson_ratio=(9, 0.3, 0.3)))
+
+
 def test_an_unknown_name_is_refused_with_the_names():
     with pytest.raises(KeyError, match="found 'stel', expected one of the names .*steel"):
         sk.materials["stel"]

@@ -54,5 +54,9 @@ MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, Mate
 /// I_1, I_2 of the stretches divided by J^(1/3) [Pa]. This is the law of Ogden with the exponents 2 and -2.
 MaterialSettings mooney_rivlin(Real c10, Real c01, Real bulk_modulus, MaterialSettings base = {});
 
+/// `base` with the law `orthotropic` for strains of some per cent at any rotation. Sets model, orthotropic,
+/// young_modulus and poisson_ratio. Throws SceneError if the stiffness is not positive definite, with the condition.
+MaterialSettings orthotropic(const OrthotropicModuli& moduli, MaterialSettings base = {});
+
 }  // namespace skerry
 #pragma GCC visibility pop

@@ -39,6 +39,9 @@ struct Mesh {
     // For a rigid body without tetrahedra: the triangles of its surface, see World::add_body(const SurfaceMesh&, ...).
     // With tetrahedra the list must be empty.
     std::vector<std::array<Index, 3>> triangles{};
+    // Vectors of the tetrahedra, for example directions of fibres, by name: the arrays of three numbers in the cell
+    // data of a VTK file.
+    std::map<std::string, std::vector<Vec3>> vectors{};
 };
 
 /// A triangle surface, either closed or with a boundary. Triangles are counter-clockwise as seen from outside.

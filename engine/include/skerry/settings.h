@@ -14,6 +14,7 @@
 
 #include "components/handle.h"
 #include "components/options.h"
+#include "components/orthotropic_moduli.h"
 #include "components/types.h"
 #include "skerry/mesh.h"
 
@@ -53,6 +54,9 @@ struct MaterialSettings {
     MaterialModel model = MaterialModel::stable_neo_hookean;
     // Terms of the law `ogden`, whose shares sum to 1. ogden() and mooney_rivlin() of materials.h set them from moduli.
     std::array<StretchTerm, 3> terms{{{1, 2}, {}, {}}};
+    // Elastic constants of the law `orthotropic`. This law replaces young_modulus and poisson_ratio by those of an
+    // isotropic material that is nowhere stiffer; they serve losses and estimates.
+    OrthotropicModuli orthotropic{};
 };
 
 /// Kind of motion of a body. Rigid and implicit bodies do not limit the step and have no self-contact.

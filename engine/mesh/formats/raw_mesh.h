@@ -22,6 +22,7 @@ struct RawMesh {
     std::vector<std::array<Index, 3>> triangles;
     std::size_t curved_triangles = 0;  // number of triangles of second or higher order
     std::map<std::string, MeshSet> sets;
+    std::map<std::string, std::vector<Vec3>> vectors;  // of the tetrahedra
     // number of ignored elements of each kind, for example "hexahedra"
     std::map<std::string, std::size_t> others;
 };

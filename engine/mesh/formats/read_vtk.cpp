@@ -325,7 +325,10 @@ private:
         if (!type) return false;
         if (keyword == "SCALARS") return read_scalars(name, rows, of_cells, *type);
         if (keyword == "TEXTURE_COORDINATES") return skip_array(rows, coordinates, *type);
-        if (keyword == "VECTORS" || keyword == "NORMALS") return skip_array(rows, 3, *type);
+        if (keyword == "VECTORS" || keyword == "NORMALS") {
+            begin_rows();
+            return read_array(name, rows, 3, of_cells, *type);
+        }
         if (keyword == "TENSORS") return skip_array(rows, 9, *type);
         if (keyword == "TENSORS6") return skip_array(rows, 6, *type);
         if (keyword == "GLOBAL_IDS" || keyword == "PEDIGREE_IDS" || keyword == "EDGE_FLAGS")
@@ -369,12 +372,24 @@ private:
         return true;
     }
 
-    /// Stores the array if it is the first array with labels, or if it has one whole number per row; otherwise skips
-    /// it.
+    bool read_vectors(const std::string& name, std::size_t rows, const NumberType& type) {
+        std::vector<Vec3>& vectors = cells_.vectors[name];
+        vectors.clear();
+        for (std::size_t i = 0; i < rows; ++i) {
+            reader_.set_row("cell", i + 1, rows);
+            Vec3& vector = vectors.emplace_back();
+            for (Real& entry : vector) entry = read_real(type, "vector");
+        }
+        return true;
+    }
+
+    /// Stores the array if it is the first array with labels, if it has one whole number per row, or if it has one
+    /// vector per cell; otherwise skips it.
     bool read_array(const std::string& name, std::size_t rows, std::size_t components, bool of_cells,
                     const NumberType& type) {
         const bool labels = of_cells && cells_.label.empty() && is_vtk_label(name);
         const bool real = type.kind == Kind::float32 || type.kind == Kind::float64;
+        if (of_cells && components == 3 && type.kind != Kind::bit) return read_vectors(name, rows, type);
         if (components != 1 || (real && !labels)) return skip_rows(rows, components, type);
         std::vector<int> numbers;
         bool whole = true;

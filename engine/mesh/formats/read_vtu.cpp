@@ -146,6 +146,7 @@ private:
         if (cells_.label.size() == first_cell) take_labels(piece, cells);
         take_data(piece.point_data, points, first_node, cells_.point_data);
         take_data(piece.cell_data, cells, first_cell, cells_.cell_data);
+        take_vectors(piece, cells, first_cell);
     }
 
     void take_points(const Piece& piece, const std::string& name, std::size_t count) {
@@ -220,6 +221,19 @@ private:
             if (known == all.end() || known->value.size() != before) continue;
             for (const Real number : reals_of(array, form_, count, "number", reader_))
                 if (const std::optional<int> value = as_label(number)) known->value.push_back(*value);
+        }
+    }
+
+    /// Appends the arrays of vectors of the cells of a piece. `before`: number of cells of earlier pieces. An array
+    /// that an earlier piece lacks is ignored.
+    void take_vectors(const Piece& piece, std::size_t count, std::size_t before) {
+        for (const VtkXmlArray& array : piece.cell_data) {
+            if (array.tag.value_of("NumberOfComponents", "1") != "3") continue;
+            std::vector<Vec3>& vectors = cells_.vectors[std::string(array.tag.value_of("Name"))];
+            if (vectors.size() != before) continue;
+            const auto numbers = reals_of(array, form_, 3 * count, "vector", reader_);
+            for (std::size_t c = 0; c < count; ++c)
+                vectors.emplace_back(numbers[3 * c], numbers[3 * c + 1], numbers[3 * c + 2]);
         }
     }
 

@@ -52,6 +52,8 @@ void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
             require_different(t, reader);
             mesh.tetrahedra.push_back(t);
             if (!cells.label.empty()) mesh.label.push_back(cells.label[c]);
+            for (const auto& [name, of_cell] : cells.vectors)
+                if (of_cell.size() == cells.type.size()) mesh.vectors[name].push_back(of_cell[c]);
         } else if (type == 5) {
             if (nodes.size() != 3) reader.complain("node count", std::to_string(nodes.size()), "3 for a triangle");
             take_vtk_polygon(nodes, reader, mesh);

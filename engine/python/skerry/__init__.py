@@ -2,7 +2,7 @@
 
 from ._core import version as __version__
 from ._errors import BusyError, Doubt, SceneError, StepError
-from ._materials import KnownFriction, NamedMaterials, materials, mooney_rivlin, ogden
+from ._materials import KnownFriction, NamedMaterials, materials, mooney_rivlin, ogden, orthotropic
 from ._mesh import Mesh, MeshReport, read_surface
 from ._problem import Problem, ProblemError, Solution, StepProblem, problem_error, solve
 from ._recorder import Film, Page, Recorder
@@ -43,6 +43,7 @@ from ._settings import (
     MotionKey,
     Motor,
     MotorKey,
+    OrthotropicModuli,
     Plane,
     Pose,
     Settings,
@@ -68,6 +69,8 @@ from ._world import (
     DynamicsChoice,
     DynamicsEstimate,
     Energy,
+    FibreFamily,
+    FibreState,
     Joint,
     JointState,
     Load,
@@ -143,6 +146,8 @@ __all__ = [
     "ElementKind",
     "Energy",
     "EnergyProbe",
+    "FibreFamily",
+    "FibreState",
     "Film",
     "ForceProbe",
     "ForceReport",
@@ -174,6 +179,7 @@ __all__ = [
     "NodesProbe",
     "ObjectList",
     "Objects",
+    "OrthotropicModuli",
     "Page",
     "PairForces",
     "Pipe",
@@ -234,6 +240,7 @@ __all__ = [
     "materials",
     "mooney_rivlin",
     "ogden",
+    "orthotropic",
     "problem_error",
     "read_surface",
     "rollout",

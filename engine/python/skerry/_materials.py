@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from . import _core
-from ._settings import Material
+from ._settings import Material, OrthotropicModuli
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,6 +76,14 @@ def mooney_rivlin(c10: float, c01: float, bulk_modulus: float, base: Material | 
     SceneError: the values give no stable law.
     """
     return Material(**_core.mooney_rivlin(c10, c01, bulk_modulus, base or Material()))
+
+
+def orthotropic(moduli: OrthotropicModuli, base: Material | None = None) -> Material:
+    """Material with orthotropic elasticity, for strains of some per cent at any rotation.
+
+    base: gives density, friction and losses. SceneError: the stiffness is not positive definite.
+    """
+    return Material(**_core.orthotropic(moduli, base or Material()))
 
 
 materials = NamedMaterials()

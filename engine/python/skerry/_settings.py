@@ -33,7 +33,7 @@ ContactRegions: TypeAlias = Literal["separate", "global"]
 SolverMethod: TypeAlias = Literal["automatic", "ags", "pgs", "pcg_pgs", "newton", "pcg_fr", "pcg_pr"]
 Friction: TypeAlias = Literal["cone", "pyramid"]
 StartOverlaps: TypeAlias = Literal["resolve", "refuse", "ignore"]
-MaterialModel: TypeAlias = Literal["linear", "corotational", "stable_neo_hookean", "ogden"]
+MaterialModel: TypeAlias = Literal["linear", "corotational", "stable_neo_hookean", "ogden", "orthotropic"]
 ElementKind: TypeAlias = Literal["linear", "smoothed", "edge_smoothed", "edge_node_smoothed"]
 Dynamics: TypeAlias = Literal["explicit", "rigid", "implicit", "automatic"]
 JointKind: TypeAlias = Literal["ball", "hinge", "slider", "fixed"]
@@ -146,6 +146,27 @@ class Settings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class OrthotropicModuli:
+    """Elastic constants along the three orthogonal axes of an orthotropic material.
+
+    young_modulus: E_1, E_2, E_3, > 0 [Pa].
+    poisson_ratio: nu_12, nu_23, nu_13: under a stress along axis i alone, the strain along axis j is -nu_ij times that
+        along axis i.
+    shear_modulus: G_12, G_23, G_13, > 0 [Pa].
+    first_axis, second_axis: directions in the mesh; the second is made orthogonal to the first.
+    """
+
+    young_modulus: VectorField = held((1e5, 1e5, 1e5))
+    poisson_ratio: VectorField = held((0.3, 0.3, 0.3))
+    shear_modulus: VectorField = held((4e4, 4e4, 4e4))
+    first_axis: VectorField = held((1.0, 0.0, 0.0))
+    second_axis: VectorField = held((0.0, 1.0, 0.0))
+
+    def __post_init__(self) -> None:
+        _make_vectors(self, "young_modulus", "poisson_ratio", "shear_modulus", "first_axis", "second_axis")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Material:
     """An elastic material with its friction and its losses.
 
@@ -164,6 +185,8 @@ class Material:
     model: law of elasticity.
     terms: up to three terms of the law "ogden", each (share of the shear modulus, exponent of the stretches). The
         shares sum to 1. ogden() and mooney_rivlin() set them from moduli.
+    orthotropic: constants of the law "orthotropic", which replaces young_modulus and poisson_ratio by those of an
+        isotropic material that is nowhere stiffer.
     """
 
     young_modulus: float = 1e5
@@ -178,6 +201,7 @@ class Material:
     bulk_viscosity: float = 0.06
     model: MaterialModel = "stable_neo_hookean"
     terms: tuple[tuple[float, float], ...] = ((1.0, 2.0),)
+    orthotropic: OrthotropicModuli = OrthotropicModuli()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "terms", tuple((share, exponent) for share, exponent in self.terms))

@@ -22,6 +22,7 @@ void bind_cables(WorldClass& type);
 void bind_surface(WorldClass& type);
 void bind_ties(WorldClass& type);
 void bind_cavities(WorldClass& type);
+void bind_fibres(WorldClass& type);
 void bind_loads(WorldClass& type);
 void bind_sets(WorldClass& type);
 void bind_springs(WorldClass& type);

@@ -84,6 +84,7 @@ void bind_world(nb::module_& module) {
     bind_handle<TieHandle>(module, "TieHandle");
     bind_handle<CavityHandle>(module, "CavityHandle");
     bind_handle<PipeHandle>(module, "PipeHandle");
+    bind_handle<FibreHandle>(module, "FibreHandle");
     bind_handle<LoadHandle>(module, "LoadHandle");
     bind_handle<SpringHandle>(module, "SpringHandle");
     bind_anchors(module);
@@ -103,6 +104,7 @@ void bind_world(nb::module_& module) {
     bind_surface(type);
     bind_ties(type);
     bind_cavities(type);
+    bind_fibres(type);
     bind_loads(type);
     bind_sets(type);
     bind_springs(type);

@@ -142,6 +142,7 @@ MaterialSettings World::material(MaterialHandle material) const {
                                                  : now.constants.loss_factor,
                               .bulk_viscosity = now.constants.bulk_viscosity,
                               .model = now.constants.model};
+    settings.orthotropic = now.orthotropic;
     for (std::size_t p = 0; p < settings.terms.size(); ++p)
         settings.terms[p] = {now.constants.share[p], now.constants.exponent[p]};
     if (now.surface.static_friction != now.surface.dynamic_friction) {

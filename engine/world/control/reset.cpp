@@ -49,6 +49,10 @@ void forget_impulses(WorldState& world, std::size_t body) {
         std::ranges::fill(rows_of(cables.tension, cables.points[c]), Real(0));
         cables.step[c] = 0;
     }
+    FibreTable& fibres = model.fibres;
+    for (std::size_t f = 0; f < fibres.size(); ++f)
+        if (fibres.body[f] == static_cast<Index>(body))
+            std::ranges::fill(rows_of(fibres.passive, fibres.tetrahedra[f]), Vec3::Zero());
     SpringTable& springs = model.springs;
     for (std::size_t s = 0; s < springs.size(); ++s) {
         if (springs.first.body[s] != static_cast<Index>(body) && springs.second.body[s] != static_cast<Index>(body))

@@ -4,6 +4,7 @@
 #include "components/material_table.h"
 #include "engine/world/edit/edit_model.h"
 #include "systems/material/material_law.h"
+#include "systems/material/orthotropic.h"
 
 namespace skerry {
 
@@ -11,11 +12,12 @@ struct MaterialRow {
     MaterialConstants constants;
     SurfaceProperties surface;
     Real young_modulus, poisson_ratio, damping;
+    OrthotropicModuli orthotropic;
     bool sets_losses;  // true if the user has set a loss factor above 0
 
     static MaterialRow of(const MaterialTable& table, std::size_t row) {
-        return {table.constants[row],     table.surface[row], table.young_modulus[row],
-                table.poisson_ratio[row], table.damping[row], table.sets_losses[row] != 0};
+        return {table.constants[row], table.surface[row],     table.young_modulus[row],   table.poisson_ratio[row],
+                table.damping[row],   table.orthotropic[row], table.sets_losses[row] != 0};
     }
     static MaterialRow of(const MaterialSettings& material) {
         MaterialRow row{
@@ -25,12 +27,19 @@ struct MaterialRow {
             material.young_modulus,
             material.poisson_ratio,
             material.damping,
+            material.orthotropic,
             material.loss_factor.value_or(0) > 0};
         row.constants.loss_factor = material.loss_factor.value_or(default_loss_factor);
         row.constants.bulk_viscosity = material.bulk_viscosity;
         for (std::size_t p = 0; p < material.terms.size(); ++p) {
             row.constants.share[p] = material.terms[p].share;
             row.constants.exponent[p] = material.terms[p].exponent;
+        }
+        if (material.model == MaterialModel::orthotropic) {
+            set_orthotropic(material.orthotropic, row.constants);
+            const IsotropicModuli softer = isotropic_moduli(row.constants);
+            row.young_modulus = softer.young_modulus;
+            row.poisson_ratio = softer.poisson_ratio;
         }
         return row;
     }
@@ -40,6 +49,7 @@ struct MaterialRow {
         table.young_modulus[row] = young_modulus;
         table.poisson_ratio[row] = poisson_ratio;
         table.damping[row] = damping;
+        table.orthotropic[row] = orthotropic;
         table.sets_losses[row] = sets_losses;
     }
     /// True if elements of both materials have the same forces, masses and losses.
@@ -47,7 +57,7 @@ struct MaterialRow {
         const MaterialConstants &a = constants, &b = other.constants;
         return young_modulus == other.young_modulus && poisson_ratio == other.poisson_ratio && a.density == b.density &&
                a.loss_factor == b.loss_factor && a.bulk_viscosity == b.bulk_viscosity && a.share == b.share &&
-               a.exponent == b.exponent;
+               a.exponent == b.exponent && orthotropic == other.orthotropic;
     }
     bool same_rest(const MaterialRow& other) const {
         return surface == other.surface && damping == other.damping && sets_losses == other.sets_losses;

@@ -1,4 +1,5 @@
-// Checks of the tables whose rows join bodies or act on them: joints, ties, cables, cavities, loads and springs.
+// Checks of the tables whose rows join bodies or act on them: joints, ties, cables, cavities, loads, springs and
+// fibres.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -279,6 +280,32 @@ void check_springs(const SavedFile& file, const Model& model) {
             file.complain("springs/rest_length", at_row("no keys", s), "at least one key");
 }
 
+void check_fibres(const SavedFile& file, const Model& model) {
+    const FibreTable& table = model.fibres;
+    check_keys(file, "fibres", "tension_keys", table.tension_keys.span(), table.key.span());
+    expect_partition(file, "fibres/tetrahedra", table.tetrahedra, table.node.size());
+    expect_size(file, "fibres/tetrahedron", table.tetrahedron.size(), table.node.size());
+    expect_size(file, "fibres/slope", table.slope.size(), table.node.size());
+    expect_size(file, "fibres/volume", table.volume.size(), table.node.size());
+    expect_size(file, "fibres/passive", table.passive.size(), table.node.size());
+    expect_between(file, "fibres/stiffness", table.stiffness, 0.0, infinity);
+    expect_between(file, "fibres/exponent", table.exponent, 0.0, infinity);
+    expect_between(file, "fibres/volume", table.volume, 0.0, infinity);
+    for (std::size_t f = 0; f < table.size(); ++f) {
+        if (table.tension_keys[f].size() == 0)
+            file.complain("fibres/tension_keys", at_row("no keys", f), "at least one key");
+        const auto body = static_cast<std::size_t>(table.body[f]);
+        const Index nodes = model.bodies.nodes[body].size(), tetrahedra = model.bodies.tetrahedron_count[body];
+        const auto has = [](Index n, Index count) { return n >= 0 && n < count; };
+        for (auto t = static_cast<std::size_t>(table.tetrahedra[f].begin);
+             t < static_cast<std::size_t>(table.tetrahedra[f].end); ++t)
+            if (!has(table.tetrahedron[t], tetrahedra) ||
+                !std::ranges::all_of(table.node[t], [&](Index n) { return has(n, nodes); }))
+                file.complain("fibres/node", at_row("a node or tetrahedron that the body does not have", t),
+                              "nodes and tetrahedra of the body");
+    }
+}
+
 }  // namespace
 
 void check_joining_tables(const SavedFile& file, Model& model) {
@@ -291,6 +318,7 @@ void check_joining_tables(const SavedFile& file, Model& model) {
     check_cavities(file, model);
     check_loads(file, model);
     check_springs(file, model);
+    check_fibres(file, model);
 }
 
 }  // namespace skerry

@@ -80,6 +80,9 @@ Index Model::row(CavityHandle cavity, const char* call) const {
 Index Model::row(PipeHandle pipe, const char* call) const {
     return live_row(pipe_map, pipe, call, "pipe");
 }
+Index Model::row(FibreHandle family, const char* call) const {
+    return live_row(fibre_map, family, call, "fibres");
+}
 Index Model::row(LoadHandle load, const char* call) const {
     return live_row(load_map, load, call, "load");
 }

@@ -18,6 +18,7 @@
 #include "components/collider_table.h"
 #include "components/collision_filter.h"
 #include "components/element_table.h"
+#include "components/fibre_table.h"
 #include "components/handle.h"
 #include "components/implicit_node_table.h"
 #include "components/joint_table.h"
@@ -125,6 +126,7 @@ struct Model {
     CableTable cables;
     CavityTable cavities;
     PipeTable pipes;
+    FibreTable fibres;
     LoadTable loads;
     SpringTable springs;
     DisabledPairTable disabled_pairs;
@@ -141,6 +143,7 @@ struct Model {
     NamedHandles<CableHandle> cable_map;
     NamedHandles<CavityHandle> cavity_map;
     NamedHandles<PipeHandle> pipe_map;
+    NamedHandles<FibreHandle> fibre_map;
     NamedHandles<LoadHandle> load_map;
     NamedHandles<SpringHandle> spring_map;
     StepWatch watch;
@@ -181,6 +184,7 @@ struct Model {
     Index row(CableHandle cable, const char* call) const;
     Index row(CavityHandle cavity, const char* call) const;
     Index row(PipeHandle pipe, const char* call) const;
+    Index row(FibreHandle family, const char* call) const;
     Index row(LoadHandle load, const char* call) const;
     Index row(SpringHandle spring, const char* call) const;
 
@@ -292,6 +296,7 @@ struct Model {
         visit("cables", cables);
         visit("cavities", cavities);
         visit("pipes", pipes);
+        visit("fibres", fibres);
         visit("loads", loads);
         visit("springs", springs);
         visit("disabled_pairs", disabled_pairs);
@@ -308,6 +313,7 @@ struct Model {
         visit("cables", cables, cable_map);
         visit("cavities", cavities, cavity_map);
         visit("pipes", pipes, pipe_map);
+        visit("fibres", fibres, fibre_map);
         visit("loads", loads, load_map);
         visit("springs", springs, spring_map);
     }

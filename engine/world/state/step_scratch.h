@@ -75,6 +75,7 @@ struct StepFindings {
     JointMeasures joints;
     TieMeasures ties;
     SpringWork springs;
+    Real fibre_work = 0;  // work of the passive stress of fibres on the nodes [J]
     CableMeasures cables;
     Index released_ties = 0;  // number of ties of which the last node has broken off in this step
     Index unstrained = 0;     // number of bodies whose elements are skipped, because they are undeformed in free flight

@@ -69,14 +69,14 @@ struct ConstraintLaw {
     ListStages remember = nullptr;  // stores the impulses for the next step, if the step can be committed
 };
 
-extern const ForceElement nodal_loads, cable_forces, cavity_pressures, loads_and_fields, spring_forces;
+extern const ForceElement nodal_loads, cable_forces, cavity_pressures, fibre_forces, loads_and_fields, spring_forces;
 extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies, held_axes;
 extern const ConstraintLaw contact_law, joint_law, tie_law, cable_law, held_axes_law;
 
 /// All force elements. Nodal loads come first: their stage sets the total force on each node, to which the other force
 /// elements add.
-inline constexpr std::array<const ForceElement*, 5> force_elements{&nodal_loads, &loads_and_fields, &spring_forces,
-                                                                   &cable_forces, &cavity_pressures};
+inline constexpr std::array<const ForceElement*, 6> force_elements{&nodal_loads,  &loads_and_fields, &spring_forces,
+                                                                   &cable_forces, &cavity_pressures, &fibre_forces};
 /// All motion models. The order matters where two models write the same columns. Rigid bodies come first, because the
 /// frames of implicit bodies move like rigid bodies. Held axes come last, because they correct velocities.
 inline constexpr std::array<const MotionModel*, 5> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,

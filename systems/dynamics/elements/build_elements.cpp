@@ -223,6 +223,7 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
         // `rotation` and `rotation_next` must be equal: the step swaps the two columns, and laws without a corotational
         // frame write to neither of them.
         blocks.rotation_next[block] = blocks.rotation[block];
+        blocks.orientation[block] = Mat3::Identity();
         for (Real& share : blocks.mass_share[block].lane) share = 1;
         for (std::size_t l = 0; l < element_lanes; ++l)
             if (lanes[l] != no_index) blocks.volume[block][l] = list.volume[static_cast<std::size_t>(lanes[l])];
@@ -236,6 +237,7 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
 void turn_elements(const Mat3& rotation, Range rows, ElementBlockTable& blocks, ElementNodeTable& nodes) {
     if (rotation == Mat3::Identity()) return;
     for (auto b = static_cast<std::size_t>(rows.begin); b < static_cast<std::size_t>(rows.end); ++b) {
+        blocks.orientation[b] = rotation * blocks.orientation[b];
         const auto first = static_cast<std::size_t>(blocks.first[b]), count = static_cast<std::size_t>(blocks.count[b]);
         for (std::size_t l = 0; l < element_lanes; ++l) {
             Vec3 others = Vec3::Zero();

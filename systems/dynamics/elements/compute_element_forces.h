@@ -8,6 +8,7 @@
 #include "components/material_table.h"
 #include "jobs/access.h"
 #include "jobs/executor.h"
+#include "systems/material/orthotropic.h"
 
 namespace skerry {
 
@@ -20,6 +21,7 @@ struct ElementInputs {
     std::span<const Index> material;
     std::span<const ElementPart> part;
     std::span<const MaterialConstants> constants;
+    std::span<const Mat3> orientation = {};   // empty if no material is anisotropic
     std::span<const Index> body = {};         // row of BodyTable by block; may be empty if no body is left out
     std::span<const Real> viscous_time = {};  // viscous time by block; empty if no element is viscous [s]
     // Relaxing part of the stress; empty if no stress relaxes.
@@ -42,8 +44,12 @@ struct ElementInputs {
         const auto row = static_cast<std::size_t>(first[block]);
         return {node.data() + row, gradient.data() + row, count[block]};
     }
-    MaterialConstants material_of(std::size_t block) const {
-        return part_of(constants[static_cast<std::size_t>(material[block])], part[block]);
+    MaterialConstants material_of(std::size_t block) const { return part_of(whole_material_of(block), part[block]); }
+    /// Constants for all parts of the stress, with the axes of the material as they are turned in the block.
+    MaterialConstants whole_material_of(std::size_t block) const {
+        MaterialConstants whole = constants[static_cast<std::size_t>(material[block])];
+        if (whole.model == MaterialModel::orthotropic && !orientation.empty()) turn_axes(orientation[block], whole);
+        return whole;
     }
     /// True if the elements of a block are left out of this step.
     bool is_left_out(std::size_t block) const {
@@ -80,6 +86,7 @@ struct ElementInputs {
                 .material = binder.read(element.material),
                 .part = binder.read(element.part),
                 .constants = binder.read(material.constants),
+                .orientation = binder.read(element.orientation),
                 .body = binder.read(element.body),
                 .viscous_time = binder.read(element.viscous_time),
                 .relaxation_rate = binder.read(element.relaxation_rate),

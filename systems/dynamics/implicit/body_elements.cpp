@@ -5,8 +5,29 @@
 #include <cmath>
 
 #include "systems/material/material_law.h"
+#include "systems/material/orthotropic.h"
 
 namespace skerry {
+
+namespace {
+
+/// Block of the stiffness matrix of two nodes with the gradients `g` and `other`, from the parts of the tangent that
+/// only anisotropic laws have.
+Mat3 further_block(const Tangent& tangent, const Vec3& g, const Vec3& other) {
+    Mat3 block = g.dot(tangent.second_stress * other) * Mat3::Identity();
+    for (const Mat3& dyad : tangent.dyads) block += (dyad * g) * (dyad * other).transpose();
+    return block;
+}
+
+/// Energy density of small strain, for the displacement gradient `change` [J/m^3].
+Real linear_energy(MaterialConstants material, const Mat3& change) {
+    if (material.model == MaterialModel::orthotropic)
+        return Orthotropic::energy_of_strain(material, (change + change.transpose()) / 2);
+    material.model = MaterialModel::linear;
+    return energy_density(material, Mat3::Identity() + change);
+}
+
+}  // namespace
 
 BodyElements::BodyElements(const ElementList& elements, std::span<const MaterialConstants> constants,
                            std::span<const Index> place)
@@ -58,10 +79,8 @@ Real BodyElements::energy(const Displacements& displacement) const {
 BodyElements::Misfit BodyElements::misfit(const Displacements& displacement) const {
     Misfit sum{0, 0};
     for (std::size_t e = 0; e < size(); ++e) {
-        MaterialConstants linear = material_[e];
-        linear.model = MaterialModel::linear;
-        const Mat3 F = Mat3::Identity() + gradient_of(e, displacement);
-        const Real of_linear = volume_[e] * energy_density(linear, F);
+        const Mat3 change = gradient_of(e, displacement), F = Mat3::Identity() + change;
+        const Real of_linear = volume_[e] * linear_energy(material_[e], change);
         sum.linear += of_linear;
         sum.off += std::abs(volume_[e] * energy_density(material_[e], F) - of_linear);
     }
@@ -124,6 +143,8 @@ void BodyElements::add_tangent(const Displacements& displacement, Real scale, Bl
                 Mat3 block = normal.cwiseProduct(g * other.transpose()) + crossed.cwiseProduct(other * g.transpose());
                 block.diagonal() = even * g.cwiseProduct(other);
                 block = tangent.left * block * tangent.left.transpose();
+                if (tangent.is_anisotropic)
+                    block += weight * further_block(tangent, nodes.gradient[k], nodes.gradient[l]);
                 Mat3& to = matrix.block[static_cast<std::size_t>(block_[at++])];
                 if (nodes.place[k] >= nodes.place[l])
                     to += block;

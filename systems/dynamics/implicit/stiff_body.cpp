@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "systems/geometry/rotation.h"
+#include "systems/material/orthotropic.h"
 
 namespace skerry {
 
@@ -79,6 +80,12 @@ void leave_out_held(std::span<const std::uint8_t> held, std::span<const Real> ma
 
 Mat3 element_stiffness(const MaterialConstants& material, Real volume, const Vec3& gradient_k, const Vec3& gradient_l) {
     const Real lambda = material.lame_lambda, mu = material.shear_modulus;
+    if (material.model == MaterialModel::orthotropic) {
+        Mat3 stiffness = Mat3::Zero();
+        for (const Mat3& dyad : Orthotropic::dyads(material, Mat3::Identity()))
+            stiffness += (dyad * gradient_k) * (dyad * gradient_l).transpose();
+        return volume * stiffness;
+    }
     return volume * (lambda * gradient_k * gradient_l.transpose() +
                      mu * (gradient_k.dot(gradient_l) * Mat3::Identity() + gradient_l * gradient_k.transpose()));
 }

@@ -88,8 +88,7 @@ private:
     Pair at_face(std::size_t row) const {
         const auto f = static_cast<std::size_t>(plan_.smooth[row].face);
         const auto place = static_cast<std::size_t>(plan_.faces[f].place);
-        const MaterialConstants& material =
-            body_.elements.constants[static_cast<std::size_t>(body_.elements.material[block_of(place)])];
+        const MaterialConstants material = body_.elements.whole_material_of(block_of(place));
         if (const std::optional<Mat3> F = gradient_at(f, plan_.strained[row], material))
             return pair_of(stress(material, *F) * F->transpose() / F->determinant(), green_strain(*F));
         return mean(plan_.strained[row], plan_.volumetric[row]);

@@ -22,7 +22,10 @@ Mat3 change_of_stress(const Tangent& tangent, const Mat3& of_F) {
                 change(i, j) = (tangent.flip[pair] + tangent.twist[pair]) / 2 * x(i, j) +
                                (tangent.flip[pair] - tangent.twist[pair]) / 2 * x(j, i);
             }
-    return tangent.left * change * tangent.right.transpose();
+    change = tangent.left * change * tangent.right.transpose();
+    if (!tangent.is_anisotropic) return change;
+    for (const Mat3& dyad : tangent.dyads) change += dyad.cwiseProduct(of_F).sum() * dyad;
+    return change + of_F * tangent.second_stress;
 }
 
 /// Two orthonormal vectors orthogonal to the unit vector `normal`.

@@ -5,6 +5,7 @@ from .body import Attachment, Body
 from .cable import Cable, CableState
 from .cavity import Cavity, CavityState, Pipe, PipeState
 from .collider import Collider
+from .fibre import FibreFamily, FibreState
 from .joint import Joint, JointState
 from .load import Load, LoadKind, LoadState
 from .material import MaterialHandle
@@ -39,6 +40,8 @@ __all__ = [
     "DynamicsChoice",
     "DynamicsEstimate",
     "Energy",
+    "FibreFamily",
+    "FibreState",
     "Joint",
     "JointState",
     "Load",

@@ -31,6 +31,7 @@ from .body import Body
 from .building import Arguments
 from .changes import SettingsChanges
 from .collider import Collider
+from .fibre import WorldFibres
 from .load import WorldLoads
 from .material import MaterialHandle
 from .objects import WorldObject
@@ -60,7 +61,7 @@ _MOST_CALLS = 2**53
 """Number of calls of advance() in a run up to which a number of type float counts them exactly."""
 
 
-class World(SurfaceRules, WorldLoads, WorldResults, WorldOutput):
+class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
     """A simulation of deformable and rigid bodies in frictional contact. All units are SI units.
 
     World() has the default settings, World(settings) the given ones; keywords change single settings:

@@ -1,0 +1,61 @@
+// Fibres in bodies, which resist stretch and contract like muscle (docs/methods/elasticity.md 2.7).
+#pragma once
+
+#include <vector>
+
+#include "components/handle.h"
+#include "components/types.h"
+#include "skerry/time_table.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+class World;
+
+/// A family of fibres in tetrahedra of a body. Its energy is added to that of the material. Fibres resist only stretch:
+/// W = k_1/(2 k_2) (exp(k_2 E^2) - 1) with E = max(I_4 - 1, 0) and the squared stretch I_4 (Holzapfel, Gasser, Ogden
+/// 2000).
+struct FibreSettings {
+    BodyHandle body{};  // a body that deforms
+    // Numbers of tetrahedra in the mesh of the body, each at most once; empty: all tetrahedra
+    std::vector<Index> tetrahedra{};
+    // Directions in the mesh, of any length except zero: one for all tetrahedra, or one for each of them.
+    std::vector<Vec3> direction{Vec3::UnitX()};
+    Real stiffness = 0;     // k_1 >= 0; near the rest length a fibre has Young's modulus 4 k_1 [Pa]
+    Real exponent = 0;      // k_2 >= 0
+    TimeTable tension = 0;  // active tension >= 0: force along the fibres per area of the rest shape [Pa]
+};
+
+/// Present state of a family of fibres.
+struct FibreState {
+    BodyHandle body{};
+    Real tension = 0;  // present active tension [Pa]
+    Real energy = 0;   // energy of the stretch [J]
+    // Numbers of the tetrahedra with fibres, and a value for each of them:
+    std::vector<Index> tetrahedra{};
+    std::vector<Real> stretch{};  // present length of fibres over their length at rest
+    std::vector<Real> stress{};   // nominal stress along the fibres, with the active tension [Pa]
+};
+
+/// A view of the fibres of a world. It is valid until the world is moved or destroyed. Functions that change fibres may
+/// only be called between calls of advance. They throw SceneError and change nothing if a handle is stale or a value is
+/// out of range. Fibres belong to the state of the world: they are saved, cloned and hashed. Each change wakes the
+/// body, unless the new value equals the old one.
+class Fibres {
+public:
+    explicit Fibres(World& world) : world_(&world) {}
+
+    /// Adds fibres, which are removed with their body. Stiff fibres shorten the step of the world.
+    FibreHandle add(const FibreSettings& fibres);
+    void remove(FibreHandle fibres);
+    bool alive(FibreHandle fibres) const;
+    std::vector<FibreHandle> all() const;  // in the order added
+    FibreState state(FibreHandle fibres) const;
+    void set_tension(FibreHandle fibres, const TimeTable& tension);
+
+private:
+    World* world_;
+};
+
+}  // namespace skerry
+#pragma GCC visibility pop

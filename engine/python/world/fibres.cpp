@@ -1,0 +1,50 @@
+// Fibres in bodies.
+#include "skerry/fibre.h"
+
+#include "engine/python/read_settings.h"
+#include "engine/python/world/parts.h"
+
+namespace skerry::python {
+
+namespace {
+
+using TensionPairs = std::vector<std::array<Real, 2>>;
+
+FibreHandle add_fibres(World& world, const BodyHandle& body, const Indices& tetrahedra, const Vectors& direction,
+                       const std::array<Real, 2>& moduli, const TensionPairs& tension) {
+    const std::span<const Index> numbers = span_of(tetrahedra);
+    const std::span<const Vec3> directions = span_of(direction);
+    return Fibres(world).add({.body = body,
+                              .tetrahedra = {numbers.begin(), numbers.end()},
+                              .direction = {directions.begin(), directions.end()},
+                              .stiffness = moduli[0],
+                              .exponent = moduli[1],
+                              .tension = table_of(tension)});
+}
+
+nb::dict values_of(const FibreState& state) {
+    nb::dict values;
+    values["body"] = object_of(state.body);
+    values["tension"] = state.tension;
+    values["energy"] = state.energy;
+    values["tetrahedra"] = array_of<Index>(std::span<const Index>(state.tetrahedra));
+    values["stretch"] = array_of<Real>(std::span<const Real>(state.stretch));
+    values["stress"] = array_of<Real>(std::span<const Real>(state.stress));
+    return values;
+}
+
+}  // namespace
+
+void bind_fibres(WorldClass& type) {
+    type.def("add_fibres", guarded(&add_fibres))
+        .def("remove", guarded([](World& world, const FibreHandle& fibres) { Fibres(world).remove(fibres); }))
+        .def("alive", guarded([](World& world, const FibreHandle& fibres) { return Fibres(world).alive(fibres); }))
+        .def("fibres_of_world", guarded([](World& world) { return Fibres(world).all(); }))
+        .def("fibre_state",
+             guarded([](World& world, const FibreHandle& fibres) { return values_of(Fibres(world).state(fibres)); }))
+        .def("set_tension", guarded([](World& world, const FibreHandle& fibres, const TensionPairs& tension) {
+                 Fibres(world).set_tension(fibres, table_of(tension));
+             }));
+}
+
+}  // namespace skerry::python
