@@ -11,7 +11,7 @@ namespace skerry {
 
 /// Material laws. guard: the inversion barrier, which acts on tetrahedra that are about to invert
 /// (docs/methods/elasticity.md 7.7). A user cannot select guard as the law of a material.
-enum class MaterialModel { linear, corotational, stable_neo_hookean, ogden, guard };
+enum class MaterialModel { linear, corotational, stable_neo_hookean, ogden, hencky, guard };
 /// Elements that compute the stress of a body. linear: tetrahedra with constant strain, which lock in bending and in
 /// nearly incompressible materials. edge_smoothed: one element per edge, with the mean strain of the tetrahedra around
 /// the edge. edge_node_smoothed: elements at edges for the shear stress, elements at nodes for the volumetric stress.
@@ -44,11 +44,12 @@ struct EnumNames;
 
 template <>
 struct EnumNames<MaterialModel> {
-    static constexpr std::array<std::pair<MaterialModel, std::string_view>, 4> table{{
+    static constexpr std::array<std::pair<MaterialModel, std::string_view>, 5> table{{
         {MaterialModel::linear, "linear"},
         {MaterialModel::corotational, "corotational"},
         {MaterialModel::stable_neo_hookean, "stable_neo_hookean"},
         {MaterialModel::ogden, "ogden"},
+        {MaterialModel::hencky, "hencky"},
     }};
 };
 template <>

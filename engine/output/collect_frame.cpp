@@ -1,5 +1,7 @@
 #include "engine/output/collect_frame.h"
 
+#include <algorithm>
+
 #include "engine/world/node_fields.h"
 #include "engine/world/world_state.h"
 #include "jobs/parallel_for.h"
@@ -27,6 +29,8 @@ Frame collect_frame(const World& world) {
                 .colliders = {},
                 .contacts = world.contacts()};
     const std::vector<BodyHandle> bodies = world.bodies();
+    const bool yields =
+        std::ranges::any_of(WorldAccess::state_of(world).model.materials.constants, &MaterialConstants::yields);
     std::vector<NodeFields> fields(bodies.size());
     parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) fields[b] = node_fields(world, bodies[b]);
@@ -41,6 +45,7 @@ Frame collect_frame(const World& world) {
                                 .tetrahedra = world.tetrahedra(body),
                                 .stress = world.stress(body),
                                 .strain = world.strain(body),
+                                .plastic_strain = yields ? world.plastic_strain(body) : std::vector<Real>(),
                                 .node_stress = std::move(fields[b].stress),
                                 .node_strain = std::move(fields[b].strain),
                                 .material = materials_of(world, body)});

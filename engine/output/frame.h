@@ -22,6 +22,7 @@ struct BodyFrame {
     // Corners of the tetrahedra, as indices of `position`.
     std::span<const std::array<Index, 4>> tetrahedra;
     std::vector<Mat3> stress, strain;            // values by tetrahedron: Cauchy stress [Pa] and Green strain
+    std::vector<Real> plastic_strain;            // equivalent plastic strain by tetrahedron; empty if nothing yields
     std::vector<Mat3> node_stress, node_strain;  // values by node: Cauchy stress [Pa] and Green strain
     // Material number of each tetrahedron. Materials are numbered in the order in which they were added.
     std::vector<Index> material{};

@@ -56,6 +56,12 @@ void for_each_setting(Is<MaterialSettings> auto& s, auto&& visit) {
     visit("bulk_viscosity", s.bulk_viscosity);
     visit("model", s.model);
     visit("terms", s.terms);
+    visit("plasticity", s.plasticity);
+}
+
+void for_each_setting(Is<Plasticity> auto& s, auto&& visit) {
+    visit("yield_stress", s.yield_stress);
+    visit("hardening", s.hardening);
 }
 
 void for_each_setting(Is<BodySettings> auto& s, auto&& visit) {
@@ -219,7 +225,7 @@ inline constexpr bool has_size = sizeof(Struct) == numbers * sizeof(Real) + (siz
 static_assert(has_size<Settings, 17>);
 static_assert(
     has_size<BodySettings, 18, std::map<int, MaterialHandle>, std::map<std::string, MaterialHandle>, std::string>);
-static_assert(has_size<MaterialSettings, 20>);
+static_assert(has_size<MaterialSettings, 23>);
 static_assert(has_size<ColliderSettings, 16, Motion, std::string>);
 static_assert(has_size<LoadSettings, 2>);
 static_assert(has_size<SurfaceSettings, 8>);
@@ -249,6 +255,8 @@ template <>
 inline constexpr const char* class_name<Settings> = "Settings";
 template <>
 inline constexpr const char* class_name<MaterialSettings> = "Material";
+template <>
+inline constexpr const char* class_name<Plasticity> = "Plasticity";
 template <>
 inline constexpr const char* class_name<LoadSettings> = "LoadSettings";
 template <>

@@ -36,6 +36,7 @@ template <class Visit>
         case MaterialModel::guard:
             return visit(Guard{});
         case MaterialModel::ogden:
+        case MaterialModel::hencky:
             return visit(Ogden{});
         case MaterialModel::stable_neo_hookean:
             break;

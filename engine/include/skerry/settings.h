@@ -29,6 +29,14 @@ struct StretchTerm {
     bool operator==(const StretchTerm&) const = default;
 };
 
+/// Plasticity of von Mises with isotropic hardening, of the law `hencky` (docs/methods/elasticity.md 8).
+struct Plasticity {
+    Real yield_stress = 0;  // von Mises stress at which the material yields first, > 0 [Pa]
+    Real hardening = 0;     // slope of the yield stress by the equivalent plastic strain, >= 0 [Pa]
+
+    bool operator==(const Plasticity&) const = default;
+};
+
 struct MaterialSettings {
     Real young_modulus = 1e5;  // > 0 [Pa]
     Real poisson_ratio = 0.4;  // Poisson's ratio, > -1 and < 0.5
@@ -53,6 +61,7 @@ struct MaterialSettings {
     MaterialModel model = MaterialModel::stable_neo_hookean;
     // Terms of the law `ogden`, whose shares sum to 1. ogden() and mooney_rivlin() of materials.h set them from moduli.
     std::array<StretchTerm, 3> terms{{{1, 2}, {}, {}}};
+    std::optional<Plasticity> plasticity{};  // only with the law `hencky`; explicit bodies alone yield
 };
 
 /// Kind of motion of a body. Rigid and implicit bodies do not limit the step and have no self-contact.

@@ -33,7 +33,7 @@ ContactRegions: TypeAlias = Literal["separate", "global"]
 SolverMethod: TypeAlias = Literal["automatic", "ags", "pgs", "pcg_pgs", "newton", "pcg_fr", "pcg_pr"]
 Friction: TypeAlias = Literal["cone", "pyramid"]
 StartOverlaps: TypeAlias = Literal["resolve", "refuse", "ignore"]
-MaterialModel: TypeAlias = Literal["linear", "corotational", "stable_neo_hookean", "ogden"]
+MaterialModel: TypeAlias = Literal["linear", "corotational", "stable_neo_hookean", "ogden", "hencky"]
 ElementKind: TypeAlias = Literal["linear", "smoothed", "edge_smoothed", "edge_node_smoothed"]
 Dynamics: TypeAlias = Literal["explicit", "rigid", "implicit", "automatic"]
 JointKind: TypeAlias = Literal["ball", "hinge", "slider", "fixed"]
@@ -146,6 +146,18 @@ class Settings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Plasticity:
+    """Plasticity of von Mises with isotropic hardening.
+
+    yield_stress: von Mises stress at which the material yields first, above 0 [Pa].
+    hardening: slope of the yield stress by the equivalent plastic strain, at least 0 [Pa].
+    """
+
+    yield_stress: float
+    hardening: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Material:
     """An elastic material with its friction and its losses.
 
@@ -164,6 +176,7 @@ class Material:
     model: law of elasticity.
     terms: up to three terms of the law "ogden", each (share of the shear modulus, exponent of the stretches). The
         shares sum to 1. ogden() and mooney_rivlin() set them from moduli.
+    plasticity: yield of the law "hencky"; for explicit bodies.
     """
 
     young_modulus: float = 1e5
@@ -178,6 +191,7 @@ class Material:
     bulk_viscosity: float = 0.06
     model: MaterialModel = "stable_neo_hookean"
     terms: tuple[tuple[float, float], ...] = ((1.0, 2.0),)
+    plasticity: Plasticity | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "terms", tuple((share, exponent) for share, exponent in self.terms))

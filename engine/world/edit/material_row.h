@@ -32,6 +32,10 @@ struct MaterialRow {
             row.constants.share[p] = material.terms[p].share;
             row.constants.exponent[p] = material.terms[p].exponent;
         }
+        if (material.plasticity) {
+            row.constants.yield_stress = material.plasticity->yield_stress;
+            row.constants.hardening = material.plasticity->hardening;
+        }
         return row;
     }
     void write(MaterialTable& table, std::size_t row) const {
@@ -50,7 +54,9 @@ struct MaterialRow {
                a.exponent == b.exponent;
     }
     bool same_rest(const MaterialRow& other) const {
-        return surface == other.surface && damping == other.damping && sets_losses == other.sets_losses;
+        return surface == other.surface && damping == other.damping && sets_losses == other.sets_losses &&
+               constants.yield_stress == other.constants.yield_stress &&
+               constants.hardening == other.constants.hardening;
     }
 };
 

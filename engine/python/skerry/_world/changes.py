@@ -3,7 +3,16 @@
 from typing import TypedDict
 
 from .._arrays import VectorLike
-from .._settings import Backend, ContactRegions, Friction, Integrator, MaterialModel, SolverMethod, StartOverlaps
+from .._settings import (
+    Backend,
+    ContactRegions,
+    Friction,
+    Integrator,
+    MaterialModel,
+    Plasticity,
+    SolverMethod,
+    StartOverlaps,
+)
 
 
 class SettingsChanges(TypedDict, total=False):
@@ -44,6 +53,7 @@ class MaterialChanges(TypedDict, total=False):
     bulk_viscosity: float
     model: MaterialModel
     terms: tuple[tuple[float, float], ...]
+    plasticity: Plasticity | None
 
 
 class SurfaceChanges(TypedDict, total=False):
