@@ -10,7 +10,7 @@ namespace skerry::test::scene_plasticity_test {
 
 namespace {
 
-constexpr Real young = 1e6, poisson = 0.3, yield = 1e3, hardening = 5e4;  // Pa
+constexpr Real young = 1e6, poisson = 0.3, yield = 1e3, hardening = 5e3;  // Pa
 
 MaterialSettings metal() {
     return lossless({.young_modulus = young,
@@ -63,8 +63,10 @@ TEST_CASE("a bar in tension yields, unloads elastically, and yields again at the
         const auto check = [&](Real s, Real p) {
             const Mat3 stress = bar.kirchhoff(shape(s, p));
             INFO(name_of(kind) << ": stress " << s << ", plastic strain " << p);
-            CHECK(std::abs(stress(0, 0) - s) < 1e-3 * yield);
-            CHECK(std::abs(stress(1, 1)) < 1e-3 * yield);
+            // The law has the pressure K (J - 1) in place of K log J, a relative difference below the elastic strain.
+            const Real tolerance = 1e-3 * std::max(yield, std::abs(s));
+            CHECK(std::abs(stress(0, 0) - s) < tolerance);
+            CHECK(std::abs(stress(1, 1)) < tolerance);
             CHECK(std::abs(bar.plastic_strain() - p) < 1e-6);
         };
         check(0.9 * yield, 0);
@@ -101,7 +103,7 @@ TEST_CASE("a rotation turns the stress of a body that has flowed, and causes no 
 
 TEST_CASE("kinetic energy becomes elastic energy and plastic work, with an error that falls with the step", "[scene]") {
     std::vector<Real> error;
-    for (const Real share : {1.0, 0.5}) {
+    for (const Real share : {0.1, 0.05}) {
         Settings settings{.gravity = Vec3::Zero()};
         settings.step_size = share * 0.9 * Block(metal()).world.stable_step();
         Block block(metal(), ElementKind::smoothed, settings);
@@ -188,7 +190,7 @@ TEST_CASE(
         const auto [low, high] = std::ranges::minmax_element(x, {}, [](const Vec3& p) { return p.z(); });
         return high->z() - low->z();
     };
-    REQUIRE(one.advance(1.5).ok());
+    REQUIRE(one.advance(1.0).ok());
     CHECK(one.report().asleep == 2);
     CHECK(height() < 0.097);
     const std::uint64_t resting = one.state_hash();
@@ -236,9 +238,9 @@ TEST_CASE("plasticity is refused where it does not act, and only its values chan
     for (const Vec3& x : mesh.nodes) shape.emplace_back(axial(0.3, -0.14) * x);
     world.set_positions(body, shape);
     next = metal();
-    next.plasticity->hardening = 7e4;
+    next.plasticity->hardening = 7e3;
     world.set_material(material, next);
-    CHECK(world.material(material).plasticity->hardening == 7e4);
+    CHECK(world.material(material).plasticity->hardening == 7e3);
     next.young_modulus = 2e6;
     CHECK_THROWS_WITH(world.set_material(material, next), Contains("body 'can', which has deformed plastically"));
     CHECK_THROWS_WITH(world.set_dynamics(body, BodyDynamics::rigid), Contains("deformed plastically"));

@@ -18,7 +18,7 @@ namespace {
 struct Flow {
     bool any = false;
     LaneMat3<Real8> inverse;   // inverse of the plastic deformation, symmetric, with determinant 1
-    Real8 strain, dissipated;  // increase of the equivalent plastic strain; elastic energy lost per volume [J/m^3]
+    Real8 strain, dissipated;  // increase of the equivalent plastic strain; plastic work per volume [J/m^3]
 };
 
 /// Radial return of the elements of a block with the elastic deformation gradient F.
@@ -53,15 +53,24 @@ Flow flow_of(const MaterialConstants& material, const Real8& volume, const LaneM
     };
     flow.inverse = {masked(of_flow.c0, one, zero, zero), masked(of_flow.c1, zero, one, zero),
                     masked(of_flow.c2, zero, zero, one)};
-    flow.dissipated = mu * square * ratio * (2.0 - ratio);
+    flow.dissipated = (limit + 0.5 * material.hardening * flow.strain) * flow.strain;
     return flow;
 }
 
-/// Elastic energy of the springs of the Maxwell elements per volume [J/m^3].
-Real8 energy_of_springs(const ElementInputs& elements, std::size_t block, const MaterialConstants& material,
-                        const LaneMat3<Real8>& F) {
-    return energy_density(viscous_moduli(material, elements.relaxing_share[block]),
-                          springs_in(twice_green_strain(F), elements.spring_strain[block]));
+/// Work of the springs of the Maxwell elements on the plastic flow, per volume [J/m^3]: the mean of their stresses
+/// before and after the step, times the change of the elastic strain by the flow. `trial`, `F`: before and after the
+/// flow.
+Real8 work_of_springs(const ElementInputs& elements, std::size_t block, const MaterialConstants& material,
+                      const LaneMat3<Real8>& trial, const LaneMat3<Real8>& F) {
+    const SpringStrain& last = elements.spring_strain[block];
+    const ViscousModuli moduli = viscous_moduli(material, elements.relaxing_share[block]);
+    const auto stress_at = [&](const LaneSymmetric<Real8>& strain) {
+        return stress(moduli, springs_in(strain, last).sum());
+    };
+    const LaneSymmetric<Real8> before{load_reals(last[0]), load_reals(last[1]), load_reals(last[2]),
+                                      load_reals(last[3]), load_reals(last[4]), load_reals(last[5])},
+        after = twice_green_strain(F);
+    return 0.25 * inner_product(stress_at(before) + stress_at(after), twice_green_strain(trial) - after);
 }
 
 /// Changes the rest shape of the elements of a block: each gradient g becomes M^T g, each mass form Q becomes M^T Q M.
@@ -98,8 +107,7 @@ Real yield_block(const ElementInputs& elements, std::size_t block, const Materia
     Flow flow = flow_of(material, volume, F, before);
     if (!flow.any) return 0;
     if (material.relaxes() && !elements.spring_strain.empty())
-        flow.dissipated = flow.dissipated + energy_of_springs(elements, block, material, F) -
-                          energy_of_springs(elements, block, material, multiply(F, flow.inverse));
+        flow.dissipated = flow.dissipated + work_of_springs(elements, block, material, F, multiply(F, flow.inverse));
     change_rest_shape(elements, block, flow.inverse, state);
     store(before + flow.strain, state.plastic_strain[block]);
     Real dissipated = 0;
