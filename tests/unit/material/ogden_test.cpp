@@ -248,7 +248,7 @@ TEST_CASE("law of Ogden: the bounds on the stiffness hold", "[unit]") {
     std::mt19937_64 random(5);
     for (const MaterialConstants& material :
          {treloar(0.3), treloar(0.49), mooney(0.45), part_of(treloar(0.49), ElementPart::shear), hencky(0.3),
-          part_of(hencky(0.49), ElementPart::shear), part_of(hencky(0.3), ElementPart::volume)})
+          part_of(hencky(0.49), ElementPart::shear)})
         for (const Vec3& shape : shapes)
             for (int trial = 0; trial < 5; ++trial) {
                 const Mat3 F = turned(random, shape);
