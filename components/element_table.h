@@ -92,6 +92,7 @@ struct ElementBlockTable {
     // Strains of the springs in this step. The columns spring_strain and spring_strain_next are swapped when the step
     // is committed.
     Column<SpringStrain> spring_strain_next;
+    Column<ElementLane> plastic_strain;       // equivalent plastic strain; 0 if the material does not yield
     Column<RelaxationRates> relaxation_rate;  // equal for all blocks of a body
     Column<ElementLane> own_frequency;        // upper bound of the highest frequency of the element at rest [1/s]
     // ratio of the stiffness of the spring of each Maxwell element to the stiffness of the material law
@@ -123,6 +124,7 @@ struct ElementBlockTable {
         visit("opens_patch", opens_patch, ColumnRole::state);
         visit("viscous_time", viscous_time, ColumnRole::state);
         visit("spring_strain", spring_strain, ColumnRole::state);
+        visit("plastic_strain", plastic_strain, ColumnRole::state);
         visit("relaxation_rate", relaxation_rate, ColumnRole::state);
         visit("own_frequency", own_frequency, ColumnRole::state);
         visit("relaxing_share", relaxing_share, ColumnRole::state);
@@ -142,7 +144,7 @@ inline constexpr Index slot_width = sizeof(PaddedVec3) / sizeof(Real);
 struct ElementNodeTable {
     Column<NodeLane> node;
     Column<NodeLane> slot;             // slot of the node in its patch, times slot_width [reals]
-    Column<ElementGradient> gradient;  // shape function gradient of the node at rest [1/m]
+    Column<ElementGradient> gradient;  // shape function gradient of the node at rest, after plastic flow [1/m]
 
     /// Visits all columns. This is the only list of the columns; resizing, erasing, hashing and saving use it.
     /// build_patches derives `slot`.

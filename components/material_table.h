@@ -34,7 +34,11 @@ struct MaterialConstants {
         return modes;
     }();
 
+    // von Mises stress at which the material yields first, 0 if it never does, and its slope by plastic strain [Pa]
+    Real yield_stress = 0, hardening = 0;
+
     bool relaxes() const { return loss_factor > 0 || bulk_viscosity > 0; }
+    bool yields() const { return yield_stress > 0; }
 };
 template <>
 struct MembersOf<MaterialConstants> {
@@ -52,6 +56,7 @@ inline constexpr std::uint64_t value_count<ElementPart> = 4;
 inline constexpr Real guard_modulus = 5;
 
 /// Material constants for one part of the stress. For the part due to one Lame constant, the other constant is zero.
+/// If the material yields, the part `shear` resists no volume change: plastic flow would lock otherwise.
 /// The constants of an inversion barrier include no damping; only inversion barriers that belong to a cluster are
 /// viscous.
 inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
@@ -60,8 +65,12 @@ inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
                 .shear_modulus = 0,
                 .lame_lambda = guard_modulus * (material.lame_lambda + 2 * material.shear_modulus),
                 .density = material.density};
-    if (part == ElementPart::shear) material.lame_lambda = 0;
-    if (part == ElementPart::volume) material.shear_modulus = 0;
+    const Real volume_of_shear = material.yields() ? -2.0 / 3 * material.shear_modulus : 0;
+    if (part == ElementPart::shear) material.lame_lambda = volume_of_shear;
+    if (part == ElementPart::volume) {
+        material.lame_lambda -= volume_of_shear;
+        material.shear_modulus = 0;
+    }
     return material;
 }
 

@@ -11,7 +11,7 @@ namespace skerry {
 
 /// Material laws. guard: the inversion barrier, which acts on tetrahedra that are about to invert
 /// (docs/methods/elasticity.md 7.7). A user cannot select guard as the law of a material.
-enum class MaterialModel { linear, corotational, stable_neo_hookean, ogden, orthotropic, guard };
+enum class MaterialModel { linear, corotational, stable_neo_hookean, ogden, orthotropic, hencky, guard };
 /// Elements that compute the stress of a body. linear: tetrahedra with constant strain, which lock in bending and in
 /// nearly incompressible materials. edge_smoothed: one element per edge, with the mean strain of the tetrahedra around
 /// the edge. edge_node_smoothed: elements at edges for the shear stress, elements at nodes for the volumetric stress.
@@ -50,6 +50,7 @@ struct EnumNames<MaterialModel> {
         {MaterialModel::stable_neo_hookean, "stable_neo_hookean"},
         {MaterialModel::ogden, "ogden"},
         {MaterialModel::orthotropic, "orthotropic"},
+        {MaterialModel::hencky, "hencky"},
     }};
 };
 template <>

@@ -43,7 +43,7 @@ std::int64_t number_at(const std::byte* place, NumberType type) {
 
 std::span<const Member> MembersOf<MaterialConstants>::list() {
     using S = MaterialConstants;
-    static_assert(sizeof(MaterialConstants) == 48 * sizeof(Real),
+    static_assert(sizeof(MaterialConstants) == 50 * sizeof(Real),
                   "every member of this struct must be in the list of saved members");
     static const std::array list{Member{"model", &S::model},
                                  Member{"shear_modulus", &S::shear_modulus},
@@ -53,7 +53,9 @@ std::span<const Member> MembersOf<MaterialConstants>::list() {
                                  Member{"bulk_viscosity", &S::bulk_viscosity},
                                  Member{"share", &S::share},
                                  Member{"exponent", &S::exponent},
-                                 Member{"strain_modes", &S::strain_modes}};
+                                 Member{"strain_modes", &S::strain_modes},
+                                 Member{"yield_stress", &S::yield_stress},
+                                 Member{"hardening", &S::hardening}};
     return list;
 }
 

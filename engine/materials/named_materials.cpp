@@ -59,7 +59,8 @@ constexpr SourcedValue from_100_percent_modulus(Real pounds_per_square_inch) {
 
 constexpr SourcedValue soft{0.49, incompressible};
 
-// Each row: name, title, Young's modulus [Pa], Poisson's ratio, density [kg/m^3], loss factor if known.
+// Each row: name, title, Young's modulus [Pa], Poisson's ratio, density [kg/m^3]; loss factor and yield stress [Pa] if
+// known.
 constexpr std::array materials = {
     // soft tissue
     NamedMaterial{"brain", "brain, white matter", {1895, budday}, soft, {1040, tissue_density}, {}},
@@ -137,13 +138,15 @@ constexpr std::array materials = {
                   {7e10, halliday},
                   {0.33, poisson_table},
                   {2710, halliday},
-                  SourcedValue{1e-4, cremer}},
+                  SourcedValue{1e-4, cremer},
+                  SourcedValue{9.5e7, halliday}},
     NamedMaterial{"steel",
                   "structural steel",
                   {2e11, halliday},
                   {0.3, poisson_table},
                   {7860, halliday},
-                  SourcedValue{4e-4, cremer}},
+                  SourcedValue{4e-4, cremer},
+                  SourcedValue{2.5e8, halliday}},
 };
 
 constexpr std::array frictions = {

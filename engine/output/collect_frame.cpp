@@ -1,5 +1,7 @@
 #include "engine/output/collect_frame.h"
 
+#include <algorithm>
+
 #include "engine/world/node_fields.h"
 #include "engine/world/world_state.h"
 #include "jobs/parallel_for.h"
@@ -20,8 +22,9 @@ std::vector<Index> materials_of(const World& world, BodyHandle body) {
 
 /// Returns a value for each cell of a body, given those of its tetrahedra. A body without tetrahedra is rigid, and its
 /// cells have the value zero.
-std::vector<Mat3> values_of_cells(std::vector<Mat3> of_tetrahedra, const BodyFrame& body) {
-    of_tetrahedra.resize(body.count_cells(), Mat3::Zero());
+template <class T>
+std::vector<T> values_of_cells(std::vector<T> of_tetrahedra, const BodyFrame& body) {
+    of_tetrahedra.resize(body.count_cells(), zero_value);
     return of_tetrahedra;
 }
 
@@ -36,6 +39,8 @@ Frame collect_frame(const World& world) {
                 .contacts = world.contacts(),
                 .lines = collect_lines(world)};
     const std::vector<BodyHandle> bodies = world.bodies();
+    const bool yields =
+        std::ranges::any_of(WorldAccess::state_of(world).model.materials.constants, &MaterialConstants::yields);
     std::vector<NodeFields> fields(bodies.size());
     parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) fields[b] = node_fields(world, bodies[b]);
@@ -50,11 +55,13 @@ Frame collect_frame(const World& world) {
                                                                  .tetrahedra = world.tetrahedra(body),
                                                                  .stress = {},
                                                                  .strain = {},
+                                                                 .plastic_strain = {},
                                                                  .node_stress = std::move(fields[b].stress),
                                                                  .node_strain = std::move(fields[b].strain),
                                                                  .material = materials_of(world, body)});
         of_body.stress = values_of_cells(world.stress(body), of_body);
         of_body.strain = values_of_cells(world.strain(body), of_body);
+        if (yields) of_body.plastic_strain = values_of_cells(world.plastic_strain(body), of_body);
     }
     for (const ColliderHandle collider : world.colliders())
         frame.colliders.push_back({.handle = collider,

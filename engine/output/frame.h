@@ -26,6 +26,7 @@ struct BodyFrame {
     // `surface` if it has none.
     std::span<const std::array<Index, 4>> tetrahedra;
     std::vector<Mat3> stress, strain;            // values by cell: Cauchy stress [Pa] and Green strain
+    std::vector<Real> plastic_strain;            // equivalent plastic strain by cell; empty if nothing yields
     std::vector<Mat3> node_stress, node_strain;  // values by node: Cauchy stress [Pa] and Green strain
     // Material number of each cell. Materials are numbered in the order in which they were added.
     std::vector<Index> material{};

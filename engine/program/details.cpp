@@ -101,11 +101,13 @@ std::string step_length_lines(const WorldReport& r) {
 
 std::string energy_line(const RunResult& result) {
     const Energy& energy = result.report.energy;
+    const Real work = result.report.plastic_work;
+    const std::string plastic = work > 0 ? " (plastic work " + with_unit(work, "J") + ")" : "";
     return summary_line("energy", "kinetic " + with_unit(energy.kinetic, "J") + " (largest value " +
                                       with_unit(result.peak_kinetic_energy, "J") + "), elastic " +
                                       with_unit(energy.elastic, "J") + ", potential " +
                                       with_unit(energy.potential, "J") + ", dissipated " +
-                                      with_unit(energy.dissipated, "J") + ", error of the energy balance " +
+                                      with_unit(energy.dissipated, "J") + plastic + ", error of the energy balance " +
                                       with_unit(result.report.energy_error, "J") +
                                       (result.report.distrust().empty() ? "" : "; not to be trusted"));
 }

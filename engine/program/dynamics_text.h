@@ -56,6 +56,7 @@ inline std::string choices_text(const WorldReport& report) {
         };
         if (reason == DynamicsReason::self_contact) return "self-contact";
         if (reason == DynamicsReason::losses) return "loss_factor";
+        if (reason == DynamicsReason::plasticity) return "plasticity";
         if (reason == DynamicsReason::strain) return "soft: strains of up to " + percent(kind.strain) + " expected";
         if (dynamics == BodyDynamics::implicit_elastic)
             return "stiff: explicit steps would cost " + times(kind.explicit_cost, kind.implicit_cost);

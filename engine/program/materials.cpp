@@ -36,30 +36,32 @@ std::string sourced_text(const SourcedValue& value, const std::string& text, Sou
 }
 
 void print_row(std::string_view name, std::string_view modulus, std::string_view poisson, std::string_view density,
-               std::string_view loss, std::string_view title) {
+               std::string_view loss, std::string_view yield, std::string_view title) {
     const auto cell = [](std::string_view text, std::size_t width) {
         return std::string(text) + std::string(text.size() < width ? width - text.size() : 1, ' ');
     };
     std::cout << cell(name, 25) << cell(modulus, 15) << cell(poisson, 14) << cell(density, 18) << cell(loss, 13)
-              << title << "\n";
+              << cell(yield, 15) << title << "\n";
 }
 
 void print_materials() {
     SourceNumbers number;
-    print_row("material", "E", "nu", "density", "loss factor", "");
+    print_row("material", "E", "nu", "density", "loss factor", "yield stress", "");
     for (const NamedMaterial& m : named_materials()) {
         const std::string modulus = sourced_text(m.young_modulus, with_unit(m.young_modulus.value, "Pa"), number);
         const std::string poisson = sourced_text(m.poisson_ratio, short_number(m.poisson_ratio.value), number);
         const std::string density = sourced_text(m.density, short_number(m.density.value, 4) + " kg/m^3", number);
         const std::string loss =
             m.loss_factor ? sourced_text(*m.loss_factor, short_number(m.loss_factor->value), number) : "";
-        print_row(m.name, modulus, poisson, density, loss, m.title);
+        const std::string yield =
+            m.yield_stress ? sourced_text(*m.yield_stress, with_unit(m.yield_stress->value, "Pa"), number) : "";
+        print_row(m.name, modulus, poisson, density, loss, yield, m.title);
     }
     std::cout << "\n";
-    print_row("friction of", "and", "", "static", "dynamic", "");
+    print_row("friction of", "and", "", "static", "dynamic", "", "");
     for (const KnownFriction& pair : known_frictions())
         print_row(pair.first, pair.second, "", short_number(pair.static_friction),
-                  short_number(pair.dynamic_friction) + " [" + std::to_string(number(pair.source)) + "]", "");
+                  short_number(pair.dynamic_friction) + " [" + std::to_string(number(pair.source)) + "]", "", "");
     std::cout << "\nsources\n";
     std::size_t count = 0;
     for (const std::string_view source : number.list()) std::cout << "  [" << ++count << "] " << source << "\n";
@@ -84,6 +86,7 @@ int materials(bool as_json) {
                                    {"poisson_ratio", value_json(m.poisson_ratio)},
                                    {"density", value_json(m.density)}};
         if (m.loss_factor) row["loss_factor"] = value_json(*m.loss_factor);
+        if (m.yield_stress) row["yield_stress"] = value_json(*m.yield_stress);
         list.push_back(std::move(row));
     }
     for (const KnownFriction& pair : known_frictions())

@@ -59,6 +59,7 @@ void for_each_setting(Is<MaterialSettings> auto& s, auto&& visit) {
     visit("model", s.model);
     visit("terms", s.terms);
     visit("orthotropic", s.orthotropic);
+    visit("plasticity", s.plasticity);
 }
 
 void for_each_setting(Is<OrthotropicModuli> auto& s, auto&& visit) {
@@ -67,6 +68,11 @@ void for_each_setting(Is<OrthotropicModuli> auto& s, auto&& visit) {
     visit("shear_modulus", s.shear_modulus);
     visit("first_axis", s.first_axis);
     visit("second_axis", s.second_axis);
+}
+
+void for_each_setting(Is<Plasticity> auto& s, auto&& visit) {
+    visit("yield_stress", s.yield_stress);
+    visit("hardening", s.hardening);
 }
 
 void for_each_setting(Is<BodySettings> auto& s, auto&& visit) {
@@ -268,7 +274,7 @@ inline constexpr bool has_size = sizeof(Struct) == numbers * sizeof(Real) + (siz
 static_assert(has_size<Settings, 17>);
 static_assert(
     has_size<BodySettings, 35, std::map<int, MaterialHandle>, std::map<std::string, MaterialHandle>, std::string>);
-static_assert(has_size<MaterialSettings, 20, OrthotropicModuli>);
+static_assert(has_size<MaterialSettings, 23, OrthotropicModuli>);
 static_assert(has_size<OrthotropicModuli, 15>);
 static_assert(has_size<ColliderSettings, 16, Motion, std::string>);
 static_assert(has_size<LoadSettings, 2>);
@@ -301,6 +307,8 @@ template <>
 inline constexpr const char* class_name<MaterialSettings> = "Material";
 template <>
 inline constexpr const char* class_name<OrthotropicModuli> = "OrthotropicModuli";
+template <>
+inline constexpr const char* class_name<Plasticity> = "Plasticity";
 template <>
 inline constexpr const char* class_name<LoadSettings> = "LoadSettings";
 template <>

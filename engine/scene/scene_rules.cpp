@@ -270,6 +270,19 @@ const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
 }
 
 template <>
+const Rule<Plasticity>& rule_of<Plasticity>() {
+    static const auto rule =
+        Rule<Plasticity>("plasticity", "Plasticity of von Mises with isotropic hardening.")
+            .key("yield_stress", &Plasticity::yield_stress,
+                 {.meaning = "von Mises stress at the first yield", .unit = "Pa", .limits = above(0), .required = true})
+            .key("hardening", &Plasticity::hardening,
+                 {.meaning = "slope of the yield stress by the equivalent plastic strain",
+                  .unit = "Pa",
+                  .limits = at_least(0)});
+    return rule;
+}
+
+template <>
 const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
     using M = MaterialSettings;
     static const auto rule =
@@ -305,6 +318,7 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
                  {.meaning = "damping ratio of volume changes at the highest natural frequency of an element",
                   .limits = within(0, largest_bulk_viscosity)})
             .key("model", &M::model, {.meaning = "constitutive law"})
+            .key("plasticity", &M::plasticity, {.meaning = "yield of the law \"hencky\"; for explicit bodies"})
             .preset<LawBy<OgdenEntry>>("ogden",
                                        {.meaning = "law of Ogden for rubber; sets the model and the elastic moduli"})
             .preset<LawBy<MooneyRivlinEntry>>(

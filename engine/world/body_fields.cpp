@@ -132,6 +132,15 @@ std::vector<Mat3> World::strain(BodyHandle body) const {
                              kernels().element_strains, kernels().strain_of_tetrahedra);
 }
 
+std::vector<Real> World::plastic_strain(BodyHandle body) const {
+    const Model& model = state_->model;
+    const auto row = static_cast<std::size_t>(model.row(body, "plastic_strain"));
+    const Range blocks = model.bodies.blocks[row];
+    const ElementCover cover{rows_of(model.elements.part, blocks), model.body_records[row].element_tetrahedra.view()};
+    return kernels().mean_of_tetrahedra(cover, rows_of(model.elements.plastic_strain, blocks),
+                                        static_cast<std::size_t>(model.bodies.tetrahedron_count[row]));
+}
+
 NodeFields node_fields(const World& world, BodyHandle body) {
     const Model& model = WorldAccess::state_of(world).model;
     return fields_of_nodes(model, static_cast<std::size_t>(model.row(body, "node_fields")));

@@ -252,6 +252,14 @@ void require_orthotropic(const OrthotropicModuli& moduli, const std::string& obj
                "two directions that are not parallel");
 }
 
+void require_plasticity(const MaterialSettings& material, const Plasticity& plasticity, const std::string& object) {
+    require(plasticity.yield_stress > 0, object, "plasticity.yield_stress", plasticity.yield_stress,
+            "a stress > 0 (Pa)");
+    require(plasticity.hardening >= 0, object, "plasticity.hardening", plasticity.hardening, "a modulus >= 0 (Pa)");
+    if (material.model != MaterialModel::hencky)
+        refuse(object, "model", std::string(name_of(material.model)), "hencky, the law of materials with plasticity");
+}
+
 }  // namespace
 
 void validate(const MaterialSettings& material) {
@@ -284,6 +292,7 @@ void validate(const MaterialSettings& material) {
             "a number from 0 to 0.3");
     require_terms(material, object);
     if (material.model == MaterialModel::orthotropic) require_orthotropic(material.orthotropic, object);
+    if (material.plasticity) require_plasticity(material, *material.plasticity, object);
     require(material.bulk_viscosity >= 0 && material.bulk_viscosity <= largest_bulk_viscosity, object, "bulk_viscosity",
             material.bulk_viscosity, "a number from 0 to 1");
 }

@@ -242,8 +242,8 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
         fresh.dynamics = BodyDynamics::explicit_elastic;
         fresh.dynamics = choose_dynamics(model, fresh, choice, trial);
     }
-    if (fresh.dynamics == BodyDynamics::implicit_elastic && sets_losses(model, material, tetrahedron_material))
-        refuse_losses(body.name);
+    if (fresh.dynamics == BodyDynamics::implicit_elastic)
+        require_implicit_materials(model, material, tetrahedron_material, body.name);
     const BodyHandle handle = model.body_map.insert(static_cast<Index>(model.bodies.slot.size()));
     fresh.slot = handle.slot;
     append_body(model, state.scratch.stiffness_sum, fresh, trial ? &*trial : nullptr);

@@ -98,6 +98,7 @@ std::string DynamicsChoice::message() const {
     if (e.reason == DynamicsReason::given) return text;
     if (e.reason == DynamicsReason::self_contact) return text + ", because the body can touch itself";
     if (e.reason == DynamicsReason::losses) return text + ", because a material of the body sets a loss_factor";
+    if (e.reason == DynamicsReason::plasticity) return text + ", because a material of the body yields";
     if (e.reason == DynamicsReason::strain)
         return text + ", because the body may deform by " + short_text(100 * e.strain) + " %";
     text += ": " + (is_implicit ? implicit : way(e.explicit_cost, e.explicit_step)) +

@@ -15,6 +15,7 @@
 #include "systems/dynamics/elements/compute_element_forces.h"
 #include "systems/dynamics/elements/element_energy.h"
 #include "systems/dynamics/elements/recover_fields.h"
+#include "systems/dynamics/elements/yield_elements.h"
 #include "systems/dynamics/motion/advance_positions.h"
 #include "systems/dynamics/motion/damp_velocity.h"
 #include "systems/dynamics/motion/measure_displacement.h"
@@ -48,6 +49,9 @@ struct Kernels {
     decltype(&skerry::element_strains) element_strains;
     decltype(&skerry::stress_of_tetrahedra) stress_of_tetrahedra;
     decltype(&skerry::strain_of_tetrahedra) strain_of_tetrahedra;
+    decltype(&skerry::mean_of_tetrahedra) mean_of_tetrahedra;
+    decltype(&skerry::yield_elements) yield_elements;
+    decltype(&skerry::forget_flow) forget_flow;
     decltype(&skerry::advance_positions) advance_positions;
     decltype(&skerry::damp_velocity) damp_velocity;
     decltype(&skerry::measure_displacement) measure_displacement;

@@ -50,31 +50,44 @@ struct PrincipalShape {
           log_stretch{log_of(stretch[0].value), log_of(stretch[1].value), log_of(stretch[2].value)},
           log_volume(log_of(volume.value)) {}
 
-    /// (s_i / J^(1/3))^exponent for each axis.
-    Three<T> powers(Real exponent) const {
+    /// Powers (s_i / J^(1/3))^a for each axis, and the powers divided by the exponent a. For a = 0 these are 1 and the
+    /// logarithm: the derivatives of the law depend on powers over a only up to a constant, which is left out.
+    struct Powers {
+        Three<T> power, over_exponent;
+    };
+    Powers powers(Real exponent) const {
+        Powers t;
         const T of_volume = exp_of((-exponent / 3) * log_volume);
-        Three<T> t;
-        for (std::size_t i = 0; i < 3; ++i) t[i] = power_of(stretch[i].value, log_stretch[i], exponent) * of_volume;
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (exponent == 0) {
+                t.power[i] = T{} + 1.0;
+                t.over_exponent[i] = log_stretch[i] - log_volume * (1.0 / 3);
+            } else {
+                t.power[i] = power_of(stretch[i].value, log_stretch[i], exponent) * of_volume;
+                t.over_exponent[i] = t.power[i] * (1 / exponent);
+            }
+        }
         return t;
     }
 };
 
-/// Calls visit(factor, exponent) for each term in use, with the factor 2 mu c / a of the derivatives [Pa].
+/// Calls visit(modulus, exponent) for each term in use, with the modulus 2 mu c [Pa]. The law of Hencky has one term
+/// with the exponent 0.
 void for_each_term(const MaterialConstants& material, auto&& visit) {
+    if (material.model == MaterialModel::hencky) return visit(2 * material.shear_modulus, Real(0));
     for (std::size_t p = 0; p < material.share.size(); ++p)
-        if (material.share[p] > 0)
-            visit(2 * material.shear_modulus * material.share[p] / material.exponent[p], material.exponent[p]);
+        if (material.share[p] > 0) visit(2 * material.shear_modulus * material.share[p], material.exponent[p]);
 }
 
 /// Derivatives of the energy without volume change by the stretches [Pa].
 template <class T>
 Three<T> principal_stress(const MaterialConstants& material, const PrincipalShape<T>& shape) {
     Three<T> W{};
-    for_each_term(material, [&](Real factor, Real exponent) {
-        const Three<T> t = shape.powers(exponent);
+    for_each_term(material, [&](Real modulus, Real exponent) {
+        const Three<T> t = shape.powers(exponent).over_exponent;
         const T third = (t[0] + t[1] + t[2]) * (1.0 / 3) * shape.volume.slope;
         for (std::size_t i = 0; i < 3; ++i)
-            W[i] = W[i] + factor * (t[i] * shape.stretch[i].slope - third * shape.area[i]);
+            W[i] = W[i] + modulus * (t[i] * shape.stretch[i].slope - third * shape.area[i]);
     });
     return W;
 }
@@ -93,31 +106,30 @@ PrincipalTangent<T> principal_tangent(const MaterialConstants& material, const P
     constexpr Real least = 1e-3;  // lower bound of the sum of two stretches; below it R is about to jump
     PrincipalTangent<T> H;
     const T r = shape.volume.slope, change = shape.volume.curvature;
-    for_each_term(material, [&](Real factor, Real exponent) {
-        const Three<T> t = shape.powers(exponent);
-        const T sum = t[0] + t[1] + t[2];
-        Three<T> B, stress, slope;
+    for_each_term(material, [&](Real modulus, Real exponent) {
+        const auto [power, t] = shape.powers(exponent);
+        const T sum = t[0] + t[1] + t[2], ninth = (power[0] + power[1] + power[2]) * (1.0 / 9);
+        Three<T> B, C, stress, slope;
         for (std::size_t i = 0; i < 3; ++i) {
             const T& A = shape.stretch[i].slope;
             B[i] = r * shape.area[i];
+            C[i] = (1.0 / 3) * (power[i] * A);
             stress[i] = t[i] * A;
-            slope[i] = t[i] * (exponent * (A * A) + shape.stretch[i].curvature);
+            slope[i] = power[i] * (A * A) + t[i] * shape.stretch[i].curvature;
         }
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-            H.diagonal[k] = H.diagonal[k] + factor * (slope[k] - (2 * exponent / 3) * (stress[k] * B[k]) +
-                                                      (exponent / 9) * (sum * B[k] * B[k]) -
-                                                      (1.0 / 3) * (sum * change * shape.area[k] * shape.area[k]));
-            H.off[k] = H.off[k] + factor * ((exponent / 9) * (sum * B[i] * B[j]) -
-                                            (exponent / 3) * (stress[i] * B[j] + stress[j] * B[i]) -
-                                            (1.0 / 3) * (sum * (change * shape.area[i] * shape.area[j] + r * s[k])));
+            H.diagonal[k] = H.diagonal[k] + modulus * (slope[k] - 2.0 * (C[k] * B[k]) + ninth * B[k] * B[k] -
+                                                       (1.0 / 3) * (sum * change * shape.area[k] * shape.area[k]));
+            H.off[k] = H.off[k] + modulus * (ninth * B[i] * B[j] - (C[i] * B[j] + C[j] * B[i]) -
+                                             (1.0 / 3) * (sum * (change * shape.area[i] * shape.area[j] + r * s[k])));
             const T difference = s[i] - s[j], total = s[i] + s[j], pressure = (1.0 / 3) * (sum * r * s[k]);
             const auto apart = (difference > close) | (difference < -close);
             const T quotient =
                 apart ? (stress[i] - stress[j]) / (apart ? difference : T{} + 1.0) : 0.5 * (slope[i] + slope[j]);
-            H.flip[k] = H.flip[k] + factor * (quotient + pressure);
+            H.flip[k] = H.flip[k] + modulus * (quotient + pressure);
             H.twist[k] =
-                H.twist[k] + factor * ((stress[i] + stress[j]) / (total > least ? total : T{} + least) - pressure);
+                H.twist[k] + modulus * ((stress[i] + stress[j]) / (total > least ? total : T{} + least) - pressure);
         }
     });
     return H;
@@ -240,10 +252,14 @@ T Ogden::rough_stiffness_bound(const MaterialConstants& material, const T& squar
     const T steep = 1.0 / (least_of_F * least_of_F), gentle = 1.0 / (most * most * cube_root * cube_root);
     const T log_most = log_of(most), log_least = log_of(least);
     T bound{};
-    for_each_term(material, [&](Real factor, Real exponent) {
+    for_each_term(material, [&](Real modulus, Real exponent) {
+        if (exponent == 0) {
+            bound = bound + modulus * (1.0 + larger(log_most, T{} - log_least)) * steep;
+            return;
+        }
         const T up = exp_of(exponent * log_most), down = exp_of(exponent * log_least);
         const T above = larger(up, down) * steep, below = smaller(up, down) * gentle;
-        bound = bound + (factor * exponent) * above + std::abs(factor) * (above - below);
+        bound = bound + modulus * above + std::abs(modulus / exponent) * (above - below);
     });
     const Real K = bulk_modulus(material);
     const T slope = K * (J - 1.0);
@@ -268,10 +284,11 @@ Real Ogden::energy_density(const MaterialConstants& material, const Mat3& F) {
     const Vec3 s = Stretches(F).stretch;
     const Real J = F.determinant(), log_volume = std::log(limited(J, least_volume).value);
     Real energy = 0.5 * bulk_modulus(material) * (J - 1) * (J - 1);
-    for_each_term(material, [&](Real factor, Real exponent) {
-        for (const Real stretch : s)
-            energy += factor / exponent *
-                      std::expm1(exponent * (std::log(limited(stretch, least_stretch).value) - log_volume / 3));
+    for_each_term(material, [&](Real modulus, Real exponent) {
+        for (const Real stretch : s) {
+            const Real log = std::log(limited(stretch, least_stretch).value) - log_volume / 3;
+            energy += modulus * (exponent == 0 ? log * log / 2 : std::expm1(exponent * log) / (exponent * exponent));
+        }
     });
     return energy;
 }
@@ -282,14 +299,15 @@ Mat3 Ogden::stress(const MaterialConstants& material, const Mat3& F) {
     const Vec3 area(s[1] * s[2], s[2] * s[0], s[0] * s[1]);
     const Limited<Real> volume = limited(s.prod(), least_volume);
     Vec3 W = bulk_modulus(material) * (s.prod() - 1) * area;
-    for_each_term(material, [&](Real factor, Real exponent) {
+    for_each_term(material, [&](Real modulus, Real exponent) {
         Vec3 power, slope;
         for (Index i = 0; i < 3; ++i) {
             const Limited<Real> stretch = limited(s[i], least_stretch);
-            power[i] = std::pow(stretch.value / std::cbrt(volume.value), exponent);
+            const Real distorted = stretch.value / std::cbrt(volume.value);
+            power[i] = exponent == 0 ? std::log(distorted) : std::pow(distorted, exponent) / exponent;
             slope[i] = stretch.slope;
         }
-        W += factor * (power.cwiseProduct(slope) - power.sum() / 3 * volume.slope * area);
+        W += modulus * (power.cwiseProduct(slope) - power.sum() / 3 * volume.slope * area);
     });
     return frames.left * W.asDiagonal() * frames.right.transpose();
 }

@@ -1,7 +1,8 @@
 // Law of Ogden (1972) for rubber, with the volume change split off. Psi = sum_p 2 mu c_p / a_p^2 (sum_i (s_i /
 // J^(1/3))^a_p - 3) + K/2 (J - 1)^2 with the stretches s_i, J = det F, exponents a_p and shares c_p of the shear
 // modulus, whose sum is 1. One term of exponent 2 is the neo-Hookean law. Exponents 2 and -2 are the law of Mooney and
-// Rivlin (docs/methods/elasticity.md 2.5).
+// Rivlin (docs/methods/elasticity.md 2.5). The limit of one term of exponent 0 is the law of Hencky, whose energy of
+// shape changes is mu sum_i log^2 (s_i / J^(1/3)).
 #pragma once
 
 #include "components/material_table.h"

@@ -37,6 +37,7 @@ template <class Visit>
         case MaterialModel::guard:
             return visit(Guard{});
         case MaterialModel::ogden:
+        case MaterialModel::hencky:
             return visit(Ogden{});
         case MaterialModel::orthotropic:
             return visit(Orthotropic{});

@@ -252,7 +252,8 @@ TEST_CASE("a turned body feels nothing, but for linear elasticity, which swells 
 TEST_CASE("forces turn with the body", "[property]") {
     const auto executor = make_executor(Backend::serial, 1);
     std::mt19937_64 random(10);
-    for (MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean, MaterialModel::ogden}) {
+    for (MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean, MaterialModel::ogden,
+                                MaterialModel::hencky}) {
         ElasticBody body(jittered_box({3, 2, 2}, 0.1, 0.2, 11), material_constants(model, 1e5, 0.4, 1000));
         for (Vec3& x : body.position) x += 0.02 * test::random_vector(random);
         body.compute_forces(*executor);

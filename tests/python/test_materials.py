@@ -85,3 +85,17 @@ def test_an_unknown_name_is_refused_with_the_names():
     with pytest.raises(KeyError, match="'stel'"):
         sk.materials.sources("stel")
     assert "stel" not in sk.materials
+
+
+def test_a_material_yields_and_a_body_keeps_its_dent():
+    clay = sk.Material(young_modulus=1e6, model="hencky", plasticity=sk.Plasticity(yield_stress=1e4, hardening=1e4))
+    world = sk.World(gravity=(0, 0, 0))
+    body = world.add_body(sk.Mesh.box((0.1, 0.1, 0.1), (1, 1, 1)), clay)
+    assert body.material.settings == clay
+    assert not body.plastic_strain().any()
+    body.positions = body.positions * (1.3, 0.9, 0.9)
+    assert body.plastic_strain().min() > 0.2
+    world.advance(0.01)
+    assert world.report().plastic_work >= 0
+    with pytest.raises(sk.SceneError, match="model: found stable_neo_hookean, expected hencky"):
+        world.add_material(plasticity=sk.Plasticity(yield_stress=1.0))

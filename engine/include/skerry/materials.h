@@ -22,6 +22,7 @@ struct NamedMaterial {
     SourcedValue poisson_ratio;  // rubber, gels and tissue have 0.49 in place of almost 0.5
     SourcedValue density;        // [kg/m^3]
     std::optional<SourcedValue> loss_factor;
+    std::optional<SourcedValue> yield_stress{};  // for Plasticity, which named_material() does not set [Pa]
 };
 
 /// Friction coefficients of two clean, dry surfaces.

@@ -164,16 +164,18 @@ struct StepLimitReport {
 /// - given: no choice was made, because the caller gave the kind.
 /// - self_contact: explicit, because implicit bodies have no self-contact.
 /// - losses: explicit, because a material of the body sets a loss factor above 0.
+/// - plasticity: explicit, because a material of the body yields.
 /// - strain: explicit, because the body may deform by more than the limit for implicit bodies.
 /// - cost: chosen by the predicted computing times. The body is implicit if implicit steps cost less than half as much
 ///   as explicit steps.
-enum class DynamicsReason : std::uint8_t { given, self_contact, losses, strain, cost };
+enum class DynamicsReason : std::uint8_t { given, self_contact, losses, plasticity, strain, cost };
 template <>
 struct EnumNames<DynamicsReason> {
-    static constexpr std::array<std::pair<DynamicsReason, std::string_view>, 5> table{{
+    static constexpr std::array<std::pair<DynamicsReason, std::string_view>, 6> table{{
         {DynamicsReason::given, "given"},
         {DynamicsReason::self_contact, "self_contact"},
         {DynamicsReason::losses, "losses"},
+        {DynamicsReason::plasticity, "plasticity"},
         {DynamicsReason::strain, "strain"},
         {DynamicsReason::cost, "cost"},
     }};
@@ -282,6 +284,7 @@ struct RunCounters {
     Real worst_error = 0;
     Index worst_region = 0;                           // number of contacts of the region with worst_error
     Real dissipated = 0;                              // energy dissipated by contacts, damping and material losses [J]
+    Real plastic_work = 0;                            // part of `dissipated`: plastic flow of elements [J]
     Real max_penetration = 0, max_gap_violation = 0;  // largest values in any step; see StepReport [m]
     // Values of max_penetration and max_gap_violation in the first step alone [m].
     Real start_penetration = 0, start_gap_violation = 0;

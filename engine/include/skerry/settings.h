@@ -30,6 +30,14 @@ struct StretchTerm {
     bool operator==(const StretchTerm&) const = default;
 };
 
+/// Plasticity of von Mises with isotropic hardening, of the law `hencky` (docs/methods/elasticity.md 8).
+struct Plasticity {
+    Real yield_stress = 0;  // von Mises stress at which the material yields first, > 0 [Pa]
+    Real hardening = 0;     // slope of the yield stress by the equivalent plastic strain, >= 0 [Pa]
+
+    bool operator==(const Plasticity&) const = default;
+};
+
 struct MaterialSettings {
     Real young_modulus = 1e5;  // > 0 [Pa]
     Real poisson_ratio = 0.4;  // Poisson's ratio, > -1 and < 0.5
@@ -57,6 +65,7 @@ struct MaterialSettings {
     // Elastic constants of the law `orthotropic`. This law replaces young_modulus and poisson_ratio by those of an
     // isotropic material that is nowhere stiffer; they serve losses and estimates.
     OrthotropicModuli orthotropic{};
+    std::optional<Plasticity> plasticity{};  // only with the law `hencky`; explicit bodies alone yield
 };
 
 /// Kind of motion of a body. Rigid and implicit bodies do not limit the step and have no self-contact.

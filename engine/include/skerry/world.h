@@ -145,6 +145,8 @@ public:
     /// Stress at the given nodes, in the given order, computed from the elements around these nodes only. The values
     /// are bitwise those of node_stress(body). Throws SceneError if the body has no such node.
     std::vector<Mat3> node_stress(BodyHandle body, std::span<const Index> nodes) const;
+    /// Equivalent plastic strain, by tetrahedron. Strains of a material that yields are elastic strains.
+    std::vector<Real> plastic_strain(BodyHandle body) const;
     std::vector<Real> von_mises_stress(BodyHandle body) const;         // by tetrahedron [Pa]
     std::vector<Real> node_von_mises_stress(BodyHandle body) const;    // by node [Pa]
     std::vector<Vec3> node_principal_stresses(BodyHandle body) const;  // by node, the largest first [Pa]

@@ -307,6 +307,10 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
                       of_cells([](auto& put, const BodyFrame& b, std::size_t c) { put_symmetric(put, b.stress[c]); }));
     file.array<float>("strain", 6, cells,
                       of_cells([](auto& put, const BodyFrame& b, std::size_t c) { put_symmetric(put, b.strain[c]); }));
+    const auto has_plastic_strain = [](const BodyFrame& b) { return !b.plastic_strain.empty(); };
+    if (std::ranges::any_of(frame.bodies, has_plastic_strain))
+        file.array<float>("plastic_strain", 1, cells,
+                          of_cells([](auto& put, const BodyFrame& b, std::size_t c) { put(b.plastic_strain[c]); }));
     file.array<std::int32_t>("body", 1, cells, of_cells([this](auto& put, const BodyFrame& b, std::size_t) {
                                  put(number_of(body_number_, b.handle));
                              }));

@@ -33,7 +33,7 @@ ContactRegions: TypeAlias = Literal["separate", "global"]
 SolverMethod: TypeAlias = Literal["automatic", "ags", "pgs", "pcg_pgs", "newton", "pcg_fr", "pcg_pr"]
 Friction: TypeAlias = Literal["cone", "pyramid"]
 StartOverlaps: TypeAlias = Literal["resolve", "refuse", "ignore"]
-MaterialModel: TypeAlias = Literal["linear", "corotational", "stable_neo_hookean", "ogden", "orthotropic"]
+MaterialModel: TypeAlias = Literal["linear", "corotational", "stable_neo_hookean", "ogden", "orthotropic", "hencky"]
 ElementKind: TypeAlias = Literal["linear", "smoothed", "edge_smoothed", "edge_node_smoothed"]
 Dynamics: TypeAlias = Literal["explicit", "rigid", "implicit", "automatic"]
 JointKind: TypeAlias = Literal["ball", "hinge", "slider", "fixed"]
@@ -167,6 +167,18 @@ class OrthotropicModuli:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Plasticity:
+    """Plasticity of von Mises with isotropic hardening.
+
+    yield_stress: von Mises stress at which the material yields first, above 0 [Pa].
+    hardening: slope of the yield stress by the equivalent plastic strain, at least 0 [Pa].
+    """
+
+    yield_stress: float
+    hardening: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Material:
     """An elastic material with its friction and its losses.
 
@@ -187,6 +199,7 @@ class Material:
         shares sum to 1. ogden() and mooney_rivlin() set them from moduli.
     orthotropic: constants of the law "orthotropic", which replaces young_modulus and poisson_ratio by those of an
         isotropic material that is nowhere stiffer.
+    plasticity: yield of the law "hencky"; for explicit bodies.
     """
 
     young_modulus: float = 1e5
@@ -202,6 +215,7 @@ class Material:
     model: MaterialModel = "stable_neo_hookean"
     terms: tuple[tuple[float, float], ...] = ((1.0, 2.0),)
     orthotropic: OrthotropicModuli = OrthotropicModuli()
+    plasticity: Plasticity | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "terms", tuple((share, exponent) for share, exponent in self.terms))

@@ -183,6 +183,7 @@ void add_counters(const RunCounters& counters, nb::dict& values) {
     values["worst_error"] = counters.worst_error;
     values["worst_region"] = counters.worst_region;
     values["dissipated"] = counters.dissipated;
+    values["plastic_work"] = counters.plastic_work;
     values["max_penetration"] = counters.max_penetration;
     values["max_gap_violation"] = counters.max_gap_violation;
     values["start_penetration"] = counters.start_penetration;

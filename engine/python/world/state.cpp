@@ -155,6 +155,7 @@ void bind_fields(WorldClass& type) {
         .def("node_stress", field_of<Mat3>(&World::node_stress))
         .def("node_stress_at", &stress_at)
         .def("node_strain", field_of<Mat3>(&World::node_strain))
+        .def("plastic_strain", field_of<Real>(&World::plastic_strain))
         .def("von_mises_stress", field_of<Real>(&World::von_mises_stress))
         .def("node_von_mises_stress", field_of<Real>(&World::node_von_mises_stress))
         .def("node_principal_stresses", field_of<Vec3>(&World::node_principal_stresses))

@@ -28,8 +28,8 @@ inline BodyHandle handle_of_body(const Model& model, Index row) {
 /// inside out may remain so.
 void require_upright(const Model& model, std::size_t body, std::span<const Vec3> position, const std::string& object,
                      const char* field);
-/// Moves the nodes of a body and evaluates the stable step of the body again. In the next step the contacts and
-/// overlaps of the body are searched again.
+/// Moves the nodes of a body, lets its elements yield, and evaluates the stable step of the body again. In the next
+/// step the contacts and overlaps of the body are searched again.
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position);
 /// Changes the attachments of a body so that they hold their nodes at the present positions. `now`: present time [s].
 void hold_here(Model& model, std::size_t body, Real now);

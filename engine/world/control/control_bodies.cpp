@@ -93,6 +93,7 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
         target[n] = position[n];
     }
     renew_corners(model, body);
+    yield_blocks(world, model.all_elements(), model.bodies.blocks[body]);
     if (model.bodies.blocks[body].size() > 0)
         model.bodies.stable_step[body] =
             evaluate_stable_step(model, body, model.nodes.position, world.scratch.stiffness_sum);

@@ -54,9 +54,13 @@ void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
                       std::string("rigid, because ") + (model.body_records[body].tetrahedra.empty()
                                                             ? "a body without tetrahedra cannot deform"
                                                             : "the mass of the body is given"));
-    if (next == BodyDynamics::implicit_elastic &&
-        sets_losses(model, model.bodies.material[body], model.body_records[body].tetrahedron_material))
-        refuse_losses(model.body_records[body].name);
+    if (next == BodyDynamics::implicit_elastic)
+        require_implicit_materials(model, model.bodies.material[body], model.body_records[body].tetrahedron_material,
+                                   model.body_records[body].name);
+    if (has_flowed(model, body))
+        refuse_change(model, body, "dynamics", "a change of dynamics for a body that has deformed plastically",
+                      "a body without plastic strain, because other dynamics have none",
+                      "call reset() first, or add another body with the deformed mesh");
     const auto is_of_body = [row](Index of) { return of == row; };
     if (std::ranges::any_of(model.attachments.body, is_of_body))
         refuse_change(model, body, "dynamics", "a change of dynamics for an attached body",

@@ -97,7 +97,16 @@ void weigh(Model& model, std::size_t body) {
         model.body_mass[body] += model.nodes.mass[static_cast<std::size_t>(n)];
 }
 
-void require_changeable(const MaterialRow& now, const MaterialRow& next) {
+void require_changeable(const Model& model, const MaterialRow& now, const MaterialRow& next,
+                        std::span<const std::size_t> bodies) {
+    if (now.constants.yields() != next.constants.yields())
+        refuse("material", "plasticity", next.constants.yields() ? "a material that yields" : "none",
+               "the plasticity of an existing material may change, but neither appear nor vanish; add a new material");
+    const auto flowed = std::ranges::find_if(bodies, [&](std::size_t body) { return has_flowed(model, body); });
+    if (flowed != bodies.end() && !now.same_elements(next))
+        refuse("material", "young_modulus, poisson_ratio, density, losses",
+               "other values for body '" + model.body_records[*flowed].name + "', which has deformed plastically",
+               "the present values, or another yield_stress or hardening; or call reset() for the body first");
     if (now.constants.model != next.constants.model)
         refuse("material", "model", std::string(name_of(next.constants.model)),
                std::string(name_of(now.constants.model)) +
@@ -145,6 +154,7 @@ MaterialSettings World::material(MaterialHandle material) const {
     settings.orthotropic = now.orthotropic;
     for (std::size_t p = 0; p < settings.terms.size(); ++p)
         settings.terms[p] = {now.constants.share[p], now.constants.exponent[p]};
+    if (now.constants.yields()) settings.plasticity = {now.constants.yield_stress, now.constants.hardening};
     if (now.surface.static_friction != now.surface.dynamic_friction) {
         settings.static_friction = now.surface.static_friction;
         settings.dynamic_friction = now.surface.dynamic_friction;
@@ -159,10 +169,10 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
     validate(settings);
     const MaterialRow now = MaterialRow::of(model.materials, static_cast<std::size_t>(row)),
                       next = MaterialRow::of(settings);
-    require_changeable(now, next);
+    std::vector<std::size_t> bodies = bodies_of(model, row);
+    require_changeable(model, now, next, bodies);
     if (now.same_elements(next) && now.same_rest(next)) return;
     state_->settle();
-    std::vector<std::size_t> bodies = bodies_of(model, row);
     if (next.sets_losses)
         for (const std::size_t body : bodies)
             if (model.dynamics_of(body) == BodyDynamics::implicit_elastic) refuse_losses(model.body_records[body].name);

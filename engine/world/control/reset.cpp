@@ -7,6 +7,7 @@
 
 #include "engine/world/control/control.h"
 #include "engine/world/edit/rigid_bodies.h"
+#include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 #include "skerry/world.h"
 #include "systems/collision/inputs/contact_key.h"
@@ -104,6 +105,7 @@ void reset_body(WorldState& world, std::size_t body, const RigidPose& pose) {
     std::vector<Vec3> position;
     for (const Vec3& rest : rows_of(model.nodes.rest_position, nodes))
         position.push_back(pose.position + pose.rotation * rest);
+    undo_flow(model, body);
     relax_elements(model, body, pose.rotation * model.body_records[body].built.transpose());
     place_nodes(world, body, position);
     std::ranges::copy(position, rows_of(model.nodes.still_position, nodes).begin());

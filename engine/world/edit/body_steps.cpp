@@ -64,7 +64,10 @@ std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
         const Index material = body.material_of(t);
         auto zone = std::find_if(zones.begin(), zones.end(), [&](const auto& z) { return z.material == material; });
         if (zone == zones.end()) {
-            const Real poisson_ratio = model.materials.poisson_ratio[static_cast<std::size_t>(material)];
+            // Plastic flow keeps the volume, as an incompressible material does.
+            const auto row = static_cast<std::size_t>(material);
+            const Real poisson_ratio =
+                model.materials.constants[row].yields() ? 0.5 : model.materials.poisson_ratio[row];
             zone = zones.insert(zones.end(), {material, resolved(body.element, poisson_ratio), {}});
         }
         zone->tetrahedra.push_back(static_cast<Index>(t));
@@ -192,7 +195,9 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     // Frame masses are chosen for linear elements only. The mass forms of smoothed elements already allow steps near
     // the stability limit. Still closer to this limit, the energies of the highest frequencies are less accurate.
     const Real by_either = by_forms > by_shares ? by_forms : by_shares;
-    if (model.body_records[static_cast<std::size_t>(row)].element != ElementKind::linear) return by_either;
+    // Frame masses do not follow plastic flow either.
+    const auto b = static_cast<std::size_t>(row);
+    if (model.body_records[b].element != ElementKind::linear || model.yields(b)) return by_either;
     // Least ratio of the stable step with frame masses to the stable step without them. A smaller gain does not justify
     // the second evaluation that strained bodies then need.
     constexpr Real least_gain = 1.1;

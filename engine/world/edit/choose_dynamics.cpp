@@ -89,11 +89,35 @@ void compare_costs(const Model& model, const NewBody& body, const KnownElements&
     if (damps > 0) estimate.damped_above = 1 / (4 * std::numbers::pi * estimate.deforming_step);
 }
 
-}  // namespace
+/// Calls `has` with the rows of the materials of a body, and returns true if one of them has a property.
+bool any_material(Index material, std::span<const Index> tetrahedron_material, auto&& has) {
+    const auto of_row = [&](Index row) { return has(static_cast<std::size_t>(row)); };
+    return tetrahedron_material.empty() ? of_row(material) : std::ranges::any_of(tetrahedron_material, of_row);
+}
 
 bool sets_losses(const Model& model, Index material, std::span<const Index> tetrahedron_material) {
-    const auto sets = [&](Index of) { return model.materials.sets_losses[static_cast<std::size_t>(of)] != 0; };
-    return tetrahedron_material.empty() ? sets(material) : std::ranges::any_of(tetrahedron_material, sets);
+    return any_material(material, tetrahedron_material,
+                        [&](std::size_t row) { return model.materials.sets_losses[row] != 0; });
+}
+
+bool yields(const Model& model, Index material, std::span<const Index> tetrahedron_material) {
+    return any_material(material, tetrahedron_material,
+                        [&](std::size_t row) { return model.materials.constants[row].yields(); });
+}
+
+}  // namespace
+
+void require_implicit_materials(const Model& model, Index material, std::span<const Index> tetrahedron_material,
+                                const std::string& name) {
+    if (sets_losses(model, material, tetrahedron_material)) refuse_losses(name);
+    if (!yields(model, material, tetrahedron_material)) return;
+    Complaint{.file = {},
+              .object = name.empty() ? "body" : "body '" + name + "'",
+              .field = "plasticity",
+              .found = "a material of an implicit body that yields",
+              .expected = "no plasticity, because implicit bodies do not yield",
+              .hint = "remove it from the material, or make the body explicit"}
+        .raise();
 }
 
 void refuse_losses(const std::string& body) {
@@ -112,6 +136,7 @@ BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEs
     estimate.strain = largest_strain(model, body);
     estimate.reason = body.self_contact                                              ? DynamicsReason::self_contact
                       : sets_losses(model, body.material, body.tetrahedron_material) ? DynamicsReason::losses
+                      : yields(model, body.material, body.tetrahedron_material)      ? DynamicsReason::plasticity
                       : !(estimate.strain <= most_strain)                            ? DynamicsReason::strain
                                                                                      : DynamicsReason::cost;
     if (estimate.reason != DynamicsReason::cost) return BodyDynamics::explicit_elastic;

@@ -74,9 +74,10 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
 
 // choose_dynamics.cpp
 
-/// True if a material of a body sets a loss factor above 0. `tetrahedron_material`: material of each tetrahedron; empty
-/// if all have `material`.
-bool sets_losses(const Model& model, Index material, std::span<const Index> tetrahedron_material);
+/// Throws SceneError if a material of the implicit body `name` sets a loss factor above 0, or yields.
+/// `tetrahedron_material`: material of each tetrahedron; empty if all have `material`.
+void require_implicit_materials(const Model& model, Index material, std::span<const Index> tetrahedron_material,
+                                const std::string& name);
 /// Throws SceneError: the body with this name is implicit and has a loss factor.
 [[noreturn]] void refuse_losses(const std::string& body);
 

@@ -41,6 +41,10 @@ struct MaterialRow {
             row.young_modulus = softer.young_modulus;
             row.poisson_ratio = softer.poisson_ratio;
         }
+        if (material.plasticity) {
+            row.constants.yield_stress = material.plasticity->yield_stress;
+            row.constants.hardening = material.plasticity->hardening;
+        }
         return row;
     }
     void write(MaterialTable& table, std::size_t row) const {
@@ -60,7 +64,9 @@ struct MaterialRow {
                a.exponent == b.exponent && orthotropic == other.orthotropic;
     }
     bool same_rest(const MaterialRow& other) const {
-        return surface == other.surface && damping == other.damping && sets_losses == other.sets_losses;
+        return surface == other.surface && damping == other.damping && sets_losses == other.sets_losses &&
+               constants.yield_stress == other.constants.yield_stress &&
+               constants.hardening == other.constants.hardening;
     }
 };
 

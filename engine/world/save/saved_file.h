@@ -14,7 +14,7 @@
 
 namespace skerry {
 
-inline constexpr int world_file_version = 26;
+inline constexpr int world_file_version = 27;
 
 /// Texts in the header of a saved world.
 struct SavedTexts {

@@ -97,12 +97,13 @@ struct MembersOf<RunCounters> {
                           Member{"worst_error", &S::worst_error},
                           Member{"worst_region", &S::worst_region},
                           Member{"dissipated", &S::dissipated},
+                          Member{"plastic_work", &S::plastic_work},
                           Member{"max_penetration", &S::max_penetration},
                           Member{"max_gap_violation", &S::max_gap_violation},
                           Member{"start_penetration", &S::start_penetration},
                           Member{"start_gap_violation", &S::start_gap_violation}};
     }
-    static_assert(sizeof(RunCounters) == 31 * sizeof(Real),
+    static_assert(sizeof(RunCounters) == 32 * sizeof(Real),
                   "every member of this struct must be in the list of saved members");
 };
 /// Members of Settings that are saved with this list. The member step_size is saved separately, because it may have no

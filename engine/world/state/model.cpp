@@ -98,6 +98,12 @@ ElementInputs Model::awake_elements() const {
     return ElementInputs::bind({}, elements, element_nodes, materials, bodies, any_asleep);
 }
 
+bool Model::yields(std::size_t body) const {
+    return std::ranges::any_of(rows_of(elements.material, bodies.blocks[body]), [&](Index material) {
+        return materials.constants[static_cast<std::size_t>(material)].yields();
+    });
+}
+
 std::optional<Model::RoundShape> Model::round_shape(std::size_t body) const {
     const Index core = bodies.core_nodes[body];
     if (core == 0) return std::nullopt;

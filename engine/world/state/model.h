@@ -215,6 +215,8 @@ struct Model {
     std::optional<RoundShape> round_shape(std::size_t body) const;
     /// Name of the shape of a round body: "sphere", "capsule" or "cylinder".
     const char* round_name(std::size_t body) const;
+    /// True if elements of a body can deform plastically.
+    bool yields(std::size_t body) const;
     bool is_rigid(std::size_t body) const { return dynamics_of(body) == BodyDynamics::rigid; }
     BodyDynamics dynamics_of(std::size_t body) const {
         return !has_frame(body)                    ? BodyDynamics::explicit_elastic

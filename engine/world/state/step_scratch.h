@@ -79,6 +79,7 @@ struct StepFindings {
     CableMeasures cables;
     Index released_ties = 0;  // number of ties of which the last node has broken off in this step
     Index unstrained = 0;     // number of bodies whose elements are skipped, because they are undeformed in free flight
+    Real plastic = 0;         // energy dissipated by plastic flow at the end of this step [J]
     Real relaxed = 0;         // energy dissipated by relaxation of the elements in this step [J]
     Real viscous = 0;         // energy dissipated by the viscosity of implicit elements in this step [J]
     Real damped = 0;          // energy dissipated by damping in this step [J]
@@ -157,6 +158,7 @@ struct StepScratch {
     Column<WatchPart> watch_parts;     // used by watch_stable_steps
     Column<WatchPieces> watch_pieces;  // used by store_shapes
     Column<Real> viscous_parts;        // used by measure_viscosity
+    Column<Real> plastic_parts;        // used by yield_elements
     // For each body, nonzero if a load, spring, cable, cavity, motor or tie that acts on it changes in this step. Empty
     // if there are none of these, or bodies cannot fall asleep.
     Column<std::uint8_t> driven;

@@ -56,9 +56,11 @@ bool has_elements(const Model& model, std::size_t b) {
     return model.bodies.blocks[b].size() > 0;
 }
 
-/// True if nodes of a body are held along single directions. Such a body has no clusters, because the impulses that
-/// hold its nodes do not pass through the inertia matrices of clusters.
-bool holds_axes(const Model& model, std::size_t b) {
+/// True if a body must not have clusters: its nodes are held along single directions, or one of its materials yields.
+/// The impulses that hold the nodes do not pass through the inertia matrices of clusters, and plastic flow changes the
+/// stiffness from which these matrices are computed.
+bool forbids_clusters(const Model& model, std::size_t b) {
+    if (model.yields(b)) return true;
     for (std::size_t a = 0; a < model.attachments.slot.size(); ++a)
         if (model.attachments.body[a] == static_cast<Index>(b) && !holds_completely(model.attachments.held[a]))
             return true;
@@ -247,7 +249,7 @@ Plan plan_for(Model& model, Real step, Searches& searches) {
     Plan plan{.step = step, .body = {}};
     for (std::size_t b = 0; b < model.bodies.slot.size() && plan.possible; ++b) {
         if (!has_elements(model, b) || model.bodies.rest_step[b] >= step) continue;
-        if (holds_axes(model, b) || searches.too_many(b, step)) {
+        if (forbids_clusters(model, b) || searches.too_many(b, step)) {
             plan.possible = false;
             break;
         }
@@ -359,7 +361,7 @@ bool clusters_allowed(const Settings& settings) {
 }
 
 bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum) {
-    if (holds_axes(model, body)) return false;
+    if (forbids_clusters(model, body)) return false;
     // computing time for inverting a matrix, divided by the cube of its width [ns]
     constexpr Real inversion_cost = 0.4;
     constexpr Real lasts = 128;  // assumed number of steps between two inversions of a cluster matrix

@@ -69,8 +69,9 @@ void count_step(const StepScratch& scratch, RunCounters& counters) {
     counters.resting_steps += scratch.left_out;
     counters.unstrained += static_cast<std::uint64_t>(findings.unstrained);
     counters.dissipated += findings.measures.dissipated + findings.damped + findings.strained.damped +
-                           findings.relaxed + findings.viscous + findings.rest.energy + findings.springs.dissipated +
-                           findings.cables.dissipated;
+                           findings.relaxed + findings.viscous + findings.plastic + findings.rest.energy +
+                           findings.springs.dissipated + findings.cables.dissipated;
+    counters.plastic_work += findings.plastic;
     counters.max_penetration = std::max(counters.max_penetration, findings.measures.max_penetration);
     counters.max_gap_violation = std::max(counters.max_gap_violation, findings.measures.max_gap_violation);
 }

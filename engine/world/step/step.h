@@ -70,6 +70,17 @@ void store_shapes(Executor& executor, Model& model, std::uint64_t round, Column<
 /// energy that this update adds to the balance [J].
 Real follow_stiffening(Model& model);
 
+// yield_blocks.cpp
+
+/// Returns the elements in a range of blocks to the yield surface at the present positions, and evaluates nothing if no
+/// material yields. `elements`: the elements of the model, with the marks of those that are left out. Returns the
+/// dissipated energy [J].
+Real yield_blocks(WorldState& world, const ElementInputs& elements, Range blocks);
+/// True if an element of a body has flowed plastically.
+bool has_flowed(const Model& model, std::size_t body);
+/// Undoes the plastic flow of the elements of a body.
+void undo_flow(Model& model, std::size_t body);
+
 // choose_clusters.cpp
 
 /// Computing time of an element in a step, including its share of nodes and contacts [ns]. It serves only to compare

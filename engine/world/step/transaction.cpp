@@ -137,6 +137,13 @@ void keep_frames(WorldState& world) {
     keep_memory(*world.executor, awake, elements);
 }
 
+/// Returns the elements of the bodies that moved to the yield surface at their new positions.
+void flow(WorldState& world) {
+    ElementInputs moved = world.model.awake_elements();
+    if (world.model.any_asleep) moved.body_asleep = world.transaction.rested(world.model.bodies);
+    world.scratch.findings.plastic = yield_blocks(world, moved, world.model.all_blocks());
+}
+
 /// Clears the mark `unstrained` of all bodies in contact. Must be called after contacts have pushed positions apart,
 /// because this can deform these bodies without a change of their velocities.
 void forget_unstrained(const ContactTable& contacts, BodyTable& bodies) {
@@ -153,6 +160,7 @@ void commit(WorldState& world) {
     if (world.record.forces.on()) world.record.forces.add_step(world.model, world.transaction.asleep_before(), scratch);
     if (!scratch.left_out) {
         keep_frames(world);
+        flow(world);
         if (scratch.regions.pushed) forget_unstrained(scratch.contacts, world.model.bodies);
         add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     }

@@ -52,4 +52,20 @@ std::vector<Mat3> strain_of_tetrahedra(const ElementCover& cover, std::span<cons
     return strain;
 }
 
+std::vector<Real> mean_of_tetrahedra(const ElementCover& cover, std::span<const ElementLane> of_blocks,
+                                     std::size_t count) {
+    std::vector<Real> sum(count), covers(count);
+    for (std::size_t place = 0; place < cover.tetrahedra.size(); ++place) {
+        const std::size_t block = place / element_lanes;
+        if (cover.part[block] == ElementPart::volume) continue;
+        for (const Index t : cover.tetrahedra[place]) {
+            sum[static_cast<std::size_t>(t)] += of_blocks[block][place % element_lanes];
+            ++covers[static_cast<std::size_t>(t)];
+        }
+    }
+    for (std::size_t t = 0; t < count; ++t)
+        if (covers[t] > 0) sum[t] /= covers[t];
+    return sum;
+}
+
 }  // namespace skerry

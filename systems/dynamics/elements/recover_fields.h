@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "components/element_table.h"
 #include "components/material_table.h"
 #include "components/ragged.h"
 #include "components/types.h"
@@ -25,5 +26,10 @@ std::vector<Mat3> stress_of_tetrahedra(const ElementCover& cover, std::span<cons
 /// Strain of each tetrahedron: the mean over the elements that cover it. Elements with only the volumetric part of the
 /// stress do not count.
 std::vector<Mat3> strain_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements, std::size_t count);
+
+/// Mean of a value of the elements over those that cover a tetrahedron. Elements with only the volumetric part of the
+/// stress do not count. `of_blocks`: values by block and lane.
+std::vector<Real> mean_of_tetrahedra(const ElementCover& cover, std::span<const ElementLane> of_blocks,
+                                     std::size_t count);
 
 }  // namespace skerry

@@ -42,10 +42,11 @@ public:
 private:
     /// Rotates the rest positions into the frame of the gradients. The gradients were rotated with the body when it was
     /// added. The elements have the inverse of this rotation as deformation gradient in the rest shape of the mesh.
+    /// Elements that yield do not; they need no rotation, because fits do not depend on the frame.
     void turn_rest() {
         for (Index b = body_.blocks.begin; b < body_.blocks.end; ++b) {
             const auto block = static_cast<std::size_t>(b);
-            if (!(body_.elements.volume[block][0] > 0)) continue;
+            if (!(body_.elements.volume[block][0] > 0) || body_.elements.material_of(block).yields()) continue;
             const BlockNodes nodes = body_.elements.nodes_of(block);
             const auto rest = [&](Index k) -> const Vec3& {
                 return body_.rest_position[static_cast<std::size_t>(nodes.node[k][0] - body_.first_node)];
@@ -141,7 +142,9 @@ private:
             (has_strain(place) ? strained : volumetric).push_back(place);
             smoothed = smoothed || (has_strain(place) && near_elements_.covered(body_.cover, p).size() > 1);
         }
-        const bool is_face = patches_.kind(n) == NodeKind::face;
+        // The traction gives no elastic deformation gradient at the surface of a material that yields.
+        const bool is_face = patches_.kind(n) == NodeKind::face &&
+                             !body_.elements.material_of(block_of(static_cast<std::size_t>(places.front()))).yields();
         plan_.smooth.push_back({rest(n), size > 0 ? size : 1, smoothed && strained.size() >= enough,
                                 is_face ? static_cast<Index>(plan_.faces.size()) : no_index});
         append_row<Index>(plan_.strained, strained);

@@ -96,4 +96,22 @@ TEST_CASE("a scene gives the moduli of rubber as papers do", "[unit]") {
                       Catch::Contains("no key \"c01\""));
 }
 
+TEST_CASE("a scene gives the plasticity of a material, and named metals list their yield stress", "[unit]") {
+    const TemporaryFolder folder;
+    const auto planned = [&](const std::string& keys) {
+        return plan_scene(folder.write("m.json", material_with(keys))).materials.at(0).second;
+    };
+    const MaterialSettings metal =
+        planned(R"("model": "hencky", "plasticity": {"yield_stress": 1e6, "hardening": 2e6}, "like": "steel")");
+    CHECK(metal.plasticity == Plasticity{1e6, 2e6});
+    CHECK(metal.model == MaterialModel::hencky);
+    CHECK(!named_material("steel").plasticity);
+    CHECK_THROWS_WITH(planned(R"("model": "hencky", "plasticity": {"hardening": 2e6})"),
+                      Catch::Contains("no key \"yield_stress\""));
+    CHECK_THROWS_WITH(planned(R"("model": "hencky", "plasticity": {"yield_stress": 0})"),
+                      Catch::Contains("yield_stress: found 0"));
+    for (const NamedMaterial& material : named_materials())
+        if (material.name == "aluminium") CHECK(material.yield_stress->value == 9.5e7);
+}
+
 }  // namespace skerry::test::named_materials_test

@@ -88,10 +88,13 @@ TEST_CASE("stress and energy by lanes agree with the plain twin", "[unit]") {
                 const Mat3& f = F[static_cast<std::size_t>(l)];
                 // Only rounding differs, but the axes of a nearly degenerate F magnify it by 1 / (s_i + s_j).
                 const Real scale = material.lame_lambda * (1 + f.squaredNorm() * f.norm());
-                const bool has_axes = model == MaterialModel::corotational || model == MaterialModel::ogden;
+                const bool has_axes = model == MaterialModel::corotational || model == MaterialModel::ogden ||
+                                      model == MaterialModel::hencky;
                 const Real magnify = has_axes ? stiffness_bound(material, f) / material.shear_modulus : 1;
+                // Logarithms of small stretches have the rounding error of the logarithm, not that of the stretch.
+                const Real digits = model == MaterialModel::hencky ? 3e-14 : 1e-14;
                 INFO("model " << name_of(model) << " trial " << trial << " lane " << l);
-                CHECK((lane_of(P, l) - stress(material, f)).norm() <= 1e-14 * scale * magnify);
+                CHECK((lane_of(P, l) - stress(material, f)).norm() <= digits * scale * magnify);
                 CHECK(std::abs(energy[l] - energy_density(material, f)) <= 1e-14 * scale * magnify * (1 + f.norm()));
             }
         }

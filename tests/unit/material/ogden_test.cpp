@@ -37,6 +37,13 @@ MaterialConstants mooney(Real poisson_ratio) {
     return material;
 }
 
+/// Law of Hencky of a material that yields, so that its part `shear` resists no volume change.
+MaterialConstants hencky(Real poisson_ratio) {
+    MaterialConstants material = material_constants(MaterialModel::hencky, 2e5, poisson_ratio, 1000);
+    material.yield_stress = 1e3;
+    return material;
+}
+
 Mat3 random_turn(std::mt19937_64& random) {
     std::normal_distribution<Real> normal;
     return Eigen::Quaternion<Real>(normal(random), normal(random), normal(random), normal(random))
@@ -188,7 +195,8 @@ TEST_CASE("law of Ogden: four and eight lanes have the bits of one element", "[u
 
 TEST_CASE("law of Ogden: the stress is the derivative of the energy, the tangent that of the stress", "[unit]") {
     std::mt19937_64 random(4);
-    for (const MaterialConstants& material : {treloar(0.3), treloar(0.49), mooney(0.45)})
+    for (const MaterialConstants& material :
+         {treloar(0.3), treloar(0.49), mooney(0.45), hencky(0.3), part_of(hencky(0.3), ElementPart::shear)})
         for (const Vec3& shape : shapes)
             for (int trial = 0; trial < 5; ++trial) {
                 const Mat3 F = turned(random, shape);
@@ -239,7 +247,8 @@ TEST_CASE("law of Ogden: the stress is the derivative of the energy, the tangent
 TEST_CASE("law of Ogden: the bounds on the stiffness hold", "[unit]") {
     std::mt19937_64 random(5);
     for (const MaterialConstants& material :
-         {treloar(0.3), treloar(0.49), mooney(0.45), part_of(treloar(0.49), ElementPart::shear)})
+         {treloar(0.3), treloar(0.49), mooney(0.45), part_of(treloar(0.49), ElementPart::shear), hencky(0.3),
+          part_of(hencky(0.49), ElementPart::shear)})
         for (const Vec3& shape : shapes)
             for (int trial = 0; trial < 5; ++trial) {
                 const Mat3 F = turned(random, shape);
@@ -336,6 +345,18 @@ TEST_CASE("law of Ogden: curves of uniaxial and equibiaxial tension and of shear
                         (std::pow(stretch, material.exponent[p]) - std::pow(stretch, -material.exponent[p])) /
                         (stretch + 1 / stretch);
         CHECK(to_matrix(Ogden::stress(material, from_matrix(F)))(0, 1) == Approx(expected).epsilon(1e-10));
+    }
+}
+
+TEST_CASE("the law of Hencky is the limit of the law of Ogden for small exponents", "[unit]") {
+    std::mt19937_64 random(8);
+    MaterialConstants ogden = material_constants(MaterialModel::ogden, 2e5, 0.3, 1000);
+    ogden.exponent[0] = 1e-5;
+    for (const Vec3& shape : shapes) {
+        if (shape.minCoeff() < Ogden::least_stretch || shape.prod() < Ogden::least_volume) continue;
+        const Mat3 F = turned(random, shape), expected = stress(ogden, F);
+        CHECK((stress(hencky(0.3), F) - expected).norm() <= 1e-4 * expected.norm() + 1e-5);
+        CHECK(energy_density(hencky(0.3), F) == Approx(energy_density(ogden, F)).epsilon(1e-4).margin(1e-5));
     }
 }
 

@@ -113,6 +113,10 @@ class Body(TouchingObject):
         """Green strain, shape (m, 3, 3): a mean over each tetrahedron, or values recovered at the nodes."""
         return self._field(self._core.node_strain(self._handle) if _nodes(at) else self._core.strain(self._handle))
 
+    def plastic_strain(self) -> Reals:
+        """Equivalent plastic strain, shape (m,): a mean over each tetrahedron. Then strain() is the elastic strain."""
+        return self._field(self._core.plastic_strain(self._handle))
+
     def von_mises(self, at: Place = "tetrahedra") -> Reals:
         """Von Mises stress, shape (m,) [Pa]: of each tetrahedron or of each node."""
         if _nodes(at):

@@ -10,6 +10,7 @@ from .._settings import (
     Integrator,
     MaterialModel,
     OrthotropicModuli,
+    Plasticity,
     SolverMethod,
     StartOverlaps,
 )
@@ -54,6 +55,7 @@ class MaterialChanges(TypedDict, total=False):
     model: MaterialModel
     terms: tuple[tuple[float, float], ...]
     orthotropic: OrthotropicModuli
+    plasticity: Plasticity | None
 
 
 class SurfaceChanges(TypedDict, total=False):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 StepStatus: TypeAlias = Literal["ok", "not_finite", "too_fast", "too_far", "too_stiff", "unsolved", "stopped"]
 StepLimit: TypeAlias = Literal["setting", "rest", "strain", "speed", "inversion", "crossing"]
-DynamicsReason: TypeAlias = Literal["given", "self_contact", "losses", "strain", "cost"]
+DynamicsReason: TypeAlias = Literal["given", "self_contact", "losses", "plasticity", "strain", "cost"]
 OverlapKind: TypeAlias = Literal["crossing", "inside", "around", "coincident"]
 
 
@@ -294,6 +294,7 @@ class WorldReport:
     worst_error: largest relative solver error of a region in any step.
     worst_region: number of contacts of the region with `worst_error`.
     dissipated: energy dissipated by contacts, damping and material losses [J].
+    plastic_work: part of dissipated: plastic flow of elements [J].
     max_penetration: largest overlap of surfaces in any step [m].
     max_gap_violation: largest penetration into the contact distance in any step [m].
     start_penetration: value of max_penetration in the first step alone [m].
@@ -378,6 +379,7 @@ class WorldReport:
     worst_error: float
     worst_region: int
     dissipated: float
+    plastic_work: float
     max_penetration: float
     max_gap_violation: float
     start_penetration: float
