@@ -23,8 +23,8 @@ std::vector<Index> materials_of(const World& world, BodyHandle body) {
 /// Returns a value for each cell of a body, given those of its tetrahedra. A body without tetrahedra is rigid, and its
 /// cells have the value zero.
 template <class T>
-std::vector<T> values_of_cells(std::vector<T> of_tetrahedra, const BodyFrame& body) {
-    of_tetrahedra.resize(body.count_cells(), zero_value);
+std::vector<T> values_of_cells(std::vector<T> of_tetrahedra, const BodyFrame& body, const T& zero) {
+    of_tetrahedra.resize(body.count_cells(), zero);
     return of_tetrahedra;
 }
 
@@ -59,9 +59,9 @@ Frame collect_frame(const World& world) {
                                                                  .node_stress = std::move(fields[b].stress),
                                                                  .node_strain = std::move(fields[b].strain),
                                                                  .material = materials_of(world, body)});
-        of_body.stress = values_of_cells(world.stress(body), of_body);
-        of_body.strain = values_of_cells(world.strain(body), of_body);
-        if (yields) of_body.plastic_strain = values_of_cells(world.plastic_strain(body), of_body);
+        of_body.stress = values_of_cells<Mat3>(world.stress(body), of_body, Mat3::Zero());
+        of_body.strain = values_of_cells<Mat3>(world.strain(body), of_body, Mat3::Zero());
+        if (yields) of_body.plastic_strain = values_of_cells<Real>(world.plastic_strain(body), of_body, 0);
     }
     for (const ColliderHandle collider : world.colliders())
         frame.colliders.push_back({.handle = collider,
