@@ -39,7 +39,9 @@ std::string name_of_object(const World& world, AttachmentHandle attachment) {
     return "attachment of body '" + model_of(world).body_records[body].name + "'";
 }
 template <class HandleType>
-    requires requires { ObjectsOf<HandleType>::noun; }
+requires requires {
+    ObjectsOf<HandleType>::noun;
+}
 std::string name_of_object(const World& world, HandleType object) {
     return ObjectsOf<HandleType>::noun + (" '" + object_name(model_of(world), object) + "'");
 }

@@ -46,9 +46,9 @@ struct BodyForceControl {
 };
 /// Sets the acceleration of gravity. Numbers: three [m/s^2].
 struct GravityControl {};
-/// Sets the value that an object has as a TimeTable. Numbers: tension [N], length [m] or rate [m/s] of a cable, whichever
-/// is prescribed; pressure [Pa], inflow [kg/s] or liquid volume [m^3] of a cavity; pressure of the reservoir of a pipe
-/// [Pa]; rest length of a spring [m]; scale of a load.
+/// Sets the value that an object has as a TimeTable. Numbers: tension [N], length [m] or rate [m/s] of a cable,
+/// whichever is prescribed; pressure [Pa], inflow [kg/s] or liquid volume [m^3] of a cavity; pressure of the reservoir
+/// of a pipe [Pa]; rest length of a spring [m]; scale of a load.
 struct ValueControl {
     std::variant<CableHandle, CavityHandle, PipeHandle, SpringHandle, LoadHandle> object{};
 };

@@ -309,19 +309,6 @@ SavedRows rows_to_save(WorldState& world) {
     return saved;
 }
 
-namespace {
-
-void put_object_names(const SavedRows& saved, const SavedFile& file, Model& model) {
-    model.for_each_joining([&](const char* table, auto& rows, auto& handles) {
-        const Ragged<std::uint8_t>& names = saved.object_name.at(table);
-        expect_ragged(file, std::string("names/") + table, names, rows.slot.size(), table);
-        for (std::size_t row = 0; row < names.size(); ++row)
-            if (names[row].size() > 0) handles.names[handles.handle_of_slot(rows.slot[row])] = text_of(names[row]);
-    });
-}
-
-}  // namespace
-
 void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
     const std::size_t bodies = model.bodies.slot.size(), colliders = model.colliders.slot.size();
     const SavedMeshes& meshes = saved.meshes;
@@ -346,7 +333,12 @@ void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
     expect_ragged(file, "records/body_name", saved.body_name, bodies, "bodies");
     if (saved.world == 0) file.complain("handles/world", "0", "the number of a world, an integer > 0");
     model.set_world(saved.world);
-    put_object_names(saved, file, model);
+    model.for_each_joining([&](const char* table, auto& rows, auto& handles) {
+        const Ragged<std::uint8_t>& names = saved.object_name.at(table);
+        expect_ragged(file, std::string("names/") + table, names, rows.slot.size(), table);
+        for (std::size_t row = 0; row < names.size(); ++row)
+            if (names[row].size() > 0) handles.names[handles.handle_of_slot(rows.slot[row])] = text_of(names[row]);
+    });
     for (std::size_t m = 0; m < count; ++m) check_mesh(meshes, m, file);
 
     model.nodes.rest_position.resize(model.nodes.position.size());
