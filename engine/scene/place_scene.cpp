@@ -51,6 +51,7 @@ public:
             rename(pipe.first);
             rename(pipe.second);
         }
+        for (FibreEntry& fibres : scene.fibres) rename(fibres.body);
         for (LoadEntry& load : scene.loads) place(load);
         for (SpringEntry& spring : scene.springs) {
             place(spring.first);
@@ -157,6 +158,7 @@ void add_placed(const IncludeEntry& include, SceneFile& included, SceneFile& sce
     append(scene.cables, included.cables);
     append(scene.cavities, included.cavities);
     append(scene.pipes, included.pipes);
+    append(scene.fibres, included.fibres);
     append(scene.loads, included.loads);
     append(scene.springs, included.springs);
     append(scene.probes, included.probes);

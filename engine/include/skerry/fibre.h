@@ -5,6 +5,7 @@
 
 #include "components/handle.h"
 #include "components/types.h"
+#include "skerry/object_view.h"
 #include "skerry/time_table.h"
 
 #pragma GCC visibility push(default)
@@ -37,24 +38,19 @@ struct FibreState {
     std::vector<Real> stress{};   // nominal stress along the fibres, with the active tension [Pa]
 };
 
-/// A view of the fibres of a world. It is valid until the world is moved or destroyed. Functions that change fibres may
-/// only be called between calls of advance. They throw SceneError and change nothing if a handle is stale or a value is
-/// out of range. Fibres belong to the state of the world: they are saved, cloned and hashed. Each change wakes the
-/// body, unless the new value equals the old one.
-class Fibres {
+extern template class __attribute__((visibility("default"))) ObjectView<FibreHandle>;
+
+/// A view of the fibres of a world. Each change wakes the body, unless the new value equals the old one.
+class Fibres : public ObjectView<FibreHandle> {
 public:
-    explicit Fibres(World& world) : world_(&world) {}
+    using ObjectView::ObjectView;
 
-    /// Adds fibres, which are removed with their body. Stiff fibres shorten the step of the world.
+    /// Adds fibres. Stiff fibres shorten the step of the world.
     FibreHandle add(const FibreSettings& fibres);
-    void remove(FibreHandle fibres);
-    bool alive(FibreHandle fibres) const;
-    std::vector<FibreHandle> all() const;  // in the order added
     FibreState state(FibreHandle fibres) const;
+    /// Settings of the fibres, with a direction for each tetrahedron.
+    FibreSettings settings(FibreHandle fibres) const;
     void set_tension(FibreHandle fibres, const TimeTable& tension);
-
-private:
-    World* world_;
 };
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// The part that the views of joints, ties, cables, cavities, loads, springs and surface sets have in common.
+// The part that the views of joints, ties, cables, cavities, fibres, loads, springs and surface sets have in common.
 #pragma once
 
 #include <string>

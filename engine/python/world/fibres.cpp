@@ -33,13 +33,24 @@ nb::dict values_of(const FibreState& state) {
     return values;
 }
 
+nb::dict settings_of_fibres(World& world, const FibreHandle& fibres) {
+    const FibreSettings settings = Fibres(world).settings(fibres);
+    nb::dict values;
+    values["body"] = object_of(settings.body);
+    values["direction"] = array_of(settings.direction);
+    values["tetrahedra"] = array_of<Index>(std::span<const Index>(settings.tetrahedra));
+    values["stiffness"] = settings.stiffness;
+    values["exponent"] = settings.exponent;
+    values["tension"] = object_of(settings.tension);
+    return values;
+}
+
 }  // namespace
 
 void bind_fibres(WorldClass& type) {
+    bind_view<FibreHandle>(type, "fibres_of_world");
     type.def("add_fibres", guarded(&add_fibres))
-        .def("remove", guarded([](World& world, const FibreHandle& fibres) { Fibres(world).remove(fibres); }))
-        .def("alive", guarded([](World& world, const FibreHandle& fibres) { return Fibres(world).alive(fibres); }))
-        .def("fibres_of_world", guarded([](World& world) { return Fibres(world).all(); }))
+        .def("fibre_settings", guarded(settings_of_fibres))
         .def("fibre_state",
              guarded([](World& world, const FibreHandle& fibres) { return values_of(Fibres(world).state(fibres)); }))
         .def("set_tension", guarded([](World& world, const FibreHandle& fibres, const TensionPairs& tension) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/world/complaint.h"
-#include "engine/world/edit/joining_rows.h"
+#include "engine/world/control/control.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 #include "engine/world/world_state.h"
@@ -129,28 +129,6 @@ FibreHandle Fibres::add(const FibreSettings& fibres) {
     return handle;
 }
 
-void Fibres::remove(FibreHandle fibres) {
-    WorldState& world = state_between_steps(*world_, "remove");
-    Model& model = world.model;
-    const auto row = static_cast<std::size_t>(model.row(fibres, "remove"));
-    const Index body = model.fibres.body[row];
-    std::vector<bool> gone(model.fibres.size(), false);
-    gone[row] = true;
-    erase_joining_rows(gone, model.fibres, model.fibre_map);
-    note_fibres(world, body);
-}
-
-bool Fibres::alive(FibreHandle fibres) const {
-    return WorldAccess::state_of(*world_).model.fibre_map.row(fibres) != no_index;
-}
-
-std::vector<FibreHandle> Fibres::all() const {
-    std::vector<FibreHandle> handles;
-    const Model& model = WorldAccess::state_of(*world_).model;
-    for (const std::uint32_t slot : model.fibres.slot) handles.push_back(model.fibre_map.handle_of_slot(slot));
-    return handles;
-}
-
 FibreState Fibres::state(FibreHandle fibres) const {
     const WorldState& world = WorldAccess::state_of(*world_);
     const Model& model = world.model;
@@ -159,7 +137,7 @@ FibreState Fibres::state(FibreHandle fibres) const {
     const FibreInputs inputs = FibreInputs::bind({}, table, model.bodies, model.nodes);
     const FibreLaw law = inputs.law(row);
     FibreState state;
-    state.body = model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(table.body[row])]);
+    state.body = handle_of_body(model, table.body[row]);
     state.tension = value_at(table.keys_of(row), world.clock.time);
     for (auto t = static_cast<std::size_t>(table.tetrahedra[row].begin);
          t < static_cast<std::size_t>(table.tetrahedra[row].end); ++t) {
@@ -170,6 +148,29 @@ FibreState Fibres::state(FibreHandle fibres) const {
         state.stress.push_back(law.pull(y, state.tension).whole.norm());
     }
     return state;
+}
+
+FibreSettings Fibres::settings(FibreHandle fibres) const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    const FibreTable& table = model.fibres;
+    const auto row = static_cast<std::size_t>(model.row(fibres, "settings"));
+    const auto body = static_cast<std::size_t>(table.body[row]);
+    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[body]);
+    FibreSettings settings{.body = handle_of_body(model, table.body[row]),
+                           .tetrahedra = {},
+                           .direction = {},
+                           .stiffness = table.stiffness[row],
+                           .exponent = table.exponent[row],
+                           .tension = time_table_of(table.keys_of(row))};
+    for (auto t = static_cast<std::size_t>(table.tetrahedra[row].begin);
+         t < static_cast<std::size_t>(table.tetrahedra[row].end); ++t) {
+        settings.tetrahedra.push_back(table.tetrahedron[t]);
+        Vec3 along = Vec3::Zero();  // derivative of the rest position along the fibres
+        for (std::size_t a = 0; a < 4; ++a)
+            along += table.slope[t][a] * rest[static_cast<std::size_t>(table.node[t][a])];
+        settings.direction.push_back(along);
+    }
+    return settings;
 }
 
 void Fibres::set_tension(FibreHandle fibres, const TimeTable& tension) {

@@ -70,6 +70,7 @@ template class ObjectView<TieHandle>;
 template class ObjectView<CableHandle>;
 template class ObjectView<CavityHandle>;
 template class ObjectView<PipeHandle>;
+template class ObjectView<FibreHandle>;
 template class ObjectView<LoadHandle>;
 template class ObjectView<SpringHandle>;
 template class ObjectView<SurfaceSetHandle>;

@@ -6,6 +6,7 @@
 #include "engine/world/state/model.h"
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
+#include "skerry/fibre.h"
 #include "skerry/joint.h"
 #include "skerry/load.h"
 #include "skerry/spring.h"
@@ -41,6 +42,10 @@ struct ObjectsOf<CavityHandle> : ObjectColumns<&Model::cavities, &Model::cavity_
 template <>
 struct ObjectsOf<PipeHandle> : ObjectColumns<&Model::pipes, &Model::pipe_map> {
     static constexpr const char* noun = "pipe";
+};
+template <>
+struct ObjectsOf<FibreHandle> : ObjectColumns<&Model::fibres, &Model::fibre_map> {
+    static constexpr const char* noun = "fibres";
 };
 template <>
 struct ObjectsOf<LoadHandle> : ObjectColumns<&Model::loads, &Model::load_map> {

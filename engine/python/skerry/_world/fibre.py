@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._arrays import Reals, TimeTableLike, index_array, real, real_array, time_table
-from .objects import WorldObject
+from .objects import NamedObject, ObjectList
 
 if TYPE_CHECKING:
     from .body import Body
@@ -36,7 +36,7 @@ class FibreState:
     stress: Reals
 
 
-class FibreFamily(WorldObject):
+class FibreFamily(NamedObject):
     """A family of fibres in a body. Removing the body removes its fibres."""
 
     __slots__ = ()
@@ -48,13 +48,16 @@ class FibreFamily(WorldObject):
         values["body"] = self._world._body(values["body"])
         return FibreState(**values)
 
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Present arguments of World.add_fibres()."""
+        values: dict[str, Any] = self._core.fibre_settings(self._handle)
+        values["body"] = self._world._body(values["body"])
+        return values
+
     def set_tension(self, tension: TimeTableLike) -> None:
         """Replaces the active tension [Pa], >= 0: a number, or pairs (time [s], tension)."""
         self._core.set_tension(self._handle, time_table(tension, "tension"))
-
-    def remove(self) -> None:
-        """Removes the fibres."""
-        self._world.remove(self)
 
 
 class WorldFibres:
@@ -94,9 +97,9 @@ class WorldFibres:
         )
 
     @property
-    def fibres(self) -> list[FibreFamily]:
-        """The families of fibres in the order added. They have no names."""
-        return [self._new_fibres(handle) for handle in self._core.fibres_of_world()]
+    def fibres(self) -> ObjectList[FibreFamily]:
+        """The families of fibres in the order added."""
+        return ObjectList(self._new_fibres(handle) for handle in self._core.fibres_of_world())
 
     def _new_fibres(self, handle: Any) -> FibreFamily:
         body = self._core.name(self._core.fibre_state(handle)["body"])
