@@ -23,11 +23,11 @@ struct TieTable {
     Column<std::uint8_t> close_gap, bodies_touch;  // as the user gave them
     Column<Index> first;                           // row of BodyTable; the deformable body whose nodes are tied
     Column<Index> second;                          // row of BodyTable, or no_index
-    Column<Index> collider;    // row of ColliderTable, or no_index; without body and collider: the world
-    Column<Range> nodes;       // rows of the columns by tied node
-    Column<Real> break_force;  // force at which a node breaks off; may be infinite [N]
+    Column<Index> collider;      // row of ColliderTable, or no_index; without body and collider: the world
+    Column<Range> nodes;         // rows of the columns by tied node
+    Column<Real> break_force;    // force at which a node breaks off; may be infinite [N]
     Column<Real> largest_force;  // largest force of the tie in a step [N]
-    Column<Real> step;         // time for which the impulses acted in the last step; 0 before the first step [s]
+    Column<Real> step;           // time for which the impulses acted in the last step; 0 before the first step [s]
 
     // The next columns have one row per tied node. Nodes have their numbers in the meshes of the bodies.
     Column<Index> node;  // node of the first body

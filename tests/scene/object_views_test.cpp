@@ -111,7 +111,8 @@ TEST_CASE("settings of ties and loads come back", "[scene][views]") {
     Loads loads(joined.world);
     const LoadHandle traction = loads.add(TractionLoad{joined.body, joined.top(), {1, 2, 3}, table});
     const LoadHandle force = loads.add(ForceLoad{joined.body, {3, 1}, {4, 5, 6}, table});
-    const LoadHandle second = loads.add(TractionLoad{joined.body, {joined.top().back()}, {1, 0, 0}, 1, LoadArea::present});
+    const LoadHandle second =
+        loads.add(TractionLoad{joined.body, {joined.top().back()}, {1, 0, 0}, 1, LoadArea::present});
     const LoadHandle drag = loads.add(DragField{.rate = 2, .wind = {1, 0, 0}, .scale = table});
     const LoadHandle weight = loads.add(GravityScale{joined.body, table});
     loads.remove(traction);

@@ -168,7 +168,8 @@ LoadHandle Loads::add(const TractionLoad& load) {
     const std::span<const Vec3> rest =
         rows_of(model.nodes.rest_position, model.bodies.nodes[static_cast<std::size_t>(body)]);
     require_faces(load.faces, model, static_cast<std::size_t>(body));
-    LoadRow row{.kind = LoadKind::traction, .body = body, .vector = load.traction, .area = load.area, .face = load.faces};
+    LoadRow row{
+        .kind = LoadKind::traction, .body = body, .vector = load.traction, .area = load.area, .face = load.faces};
     if (load.area == LoadArea::present) {
         std::vector<Real> faces_at(rest.size(), 0);  // number of faces of each node
         for (const auto& face : load.faces)

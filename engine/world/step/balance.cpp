@@ -110,8 +110,9 @@ void add_step(const StepScratch& step, Balance& balance) {
     const Real work = push_work + external.work + step.findings.held.work + step.findings.held_rows.work +
                       step.findings.held_again.work + step.findings.joints.work + step.findings.ties.work +
                       step.findings.cables.work + contacts.outer_work - contacts.dissipated - step.findings.damped -
-                      step.findings.strained.damped - step.findings.relaxed - step.findings.viscous - step.findings.plastic -
-                      step.findings.rest.energy - step.findings.springs.work - step.findings.fibre_work - step.findings.springs.dissipated;
+                      step.findings.strained.damped - step.findings.relaxed - step.findings.viscous -
+                      step.findings.plastic - step.findings.rest.energy - step.findings.springs.work -
+                      step.findings.fibre_work - step.findings.springs.dissipated;
     ++balance.steps;
     // Impulses that cancel each other also count as exchanged momentum, for example those of weight and support.
     Vec3 impulse = Vec3::Zero();
