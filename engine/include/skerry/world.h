@@ -67,8 +67,9 @@ public:
     MaterialHandle add_material(const MaterialSettings& material);
     BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
     /// Adds a rigid body from the triangles of its surface; `body.dynamics` must be rigid. The surface consists of one
-    /// or several closed shells, for example one for each convex part of a robot link. Where shells overlap, their
-    /// volumes count twice, so give the mass properties of such a body. A shell that is inside out bounds a void.
+    /// or several closed shells, for example one for each convex part of a robot link. A shell that is inside out
+    /// bounds a void. Shells may cross each other only if mass, centre of mass and inertia are given, because volumes
+    /// in which shells overlap would count twice.
     BodyHandle add_body(const SurfaceMesh& surface, const BodySettings& body);
     /// Adds a rigid sphere. Contacts and queries use the exact sphere. Its nodes, faces and tetrahedra are for output
     /// only (mesh::sphere_picture), and the first node is the centre. `body.dynamics` must be rigid or automatic, and
