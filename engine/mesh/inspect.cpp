@@ -99,8 +99,7 @@ MeshReport inspect(const Mesh& mesh) {
     report.components = mesh::count_parts(mesh);
     measure_edges(mesh, report);
     measure_tetrahedra(mesh, report);
-    // By the divergence theorem, the enclosed volume is a sum over the tetrahedra that one node forms with the
-    // triangles.
+    // The enclosed volume is a sum over the tetrahedra that one node forms with the triangles (divergence theorem).
     for (const auto& [a, b, c] : mesh.triangles) report.volume += mesh::six_volumes(mesh, {0, a, b, c}) / 6;
     return report;
 }

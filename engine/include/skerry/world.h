@@ -67,8 +67,9 @@ public:
     MaterialHandle add_material(const MaterialSettings& material);
     BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
     /// Adds a rigid body from the triangles of its surface; `body.dynamics` must be rigid. The surface consists of one
-    /// or several closed shells, for example one for each convex part of a robot link. Where shells overlap, their
-    /// volumes count twice, so give the mass properties of such a body. A shell that is inside out bounds a void.
+    /// or several closed shells, for example one for each convex part of a robot link. A shell that is inside out
+    /// bounds a void. Shells may cross each other only if mass, centre of mass and inertia are given, because volumes
+    /// in which shells overlap would count twice.
     BodyHandle add_body(const SurfaceMesh& surface, const BodySettings& body);
     /// Adds a rigid sphere. Contacts and queries use the exact sphere. Its nodes, faces and tetrahedra are for output
     /// only (mesh::sphere_picture), and the first node is the centre. `body.dynamics` must be rigid or automatic, and
@@ -227,9 +228,9 @@ public:
     /// velocities are taken over. A body that becomes rigid is frozen in its present shape; its vibration is lost. When
     /// it becomes explicit or implicit again, its rest shape is still that of its mesh. A body that becomes explicit
     /// starts with fully relaxed viscous stress, as if it had been in its shape for a long time. Throws SceneError for
-    /// `automatic`; for a body that is attached, has a joint, or is a sphere, capsule or cylinder; for a body with
-    /// self-contact that is to become rigid or implicit; for a body with a set loss factor that is to become implicit;
-    /// and for a body with inverted tetrahedra that is to become rigid.
+    /// `automatic`; for a body that is attached, has a joint or a given mass, has no tetrahedra, or is a sphere,
+    /// capsule or cylinder; for a body with self-contact that is to become rigid or implicit; for a body with a set
+    /// loss factor that is to become implicit; and for a body with inverted tetrahedra that is to become rigid.
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
     /// Puts a body back into its rest shape, without velocity, at the pose of its BodySettings or at the given pose of
     /// its mesh. The body keeps no memory: strains of its losses, sleep, and the stored impulses of its contacts and

@@ -109,8 +109,8 @@ MassProperties mass_of_shape(const Model& model, const NewBody& body) {
         const Vec3 center = (body.nodes[0] + body.nodes[static_cast<std::size_t>(body.core_nodes) - 1]) / 2;
         return {ball + shaft, center, {across, across, axial}, Mat3::Identity()};
     }
-    // By the divergence theorem, integrals over the inside of a surface are sums over the tetrahedra that a fixed point
-    // forms with the triangles. The volumes of these tetrahedra have signs.
+    // Integrals over the inside of a surface are sums over the tetrahedra that a fixed point forms with the triangles
+    // (divergence theorem). The volumes of these tetrahedra have signs.
     std::vector<std::array<Index, 4>> fan;
     for (const auto& [a, b, c] : body.triangles) fan.push_back({0, a, b, c});
     const std::span<const std::array<Index, 4>> tetrahedra = fan.empty() ? body.tetrahedra : fan;
