@@ -44,7 +44,7 @@ struct EnumNames;
 
 template <>
 struct EnumNames<MaterialModel> {
-    static constexpr std::array<std::pair<MaterialModel, std::string_view>, 5> table{{
+    static constexpr std::array<std::pair<MaterialModel, std::string_view>, 6> table{{
         {MaterialModel::linear, "linear"},
         {MaterialModel::corotational, "corotational"},
         {MaterialModel::stable_neo_hookean, "stable_neo_hookean"},
