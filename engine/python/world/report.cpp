@@ -153,7 +153,7 @@ void for_each_member(auto&& visit) {
     visit("crossed", &StepReport::crossed);
 }
 
-static_assert(sizeof(RunCounters) == 31 * sizeof(Real), "every counter must be in add_counters");
+static_assert(sizeof(RunCounters) == 32 * sizeof(Real), "every counter must be in add_counters");
 void add_counters(const RunCounters& counters, nb::dict& values) {
     values["steps"] = counters.steps;
     values["inline_steps"] = counters.inline_steps;
