@@ -1,4 +1,4 @@
-// Names and settings of joints, ties, cables, cavities, pipes, loads, springs and surface sets can be read back.
+// Names of joints, springs and cables, and settings of springs, cables, ties, loads, cavities and pipes, come back.
 #include "skerry/object_view.h"
 
 #include <catch2/catch.hpp>
