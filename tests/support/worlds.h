@@ -59,6 +59,19 @@ inline Vec3 mean_velocity(const World& world, BodyHandle body, std::span<const R
     return momentum / sum;
 }
 
+/// Moves each node of a body to the product of F and its position in the mesh.
+inline void deform(World& world, BodyHandle body, const Mesh& mesh, const Mat3& F) {
+    std::vector<Vec3> shape;
+    for (const Vec3& x : mesh.nodes) shape.emplace_back(F * x);
+    world.set_positions(body, shape);
+}
+
+/// Kinetic and elastic energy of a world [J].
+inline Real energy_of(const World& world) {
+    const WorldReport report = world.report();
+    return report.energy.kinetic + report.energy.elastic;
+}
+
 /// A block lying on the plane z = 0, just at the contact distance, in a world with tilted gravity. The contact distance
 /// is a fiftieth of the block's height.
 struct BlockOnPlane {
