@@ -90,11 +90,10 @@ struct StageReport {
 };
 
 struct Energy {
-    Real kinetic = 0;    // [J]
-    Real elastic = 0;    // [J]
-    Real potential = 0;  // energy of the weight, relative to the origin [J]
-    Real dissipated =
-        0;  // energy dissipated by contacts, damping, material losses and plastic flow since the start [J]
+    Real kinetic = 0;     // [J]
+    Real elastic = 0;     // [J]
+    Real potential = 0;   // energy of the weight, relative to the origin [J]
+    Real dissipated = 0;  // by contacts, damping, material losses and plastic flow since the start [J]
 };
 
 /// Report of one call of `advance`. Filling the report allocates no memory unless an error is reported.
