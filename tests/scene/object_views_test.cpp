@@ -33,11 +33,7 @@ struct Joined {
     ColliderHandle box = world.add_collider(Box{{0.1, 0.1, 0.1}}, {.position = {0, 0, 0.11}});
 
     std::vector<std::array<Index, 3>> top() const {
-        std::vector<std::array<Index, 3>> faces;
-        for (const auto& face : world.surface(body))
-            if (std::ranges::all_of(face, [](Index n) { return cube.nodes[static_cast<std::size_t>(n)].z() > 0.049; }))
-                faces.push_back(face);
-        return faces;
+        return faces_where(world, body, [](const Vec3& x) { return x.z() > 0.03; });
     }
 };
 

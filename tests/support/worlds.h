@@ -2,8 +2,11 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "skerry/world.h"
 
@@ -57,6 +60,16 @@ inline Vec3 mean_velocity(const World& world, BodyHandle body, std::span<const R
         sum += mass[n];
     }
     return momentum / sum;
+}
+
+/// Faces of the surface of a body whose nodes are all in a region. `inside`: true for positions in the region.
+std::vector<std::array<Index, 3>> faces_where(const World& world, BodyHandle body, auto&& inside) {
+    std::vector<std::array<Index, 3>> list;
+    const auto nodes = world.positions(body);
+    for (const std::array<Index, 3>& face : world.surface(body))
+        if (std::ranges::all_of(face, [&](Index n) { return inside(nodes[static_cast<std::size_t>(n)]); }))
+            list.push_back(face);
+    return list;
 }
 
 /// Moves each node of a body to the product of F and its position in the mesh.
