@@ -25,8 +25,8 @@ Index store(const TieRowTable& rows, std::span<const Range> body_implicit, Real 
 }
 
 void list_tie_rows(WorldState& w, TaskGraph& g) {
-    g.stage("contact/prepare_ties", prepare_tie_rows, tie_inputs(w.model), value(w.scratch.parameters), make(w.scratch.contacts),
-            make(w.scratch.ties), if_any_tie(w.model));
+    g.stage("contact/prepare_ties", prepare_tie_rows, tie_inputs(w.model), value(w.scratch.parameters),
+            make(w.scratch.contacts), make(w.scratch.ties), if_any_tie(w.model));
 }
 
 void list_taken_rows(WorldState& w, TaskGraph& g) {
