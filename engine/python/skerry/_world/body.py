@@ -284,8 +284,7 @@ class Body(TouchingObject):
         absolute times; the nodes are attached to the pose that the keys have now. pivot: point about which constant
         angular velocities rotate the nodes, default: the origin (3,) [m]. axes: world axes along which the nodes are
         held, such as "z" or "xy"; they are free along the others, as on rollers. directions: the same by perpendicular
-        vectors, shape (d, 3). Default: all directions. Contacts treat nodes on rollers as free, so hold nodes
-        completely where objects press on them along a held direction.
+        vectors, shape (d, 3). Default: all directions.
 
         SceneError: there is no such node; the body is not explicit and only some directions are held; or fewer than
         three nodes that are not on one line for a rigid or implicit body. BufferError: arrays of views() are in use."""

@@ -294,7 +294,7 @@ class WorldReport:
     worst_error: largest relative solver error of a region in any step.
     worst_region: number of contacts of the region with `worst_error`.
     dissipated: energy dissipated by contacts, damping, material losses and plastic flow [J].
-    plastic_work: part of dissipated: plastic flow of elements [J].
+    plastic_work: part of dissipated: plastic flow of elements in steps, not when positions are set [J].
     max_penetration: largest overlap of surfaces in any step [m].
     max_gap_violation: largest penetration into the contact distance in any step [m].
     start_penetration: value of max_penetration in the first step alone [m].
