@@ -17,8 +17,8 @@ struct StepContacts {
     std::span<const Vec3> free_velocity;  // predicted velocity of each node without contacts [m/s]
     std::span<const Vec3> impulse;        // impulse of each contact after the solve, in the world frame [N s]
     std::span<const Index> region;        // region number of each contact
-    // True for each contact whose region also has rows of joints, ties or cables. The problem leaves it out. The list
-    // is empty if there is no such contact.
+    // True for each contact whose region also has rows of joints, ties, cables or held axes. The problem leaves it out.
+    // The list is empty if there is no such contact.
     std::vector<bool> joined{};
 };
 

@@ -8,6 +8,7 @@
 
 #include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
+#include "engine/program/repair.h"
 #include "engine/program/start_text.h"
 #include "engine/program/thin_part_text.h"
 #include "skerry/error.h"
@@ -127,17 +128,6 @@ int report_mesh(const InspectOptions& options, const Mesh& mesh, const std::vect
     print_notes(notes);
     print_problems(problems);
     return exit_ok;
-}
-
-Real area_of(const SurfaceMesh& surface) {
-    Real area = 0;
-    for (const auto& [a, b, c] : surface.triangles) {
-        const auto from_a = [&, first = a](Index n) -> Vec3 {
-            return surface.nodes[static_cast<std::size_t>(n)] - surface.nodes[static_cast<std::size_t>(first)];
-        };
-        area += from_a(b).cross(from_a(c)).norm() / 2;
-    }
-    return area;
 }
 
 /// Reports a surface of triangles, from which a collider or a rigid body can be made.

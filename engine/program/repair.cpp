@@ -38,15 +38,6 @@ Corners corners(const SurfaceMesh& surface, const std::array<Index, 3>& t) {
             surface.nodes[static_cast<std::size_t>(t[2])]};
 }
 
-Real area_of(const SurfaceMesh& surface) {
-    Real area = 0;
-    for (const auto& t : surface.triangles) {
-        const Corners x = corners(surface, t);
-        area += (x[1] - x[0]).cross(x[2] - x[0]).norm() / 2;
-    }
-    return area;
-}
-
 /// Computes the volume inside a closed surface by the divergence theorem. Positions are measured from a point of the
 /// surface. The rounding error thus depends on the size of the surface and not on its position.
 Real volume_inside(const SurfaceMesh& surface) {
@@ -229,6 +220,15 @@ private:
 };
 
 }  // namespace
+
+Real area_of(const SurfaceMesh& surface) {
+    Real area = 0;
+    for (const auto& t : surface.triangles) {
+        const Corners x = corners(surface, t);
+        area += (x[1] - x[0]).cross(x[2] - x[0]).norm() / 2;
+    }
+    return area;
+}
 
 RepairedMesh repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
                     const std::function<void(const std::string&)>& progress) {

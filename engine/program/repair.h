@@ -17,6 +17,9 @@ struct MeshFigures {
     Real step = 0;          // stable step [s]
 };
 
+/// Area of a surface [m^2].
+Real area_of(const SurfaceMesh& surface);
+
 struct RepairedMesh {
     Mesh mesh;
     MeshFigures before, after;

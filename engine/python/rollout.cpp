@@ -32,12 +32,13 @@ std::variant<ColliderHandle, AttachmentHandle> movable(nb::handle object) {
     return nb::cast<ColliderHandle>(object);
 }
 
-/// A cable, a cavity, a pipe, a spring or a load.
+/// A cable, a cavity, a pipe, a spring, a load or fibres.
 decltype(ValueControl::object) valued(nb::handle object) {
     if (nb::isinstance<CableHandle>(object)) return nb::cast<CableHandle>(object);
     if (nb::isinstance<CavityHandle>(object)) return nb::cast<CavityHandle>(object);
     if (nb::isinstance<PipeHandle>(object)) return nb::cast<PipeHandle>(object);
     if (nb::isinstance<SpringHandle>(object)) return nb::cast<SpringHandle>(object);
+    if (nb::isinstance<FibreHandle>(object)) return nb::cast<FibreHandle>(object);
     return nb::cast<LoadHandle>(object);
 }
 

@@ -9,6 +9,7 @@
 #include "engine/world/world_state.h"
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
+#include "skerry/fibre.h"
 #include "skerry/joint.h"
 #include "skerry/load.h"
 #include "skerry/spring.h"
@@ -48,7 +49,7 @@ std::string name_of_object(const World& world, HandleType object) {
 
 /// The object of a control; gravity has none.
 using ControlledObject = std::variant<std::monostate, BodyHandle, ColliderHandle, AttachmentHandle, JointHandle,
-                                      CableHandle, CavityHandle, PipeHandle, SpringHandle, LoadHandle>;
+                                      CableHandle, CavityHandle, PipeHandle, SpringHandle, LoadHandle, FibreHandle>;
 
 ControlledObject object_of(const RolloutControl& control) {
     return std::visit(
@@ -163,6 +164,7 @@ private:
     void set_value(PipeHandle pipe, const TimeTable& value) const { Cavities(world).set_reservoir(pipe, value); }
     void set_value(SpringHandle spring, const TimeTable& value) const { Springs(world).set_rest_length(spring, value); }
     void set_value(LoadHandle load, const TimeTable& value) const { Loads(world).set_scale(load, value); }
+    void set_value(FibreHandle fibres, const TimeTable& value) const { Fibres(world).set_tension(fibres, value); }
     void drive(JointHandle joint, JointMotor motor) const {
         const JointMotorRow now = model_of(world).joints.motor[row_of(world, joint)];
         motor.strength = now.most;

@@ -78,6 +78,7 @@ struct FibreInputs {
         for (std::size_t c = 1; c < 4; ++c) sum += slope[t][c] * (value_of(node_of(row, t, c)) - first);
         return sum;
     }
+    /// Direction of the fibres in the present shape: F times the direction in the rest shape.
     Vec3 stretched(std::size_t row, std::size_t t) const {
         return along(row, t, [this](std::size_t n) -> const Vec3& { return position[n]; });
     }

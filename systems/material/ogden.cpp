@@ -254,7 +254,9 @@ T Ogden::rough_stiffness_bound(const MaterialConstants& material, const T& squar
     T bound{};
     for_each_term(material, [&](Real modulus, Real exponent) {
         if (exponent == 0) {
-            bound = bound + modulus * (1.0 + larger(log_most, T{} - log_least)) * steep;
+            // The last term: if K is small, largest_eigenvalue returns up to 4/3 of the eigenvalue.
+            bound = bound + modulus * ((1.0 + larger(log_most, T{} - log_least)) * steep +
+                                       larger(steep - 1.0, T{}) * (1.0 / 3));
             return;
         }
         const T up = exp_of(exponent * log_most), down = exp_of(exponent * log_least);

@@ -96,6 +96,6 @@ def test_a_material_yields_and_a_body_keeps_its_dent():
     body.positions = body.positions * (1.3, 0.9, 0.9)
     assert body.plastic_strain().min() > 0.2
     world.advance(0.01)
-    assert world.report().plastic_work >= 0
+    assert world.report().plastic_work > 0
     with pytest.raises(sk.SceneError, match="model: found stable_neo_hookean, expected hencky"):
         world.add_material(plasticity=sk.Plasticity(yield_stress=1.0))

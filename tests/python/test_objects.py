@@ -52,6 +52,10 @@ def load(world: sk.World) -> sk.Load:
     return world.add_force(world.bodies["cube"], [0], (0.1, 0, 0))
 
 
+def fibres(world: sk.World) -> sk.FibreFamily:
+    return world.add_fibres(world.bodies["cube"], (0, 0, 1), stiffness=1e3, tension=[(0, 10), (1, 20)])
+
+
 def surface_set(world: sk.World) -> sk.SurfaceSet:
     return world.add_surface_set(world.bodies["cube"], nodes=[0], friction=0.1)
 
@@ -71,6 +75,7 @@ KINDS: dict[str, tuple[Callable[[sk.World], Any], str]] = {
     "pipes": (pipe, "pipe from the cavity of body 'block'"),
     "ties": (tie, "tie of body 'cube'"),
     "loads": (load, "force on body 'cube'"),
+    "fibres": (fibres, "fibres in body 'cube'"),
     "surface_sets": (surface_set, "surface set of body 'cube'"),
     "joints": (joint, "hinge joint of body 'block' and the world"),
     "attachments": (attachment, "attachment of body 'cube'"),
@@ -247,7 +252,7 @@ def plain(value: Any) -> Any:
         return [plain(inner) for inner in value]
     if isinstance(value, sk.Gas):
         return round(value.pressure, 6), value.exponent, value.inflow
-    return value.tolist() if hasattr(value, "tolist") else value
+    return value.round(12).tolist() if hasattr(value, "tolist") else value
 
 
 @pytest.mark.parametrize(
@@ -263,6 +268,7 @@ def plain(value: Any) -> Any:
         (traction, "add_traction"),
         (drag, "add_drag"),
         (acceleration, "add_acceleration"),
+        (fibres, "add_fibres"),
     ],
 )
 def test_settings_are_arguments_that_add_an_equal_object(make: Callable[[sk.World], Any], method: str) -> None:

@@ -392,12 +392,14 @@ def test_the_value_of_an_object_is_controlled_as_by_its_own_function() -> None:
     cable = bench.world.add_cable([tip, sk.Anchor(point=(0.3, 0, 0.1))], tension=0)
     cavity = bench.world.add_cavity(bench.bar, faces=bench.bar.surface[:4], pressure=0)
     load = bench.world.add_acceleration((0, 0, 1), scale=0)
+    muscle = bench.world.add_fibres(bench.bar, (1, 0, 0))
     values = np.linspace(0.1, 0.2, STEPS)
     setters = {
         spring: lambda twin, x: twin.set_rest_length(x),
         cable: lambda twin, x: twin.set_drive(tension=x),
         cavity: lambda twin, x: twin.set_pressure(x),
         load: lambda twin, x: twin.set_scale(x),
+        muscle: lambda twin, x: twin.set_tension(x),
     }
     rolled = sk.rollout(bench.world, dict.fromkeys(setters, values), dt=DT, keep_worlds=True).worlds[0]
     by_hand = bench.world.copy()

@@ -13,6 +13,7 @@ from skerry import _core, _settings
 CLASSES = [
     _settings.Settings,
     _settings.Material,
+    _settings.OrthotropicModuli,
     _settings.Surface,
     _settings.Pose,
     _settings.MotionKey,

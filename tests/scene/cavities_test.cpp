@@ -17,17 +17,6 @@ namespace {
 
 const Vec3 no_gravity = Vec3::Zero();
 
-/// Faces of a body all of whose corners fulfil a condition.
-std::vector<std::array<Index, 3>> faces_where(const World& world, BodyHandle body, auto&& is_wanted) {
-    std::vector<std::array<Index, 3>> faces;
-    const auto surface = world.surface(body);
-    const auto position = world.positions(body);
-    for (const auto& face : surface)
-        if (std::ranges::all_of(face, [&](Index n) { return is_wanted(position[static_cast<std::size_t>(n)]); }))
-            faces.push_back(face);
-    return faces;
-}
-
 /// Mean distance from the origin of the nodes of a sphere whose initial radius is `radius` [m].
 Real mean_radius(const World& world, BodyHandle body, const Mesh& mesh, Real radius) {
     Real sum = 0, count = 0;

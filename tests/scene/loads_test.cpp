@@ -44,15 +44,6 @@ std::vector<Index> nodes_where(const World& world, BodyHandle body, auto&& insid
     return list;
 }
 
-std::vector<std::array<Index, 3>> faces_where(const World& world, BodyHandle body, auto&& inside) {
-    std::vector<std::array<Index, 3>> list;
-    const auto nodes = world.positions(body);
-    for (const std::array<Index, 3>& face : world.surface(body))
-        if (std::ranges::all_of(face, [&](Index n) { return inside(nodes[static_cast<std::size_t>(n)]); }))
-            list.push_back(face);
-    return list;
-}
-
 std::vector<Index> all_nodes() {
     std::vector<Index> list(cube.nodes.size());
     for (std::size_t n = 0; n < list.size(); ++n) list[n] = static_cast<Index>(n);

@@ -28,17 +28,8 @@ struct Block {
         : world(settings) {
         body = world.add_body(mesh, {.material = world.add_material(material), .dynamics = dynamics, .element = kind});
     }
-    void deform(const Mat3& F) {
-        std::vector<Vec3> shape;
-        for (const Vec3& x : mesh.nodes) shape.emplace_back(F * x);
-        world.set_positions(body, shape);
-    }
+    void deform(const Mat3& F) { test::deform(world, body, mesh, F); }
 };
-
-Real energy_of(const World& world) {
-    const WorldReport report = world.report();
-    return report.energy.kinetic + report.energy.elastic;
-}
 
 }  // namespace
 

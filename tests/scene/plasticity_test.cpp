@@ -31,11 +31,7 @@ struct Block {
         : mesh(mesh::box(size, cells)), world(settings) {
         body = world.add_body(mesh, {.material = world.add_material(material), .rotation = rotation, .element = kind});
     }
-    void deform(const Mat3& F) {
-        std::vector<Vec3> shape;
-        for (const Vec3& x : mesh.nodes) shape.emplace_back(F * x);
-        world.set_positions(body, shape);
-    }
+    void deform(const Mat3& F) { test::deform(world, body, mesh, F); }
     /// Kirchhoff stress of the first tetrahedron in the shape F [Pa].
     Mat3 kirchhoff(const Mat3& F) {
         deform(F);
@@ -46,10 +42,6 @@ struct Block {
 
 Mat3 axial(Real along, Real across) {
     return Vec3(std::exp(along), std::exp(across), std::exp(across)).asDiagonal();
-}
-
-Real energy_of(const WorldReport& report) {
-    return report.energy.kinetic + report.energy.elastic;
 }
 
 }  // namespace
@@ -110,7 +102,7 @@ TEST_CASE("kinetic energy becomes elastic energy and plastic work, with an error
         std::vector<Vec3> velocity;
         for (const Vec3& x : block.mesh.nodes) velocity.emplace_back(60 * x.x(), -20 * x.y(), -10 * x.z());
         block.world.set_velocities(block.body, velocity);
-        const Real start = energy_of(block.world.report());
+        const Real start = energy_of(block.world);
         Real dissipated = 0;
         for (int k = 0; k < 50; ++k) {
             REQUIRE(block.world.advance(4e-4).ok());

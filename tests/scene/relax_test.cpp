@@ -219,12 +219,8 @@ TEST_CASE("load steps find the share of each kind of load at which a block begin
     constexpr Real friction = 0.5, pull = 0.8;  // pull: fraction of the weight
     const Mesh mesh = mesh::box({0.2, 0.2, 0.1}, {1, 1, 1});
     const Real weight = 1000 * 0.2 * 0.2 * 0.1 * standard_gravity, traction = pull * weight / (0.2 * 0.1);
-    const auto right = [&](const World& world, BodyHandle block) {
-        std::vector<std::array<Index, 3>> faces;
-        for (const auto& face : world.surface(block))
-            if (std::ranges::all_of(face, [&](Index n) { return mesh.nodes[static_cast<std::size_t>(n)].x() > 0; }))
-                faces.push_back(face);
-        return faces;
+    const auto right = [](const World& world, BodyHandle block) {
+        return faces_where(world, block, [](const Vec3& x) { return x.x() > 0; });
     };
     const auto nodal = [&](World& world, BodyHandle block) {
         world.set_loads(block, std::vector<Vec3>(8, Vec3(pull * weight / 8, 0, 0)));

@@ -24,8 +24,7 @@ inline Settings without_gravity(Real tolerance = 1e-10) {
 }
 
 inline const Mesh coarse = mesh::box({half, side, side}, {4, 2, 2}), fine = mesh::box({half, side, side}, {6, 3, 3});
-inline constexpr MaterialSettings rubber{
-    .young_modulus = 1e6, .poisson_ratio = 0.3, .loss_factor = 0, .bulk_viscosity = 0};
+inline const MaterialSettings rubber{.young_modulus = 1e6, .poisson_ratio = 0.3, .loss_factor = 0, .bulk_viscosity = 0};
 
 /// Two halves of a bar, whose meshes do not match. The fine one is tied to the coarse one.
 struct TwoHalves {

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "skerry/world.h"
 
@@ -57,6 +60,29 @@ inline Vec3 mean_velocity(const World& world, BodyHandle body, std::span<const R
         sum += mass[n];
     }
     return momentum / sum;
+}
+
+/// Faces of the surface of a body whose nodes are all in a region. `inside`: true for positions in the region.
+std::vector<std::array<Index, 3>> faces_where(const World& world, BodyHandle body, auto&& inside) {
+    std::vector<std::array<Index, 3>> list;
+    const auto nodes = world.positions(body);
+    for (const std::array<Index, 3>& face : world.surface(body))
+        if (std::ranges::all_of(face, [&](Index n) { return inside(nodes[static_cast<std::size_t>(n)]); }))
+            list.push_back(face);
+    return list;
+}
+
+/// Moves each node of a body to the product of F and its position in the mesh.
+inline void deform(World& world, BodyHandle body, const Mesh& mesh, const Mat3& F) {
+    std::vector<Vec3> shape;
+    for (const Vec3& x : mesh.nodes) shape.emplace_back(F * x);
+    world.set_positions(body, shape);
+}
+
+/// Kinetic and elastic energy of a world [J].
+inline Real energy_of(const World& world) {
+    const WorldReport report = world.report();
+    return report.energy.kinetic + report.energy.elastic;
 }
 
 /// A block lying on the plane z = 0, just at the contact distance, in a world with tilted gravity. The contact distance

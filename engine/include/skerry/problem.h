@@ -148,8 +148,8 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
 std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors);
 
 /// The contact problem of one step of a world, as the solver received it, and the impulses that the solver found.
-/// Contacts that no impulse can move are omitted, and so are regions with joints, ties, or cables that have friction or
-/// a prescribed length: the equations of these are not part of a contact problem.
+/// Contacts that no impulse can move are omitted, and so are regions with joints, ties, nodes on rollers, or cables
+/// that have friction or a prescribed length: the equations of these are not part of a contact problem.
 struct StepProblem {
     std::uint64_t step = 0;      // number of the step, counted from 1
     Real time = 0;               // time at the start of the step [s]

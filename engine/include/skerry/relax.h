@@ -18,8 +18,8 @@ struct RelaxSettings {
     Real tolerance = 1e-3;
     int max_steps = 100000;  // largest number of steps for each share of the loads, >= 1
     // 1: the loads act as a whole. More: forces, tractions and accelerations of loads and of World::set_loads, and
-    // prescribed pressures and tensions, grow from zero in this number of equal load steps, each of which ends in
-    // equilibrium. If a load step finds none, it is halved, at most six times.
+    // prescribed pressures and tensions (of cables and fibres), grow from zero in this number of equal load steps, each
+    // of which ends in equilibrium. If a load step finds none, it is halved, at most six times.
     int load_steps = 1;
 };
 

@@ -93,7 +93,7 @@ struct Energy {
     Real kinetic = 0;     // [J]
     Real elastic = 0;     // [J]
     Real potential = 0;   // energy of the weight, relative to the origin [J]
-    Real dissipated = 0;  // energy dissipated by contacts, damping and material losses since the start [J]
+    Real dissipated = 0;  // by contacts, damping, material losses and plastic flow since the start [J]
 };
 
 /// Report of one call of `advance`. Filling the report allocates no memory unless an error is reported.
@@ -282,9 +282,9 @@ struct RunCounters {
     std::uint64_t newton_steps = 0, tangent_factors = 0;
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
     Real worst_error = 0;
-    Index worst_region = 0;                           // number of contacts of the region with worst_error
-    Real dissipated = 0;                              // energy dissipated by contacts, damping and material losses [J]
-    Real plastic_work = 0;                            // part of `dissipated`: plastic flow of elements [J]
+    Index worst_region = 0;  // number of contacts of the region with worst_error
+    Real dissipated = 0;     // dissipated by contacts, damping, material losses and plastic flow [J]
+    Real plastic_work = 0;   // part of `dissipated`: plastic flow of elements [J]
     Real max_penetration = 0, max_gap_violation = 0;  // largest values in any step; see StepReport [m]
     // Values of max_penetration and max_gap_violation in the first step alone [m].
     Real start_penetration = 0, start_gap_violation = 0;

@@ -48,9 +48,9 @@ struct BodyForceControl {
 struct GravityControl {};
 /// Sets the value that an object has as a TimeTable. Numbers: tension [N], length [m] or rate [m/s] of a cable,
 /// whichever is prescribed; pressure [Pa], inflow [kg/s] or liquid volume [m^3] of a cavity; pressure of the reservoir
-/// of a pipe [Pa]; rest length of a spring [m]; scale of a load.
+/// of a pipe [Pa]; rest length of a spring [m]; scale of a load; active tension of fibres [Pa].
 struct ValueControl {
-    std::variant<CableHandle, CavityHandle, PipeHandle, SpringHandle, LoadHandle> object{};
+    std::variant<CableHandle, CavityHandle, PipeHandle, SpringHandle, LoadHandle, FibreHandle> object{};
 };
 
 /// One controlled quantity. An object may have only one control. Each value applies from the start of its interval.

@@ -228,14 +228,15 @@ public:
     /// velocities are taken over. A body that becomes rigid is frozen in its present shape; its vibration is lost. When
     /// it becomes explicit or implicit again, its rest shape is still that of its mesh. A body that becomes explicit
     /// starts with fully relaxed viscous stress, as if it had been in its shape for a long time. Throws SceneError for
-    /// `automatic`; for a body that is attached, has a joint or a given mass, has no tetrahedra, or is a sphere,
-    /// capsule or cylinder; for a body with self-contact that is to become rigid or implicit; for a body with a set
-    /// loss factor that is to become implicit; and for a body with inverted tetrahedra that is to become rigid.
+    /// `automatic`; for a body that is attached, has a joint or a given mass, has no tetrahedra, is a sphere, capsule
+    /// or cylinder, or has deformed plastically; for a body with self-contact that is to become rigid or implicit; for
+    /// a body with a set loss factor or plasticity that is to become implicit; and for a body with inverted tetrahedra
+    /// that is to become rigid.
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
     /// Puts a body back into its rest shape, without velocity, at the pose of its BodySettings or at the given pose of
-    /// its mesh. The body keeps no memory: strains of its losses, sleep, and the stored impulses of its contacts and
-    /// joints are reset. Attached nodes are held at their new positions; loads stay. A rigid body keeps its shape, even
-    /// if it was frozen in it. Settings::start_overlaps applies to new overlaps.
+    /// its mesh. The body keeps no memory: plastic flow, strains of its losses, sleep, and the stored impulses of its
+    /// contacts and joints are reset. Attached nodes are held at their new positions; loads stay. A rigid body keeps
+    /// its shape, even if it was frozen in it. Settings::start_overlaps applies to new overlaps.
     void reset(BodyHandle body);
     void reset(BodyHandle body, const Pose& pose);
     /// Resets all bodies to the poses of their BodySettings. Time, colliders, attachments and loads do not change.

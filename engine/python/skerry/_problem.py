@@ -263,8 +263,8 @@ class StepProblem:
     step: number of the step, counted from 1.
     time: time at the start of the step [s].
     step_size: length of the step [s].
-    problem: the problem, without contacts that no impulse can move, and without regions that have joints, ties, or
-        cables with friction or a prescribed length.
+    problem: the problem, without contacts that no impulse can move, and without regions that have joints, ties, nodes
+        on rollers, or cables with friction or a prescribed length.
     impulse: impulses that the solver found, in the contact frames of `problem`, shape (c, 3) [N s].
     contact: number of each contact in World.contacts, shape (c,).
     region: region of each contact, shape (c,).

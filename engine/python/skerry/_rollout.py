@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._arrays import checked, counted, flag, real, real_array, shape_text
 from ._errors import Doubt, scene_error
-from ._world import Attachment, Body, Cable, Cavity, Collider, Joint, Load, Pipe, Spring, World
+from ._world import Attachment, Body, Cable, Cavity, Collider, FibreFamily, Joint, Load, Pipe, Spring, World
 from ._world.probes import NodesProbe, Probe, recorded_probes
 
 Reals: TypeAlias = NDArray[np.float64]
@@ -24,7 +24,7 @@ _CONTROLS: dict[type, dict[str, tuple[int, ...]]] = {
     Body: {"force": (3,), "loads": (-1, 3)},
     Joint: {"coordinate": (), "speed": ()},
     World: {"gravity": (3,)},
-    **{kind: {"value": ()} for kind in (Cable, Cavity, Pipe, Spring, Load)},
+    **{kind: {"value": ()} for kind in (Cable, Cavity, Pipe, Spring, Load, FibreFamily)},
 }
 """Quantities that a rollout can control, by the class of the object, with the shape of one value; -1 stands for the
 number of nodes. The first quantity is the default."""
@@ -71,7 +71,7 @@ def rollout(
     - the world: "gravity" (3,) [m/s^2]
     - cables: the "value" of tension [N], length [m] or rate [m/s], whichever is prescribed; cavities: pressure [Pa],
       inflow [kg/s] or liquid volume [m^3]; pipes: pressure of the reservoir [Pa]; springs: rest length [m]; loads:
-      scale
+      scale; fibres: active tension [Pa]
 
     steps: number T of intervals; needed only without controls.
 

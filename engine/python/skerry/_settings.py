@@ -153,7 +153,8 @@ class OrthotropicModuli:
     poisson_ratio: nu_12, nu_23, nu_13: under a stress along axis i alone, the strain along axis j is -nu_ij times that
         along axis i.
     shear_modulus: G_12, G_23, G_13, > 0 [Pa].
-    first_axis, second_axis: directions in the mesh; the second is made orthogonal to the first.
+    first_axis: direction of axis 1 in the mesh.
+    second_axis: direction of axis 2 in the mesh; it is made orthogonal to the first.
     """
 
     young_modulus: VectorField = held((1e5, 1e5, 1e5))

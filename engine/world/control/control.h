@@ -15,9 +15,11 @@
 
 namespace skerry {
 
+/// The keys of a row of a table, as a setting.
 inline TimeTable time_table_of(std::span<const TimeKey> keys) {
     return std::vector<TimeKey>(keys.begin(), keys.end());
 }
+/// Handle of the body in a row of BodyTable.
 inline BodyHandle handle_of_body(const Model& model, Index row) {
     return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(row)]);
 }

@@ -68,7 +68,7 @@ LoadHandle append_load(World& world, const LoadRow& row, const TimeTable& scale)
     if (!row.node.empty()) table.nodes[place] = {first, static_cast<Index>(table.node.size())};
     const auto first_face = static_cast<Index>(table.face.size());
     for (const std::array<Index, 3>& face : row.face) table.face.push_back(face);
-    if (!row.face.empty()) table.faces[place] = {first_face, static_cast<Index>(table.face.size())};
+    table.faces[place] = {first_face, static_cast<Index>(table.face.size())};
     set_keys(table.scale_keys, table.key, place, scale.keys);
     wake_loaded(model, row.body);
     note_forces(model);

@@ -184,7 +184,7 @@ SurfaceSetSettings SurfaceSets::settings(SurfaceSetHandle set) const {
     const SurfaceSetTable& table = model.surface_sets;
     const auto row = static_cast<std::size_t>(model.row(set, "settings"));
     SurfaceSetSettings settings;
-    settings.body = model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(table.body[row])]);
+    settings.body = handle_of_body(model, table.body[row]);
     for (const std::array<Index, 3>& member : table.members_of(row)) {
         if (member[0] == member[1])
             settings.nodes.push_back(member[0]);

@@ -50,8 +50,8 @@ void hold_values(Model& model, Real t) {
     std::ranges::fill(model.ties.break_force, infinity);
 }
 
-/// Sets the loads, prescribed pressures and prescribed tensions to a share of their values at the time `t`. `given`:
-/// the same tables before hold_values.
+/// Sets the loads, prescribed pressures, and tensions of cables and fibres to a share of their values at the time `t`.
+/// `given`: the same tables before hold_values.
 void set_load_share(Model& model, const Model& given, Real t, Real share) {
     const auto set = [&](auto& table, const auto& from, std::size_t row) {
         hold_keys(table, row, share * value_at(from.keys_of(row), t));
@@ -64,6 +64,7 @@ void set_load_share(Model& model, const Model& given, Real t, Real share) {
         if (model.cavities.law[c] == CavityLaw::pressure) set(model.cavities, given.cavities, c);
     for (std::size_t c = 0; c < model.cables.size(); ++c)
         if (model.cables.control[c] == CableControl::tension) set(model.cables, given.cables, c);
+    for (std::size_t f = 0; f < model.fibres.size(); ++f) set(model.fibres, given.fibres, f);
     for (std::size_t n = 0; n < model.nodes.load.size(); ++n) model.nodes.load[n] = share * given.nodes.load[n];
     note_forces(model);
 }

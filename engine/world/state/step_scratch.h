@@ -159,8 +159,8 @@ struct StepScratch {
     Column<WatchPieces> watch_pieces;  // used by store_shapes
     Column<Real> viscous_parts;        // used by measure_viscosity
     Column<Real> plastic_parts;        // used by yield_elements
-    // For each body, nonzero if a load, spring, cable, cavity, motor or tie that acts on it changes in this step. Empty
-    // if there are none of these, or bodies cannot fall asleep.
+    // For each body, nonzero if a load, spring, cable, cavity, fibre, motor or tie that acts on it changes in this
+    // step. Empty if there are none of these, or bodies cannot fall asleep.
     Column<std::uint8_t> driven;
     Column<BodyField> fields;            // used by add_loads
     RestingMemory resting_memory;        // used by keep_resting_contacts

@@ -33,8 +33,8 @@ void say_places_among_all(const ContactTable& contacts, const RestingContactTabl
     for (Index& row : place) row = place_of[static_cast<std::size_t>(row)];
 }
 
-/// Marks the contacts of all regions that also have rows of joints, ties or cables. The list is empty if there are
-/// none.
+/// Marks the contacts of all regions that also have rows of joints, ties, cables or held axes. The list is empty if
+/// there are none.
 std::vector<bool> joined_contacts(const Model& model, const StepScratch& scratch) {
     const CableTable& cables = model.cables;
     std::vector<bool> joined(model.bodies.slot.size(), false);  // by row of BodyTable
@@ -51,6 +51,11 @@ std::vector<bool> joined_contacts(const Model& model, const StepScratch& scratch
     if (cables.size() > 0)
         for (const CableBlock& block : scratch.cables.solved())
             mark(rows_of(cables.anchor.body.span(), cables.points[static_cast<std::size_t>(block.cable)]));
+    if (!std::ranges::all_of(model.attachments.held.span(), holds_completely))
+        for (const Index entry : scratch.held_rows.entry) {
+            const Index node = model.attachments.node[static_cast<std::size_t>(entry)];
+            mark(std::array{model.nodes.body[static_cast<std::size_t>(node)]});
+        }
     std::set<Index> regions;
     const ContactTable& c = scratch.contacts;
     for (std::size_t row = 0; row < c.size(); ++row)

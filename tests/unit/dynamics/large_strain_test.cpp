@@ -111,8 +111,8 @@ TEST_CASE("the tangent of an implicit body is the slope of its forces", "[dynami
     // some even then, so then the body is not stretched.
     const bool parted =
         std::ranges::any_of(body.list.part, [](ElementPart part) { return part == ElementPart::volume; });
-    const bool bends = model == MaterialModel::stable_neo_hookean || model == MaterialModel::ogden ||
-                       model == MaterialModel::hencky;
+    const bool bends =
+        model == MaterialModel::stable_neo_hookean || model == MaterialModel::ogden || model == MaterialModel::hencky;
     const Real stretch = parted && bends ? 0 : 1;
     std::vector<Vec3> u(stiff.size());
     const Mat3 turn = Eigen::AngleAxis<Real>(1.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();

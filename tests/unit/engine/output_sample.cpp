@@ -188,6 +188,7 @@ const Frame& OutputSample::frame(int number) {
                                  .tetrahedra = tetrahedra_,
                                  .stress = {},
                                  .strain = {},
+                                 .plastic_strain = {},
                                  .node_stress = {},
                                  .node_strain = {},
                                  .material = std::vector<Index>(tetrahedra_.size(), ball % 2)});

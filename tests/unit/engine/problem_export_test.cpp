@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "problem_samples.h"
 #include "skerry/cable.h"
@@ -280,7 +281,8 @@ TEST_CASE("watching changes nothing, and not watching costs a skipped stage", "[
     CHECK_THROWS_AS(watched.world.watch_contact_problems([](const StepProblem&) {}, 0), SceneError);
 }
 
-TEST_CASE("regions with joints, ties or solved cables are left out, and impulses solve the rest", "[unit][problem]") {
+TEST_CASE("regions with joints, ties, rollers or solved cables are left out, and impulses solve the rest",
+          "[unit][problem]") {
     World world(Stack::exact());
     const auto rubber = world.add_material({.young_modulus = 2e4, .density = 500});
     world.add_collider(Plane{});
@@ -290,12 +292,16 @@ TEST_CASE("regions with joints, ties or solved cables are left out, and impulses
             block, {.material = rubber, .position = {x, 0, 0.052}, .velocity = {0.3, 0, -0.5}, .dynamics = dynamics});
     };
     const BodyHandle free = add(0, BodyDynamics::explicit_elastic), tied = add(1, BodyDynamics::explicit_elastic),
-                     joined = add(2, BodyDynamics::rigid), roped = add(3, BodyDynamics::rigid);
+                     joined = add(2, BodyDynamics::rigid), roped = add(3, BodyDynamics::rigid),
+                     rolled = add(4, BodyDynamics::explicit_elastic);
     world.add_body(block, {.material = rubber,  // lies on the tied body, so that their regions are one
                            .position = {1, 0, 0.153},
                            .velocity = {0, 0, -0.5},
                            .dynamics = BodyDynamics::explicit_elastic});
     Ties(world).add({.body = tied, .nodes = {0}});
+    std::vector<Index> all(block.nodes.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    world.attach(rolled, all, {}, Vec3::Zero(), {Vec3::UnitX()});
     Joints(world).add({.kind = JointKind::slider, .first = joined, .point = {2, 0, 0}});
     Cables(world).add({.points = {{.point = {3, 0, 1}}, {.body = roped, .point = {3, 0, 0.052}}},
                        .drive = {.length = TimeTable(0.9)}});

@@ -7,6 +7,7 @@
 
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
+#include "skerry/fibre.h"
 #include "skerry/joint.h"
 #include "skerry/load.h"
 #include "skerry/rollout.h"
@@ -158,6 +159,7 @@ TEST_CASE("every control has the effect of its function", "[unit]") {
     const Anchor of_cube{.body = yard.cube, .point = {0, 0, 0.5}}, above{.point = {0, 0, 1}};
     const auto spring = Springs(yard.world).add({.first = of_cube, .second = above, .stiffness = 10});
     const auto shake = Loads(yard.world).add(AccelerationField{.acceleration = {0, 0, 9}, .scale = 0});
+    const auto muscle = Fibres(yard.world).add({.body = yard.cube});
     Cables cables(yard.world);
     const auto pulled = cables.add({.points = {of_cube, above}, .drive = {.tension = TimeTable(0)}}),
                wound = cables.add({.points = {{.body = yard.lever, .point = {1, 0, 0.5}}, {.point = {1, 0, 0}}},
@@ -231,6 +233,7 @@ TEST_CASE("every control has the effect of its function", "[unit]") {
     };
     same_value(spring, [&](World& world, const TimeTable& x) { Springs(world).set_rest_length(spring, x); });
     same_value(shake, [&](World& world, const TimeTable& x) { Loads(world).set_scale(shake, x); });
+    same_value(muscle, [&](World& world, const TimeTable& x) { Fibres(world).set_tension(muscle, x); });
     same_value(pulled, [&](World& world, const TimeTable& x) { Cables(world).set_drive(pulled, {.tension = x}); });
     same_value(wound, [&](World& world, const TimeTable& x) { Cables(world).set_drive(wound, {.rate = x}); });
     same_value(pressed, [&](World& world, const TimeTable& x) { Cavities(world).set_pressure(pressed, x); });

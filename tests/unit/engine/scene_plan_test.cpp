@@ -318,7 +318,7 @@ TEST_CASE("probes name ties", "[unit]") {
     for (const SeriesColumn& column : recorder.columns()) headings.push_back(column.heading());
     CHECK(headings == std::vector<std::string>{"time [s]", "p.force_x [N]", "p.force_y [N]", "p.force_z [N]",
                                                "p.moment_x [N m]", "p.moment_y [N m]", "p.moment_z [N m]",
-                                               "p.error [m]"});
+                                               "p.error [m]", "p.broken [1]"});
     REQUIRE(scene.world.advance(0.001).ok());
     recorder.sample(scene.world);
     const TieState state = Ties(scene.world).state(Ties(scene.world).all()[1]);

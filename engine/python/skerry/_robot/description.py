@@ -127,14 +127,15 @@ class RobotJoint:
         return self.kind != "ball"
 
     def motion(self, coordinate: float) -> Frame:
-        """Motion of the link relative to its place."""
+        """Motion of the link relative to its place at a coordinate [rad or m]."""
         if self.kind == "slider":
             return Frame((coordinate - self.rest) * self.axis)
         rotation = turn((coordinate - self.rest) * self.axis if self.kind == "hinge" else np.zeros(3))
         return Frame(self.point - rotation @ self.point, rotation)
 
     def motor(self, target: float) -> Motor:
-        """The motor that drives the joint to a target. A motor with the drive "force" exerts the force `target`."""
+        """The motor that drives the joint to a target: a coordinate [rad or m], a speed [rad/s or m/s], or with the
+        drive "force" a moment or force [N m or N]."""
         if self.drive == "force":
             # A motor that cannot reach its target speed exerts its whole strength.
             unreachable = 1e9
@@ -172,8 +173,8 @@ class Robot:
         return tuple(name for name, joint in self.joints.items() if joint.drive is not None)
 
     def complete(self, coordinates: Mapping[str, float] | None) -> dict[str, float]:
-        """All coordinates, from some of them. The others are 0 or the nearest coordinate within the limits; those of
-        mimics follow."""
+        """Coordinates of all joints, from those of some joints [rad or m]. Other joints have the coordinate `rest`, or
+        the nearest one within their limits. Joints that mimic follow their leaders."""
         found: dict[str, float] = {}
         for name, value in (coordinates or {}).items():
             if name not in self.coordinate_names:
@@ -219,7 +220,7 @@ class Robot:
 
 
 def mass_of(parts: list[tuple[float, Reals, Reals]]) -> tuple[float, Reals, Reals]:
-    """Mass, centre of mass and inertia about it of several parts, of which the same are given."""
+    """Mass [kg], centre of mass [m] and inertia about it [kg m^2] of several parts. parts: these values of each."""
     mass = sum(part[0] for part in parts)
     center = sum((part[0] * part[1] for part in parts), np.zeros(3)) / (mass if mass > 0 else 1)
     inertia = np.zeros((3, 3))

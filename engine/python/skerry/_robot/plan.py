@@ -17,6 +17,7 @@ from .shapes import box_surface, shells
 class PlannedBody:
     """The rigid body of a link.
 
+    link: the description.
     surface: its surface, in the frame of the link. A link without collision shapes gets a cube that does not collide.
     frame: frame of the link in the world.
     held: True if the body does not move.
@@ -45,10 +46,12 @@ class PlannedBody:
 class PlannedJoint:
     """A joint of the body of its link.
 
+    joint: the description.
     second: name of the link of the other body; None: the world.
     point: in the world [m].
     axis: in the world.
-    coordinate: coordinate at the start.
+    coordinate: coordinate at the start [rad or m].
+    motor: the motor that holds this coordinate, or has the speed or force 0; None: no motor.
     """
 
     joint: RobotJoint
@@ -103,7 +106,7 @@ def plan_robot(
 
 def _cube(link: RobotLink) -> SurfaceMesh:
     """A cube at the centre of mass with the mean moment of inertia of the link. A cube of the edge a has m a^2 / 6."""
-    edge = np.sqrt(2 * np.trace(link.inertia) / link.mass) if link.mass > 0 else 0.01
+    edge = np.sqrt(2 * np.trace(link.inertia) / link.mass) if link.mass > 0 else 0.01  # m
     cube = shells([(box_surface(np.full(3, edge / 2)), Frame(link.center_of_mass))])
     assert cube is not None
     return cube

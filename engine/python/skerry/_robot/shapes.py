@@ -38,12 +38,12 @@ def round_surface(profile: Reals) -> SurfaceMesh:
 
 
 def cylinder_surface(radius: float, half: float) -> SurfaceMesh:
-    """A cylinder along z."""
+    """A cylinder along z. `half`: half of its length [m]."""
     return round_surface(np.array([[0, -half], [radius, -half], [radius, half], [0, half]]))
 
 
 def capsule_surface(radius: float, half: float) -> SurfaceMesh:
-    """A capsule along z, whose axis has the half length `half`; a sphere if it is 0."""
+    """A capsule along z. `half`: half of the length of its axis [m]; 0: a sphere."""
     polar = np.linspace(-np.pi / 2, np.pi / 2, _SECTORS // 2 + 1)
     if half > 0:
         polar = np.sort(np.append(polar, 0))

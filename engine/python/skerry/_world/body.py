@@ -329,8 +329,9 @@ class Body(TouchingObject):
         """Changes the kind of motion. Name, settings, shape, momentum and angular momentum stay; the body counts as
         added last. A body that becomes rigid is frozen in its present shape.
 
-        SceneError: the body is attached, has a joint, or is a sphere, capsule or cylinder; or the kind does not fit its
-        self-contact, losses or inverted tetrahedra. BufferError: arrays of views() are in use."""
+        SceneError: the body is attached, has a joint or a given mass, has no tetrahedra, is a sphere, capsule or
+        cylinder, or has deformed plastically; or the kind does not fit its self-contact, losses, plasticity or inverted
+        tetrahedra. BufferError: arrays of views() are in use."""
         self._core.set_dynamics(self._handle, checked(dynamics, "dynamics", str))
 
     def wake(self) -> None:

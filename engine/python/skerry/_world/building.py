@@ -53,17 +53,17 @@ from .cable import Cable, drive_tables
 from .cavity import Cavity, CavityBuilding, Pipe
 from .changes import MaterialChanges
 from .collider import Collider
+from .fibre import FibreFamily
 from .joint import Joint, joint_label
 from .load import Load
 from .material import MaterialHandle
-from .objects import ObjectList, Objects, PosedObject
+from .objects import NamedObject, ObjectList, Objects, PosedObject
 from .reports import StepReport
 from .spring import Spring
 from .tie import Tie
 
 if TYPE_CHECKING:
     from .._recorder import Follower
-    from .surface import SurfaceSet
     from .world import World
 
 
@@ -361,11 +361,11 @@ class Building(CavityBuilding):
         one, other = core_anchor(self._self, first, "first"), core_anchor(self._self, second, "second")
         return self._spring(self._core.add_spring(one, other, given))
 
-    def remove(self, removed: PosedObject | Joint | Tie | Cable | Spring | Load | Cavity | Pipe | SurfaceSet) -> None:
+    def remove(self, removed: PosedObject | NamedObject) -> None:
         """Removes an object of any kind except a material. BufferError: arrays of views() are in use."""
         from .surface import SurfaceSet
 
-        kinds = (Body, Collider, Attachment, Joint, Tie, Cable, Spring, Load, Cavity, Pipe, SurfaceSet)
+        kinds = (Body, Collider, Attachment, Joint, Tie, Cable, Spring, Load, Cavity, Pipe, FibreFamily, SurfaceSet)
         handle = self._own(removed, "removed", *kinds)
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)

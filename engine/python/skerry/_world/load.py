@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
 from numpy.typing import ArrayLike
 
-from .._arrays import TimeTableLike, Vector, VectorLike, index_array, real, real_array, time_table
+from .._arrays import TimeTableLike, Vector, VectorLike, flag, index_array, real, real_array, time_table
 from .objects import NamedObject, ObjectList
 
 if TYPE_CHECKING:
@@ -100,14 +100,15 @@ class WorldLoads:
         present_area: bool = False,
     ) -> Load:
         """Adds a force per area (3,) [Pa] on some faces of a body, which are rows of body.surface, shape (n, 3). The
-        direction is fixed in the world. The area is that of the rest shape, or the present area."""
+        direction is fixed in the world. present_area: True: per area of the deformed faces; False: per area of the
+        faces in the rest shape."""
         return self._new_load(
             self._core.add_traction(
                 self._loaded(body),
                 index_array(faces, "faces", ("n", 3)),
                 real_array(traction, "traction", (3,)),
                 time_table(scale, "scale"),
-                bool(present_area),
+                flag(present_area, "present_area"),
             )
         )
 

@@ -104,7 +104,7 @@ class NamedObject(WorldObject):
 
     def remove(self) -> None:
         """Removes the object."""
-        self._world.remove(self)  # type: ignore[arg-type]
+        self._world.remove(self)
 
 
 Named = TypeVar("Named", bound=NamedObject)

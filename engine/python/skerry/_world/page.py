@@ -7,7 +7,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .objects import WorldObject
+    from .objects import NamedObject
     from .world import World
 
 _MOST_ROWS = 50
@@ -20,18 +20,19 @@ def world_table(world: World) -> str:
         for body in world.bodies.values()
     ]
     rows += [(collider.name, "collider", type(collider.shape).__name__) for collider in world.colliders.values()]
-    unnamed: dict[str, Sequence[WorldObject]] = {
-        "attachment": world.attachments,
+    rows += [("", "attachment", attachment._label) for attachment in world.attachments]
+    named: dict[str, Sequence[NamedObject]] = {
         "joint": world.joints,
         "tie": world.ties,
         "cable": world.cables,
         "spring": world.springs,
         "cavity": world.cavities,
         "pipe": world.pipes,
+        "fibres": world.fibres,
         "load": world.loads,
         "surface set": world.surface_sets,
     }
-    rows += [("", kind, item._label) for kind, items in unnamed.items() for item in items]
+    rows += [(item.name, kind, item._label) for kind, items in named.items() for item in items]
     left = len(rows) - _MOST_ROWS
     lines = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows[:_MOST_ROWS]]
     if left > 0:

@@ -106,7 +106,7 @@ class Energy:
     kinetic: kinetic energy [J].
     elastic: elastic energy [J].
     potential: energy of the weight, relative to the origin [J].
-    dissipated: energy dissipated by contacts, damping and material losses since the start [J].
+    dissipated: energy dissipated by contacts, damping, material losses and plastic flow since the start [J].
     """
 
     kinetic: float
@@ -293,7 +293,7 @@ class WorldReport:
     largest_region: largest number of contacts of a region.
     worst_error: largest relative solver error of a region in any step.
     worst_region: number of contacts of the region with `worst_error`.
-    dissipated: energy dissipated by contacts, damping and material losses [J].
+    dissipated: energy dissipated by contacts, damping, material losses and plastic flow [J].
     plastic_work: part of dissipated: plastic flow of elements [J].
     max_penetration: largest overlap of surfaces in any step [m].
     max_gap_violation: largest penetration into the contact distance in any step [m].

@@ -14,7 +14,7 @@ auto if_any_tie(const Model& m) {
     return only_if([](std::span<const std::uint32_t> slot) { return !slot.empty(); }, read(m.ties.slot));
 }
 
-bool prepare(const TieInputs& ties, const StepParameters& p, ContactTable& contacts, TieRowTable& rows) {
+bool prepare_tie_rows(const TieInputs& ties, const StepParameters& p, ContactTable& contacts, TieRowTable& rows) {
     const TieStep step{p.h, p.kick, p.solver.recovery_speed, p.solver.warm_start};
     return prepare_ties(ties, step, contacts, rows);
 }
@@ -25,8 +25,8 @@ Index store(const TieRowTable& rows, std::span<const Range> body_implicit, Real 
 }
 
 void list_tie_rows(WorldState& w, TaskGraph& g) {
-    g.stage("contact/prepare_ties", prepare, tie_inputs(w.model), value(w.scratch.parameters), make(w.scratch.contacts),
-            make(w.scratch.ties), if_any_tie(w.model));
+    g.stage("contact/prepare_ties", prepare_tie_rows, tie_inputs(w.model), value(w.scratch.parameters),
+            make(w.scratch.contacts), make(w.scratch.ties), if_any_tie(w.model));
 }
 
 void list_taken_rows(WorldState& w, TaskGraph& g) {
