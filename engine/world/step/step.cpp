@@ -4,8 +4,6 @@
 // struct lists the columns that the stage reads.
 #include "engine/world/step/step.h"
 
-#include <ranges>
-
 #include "engine/world/kernels.h"
 #include "engine/world/step/seams.h"
 #include "systems/contact/prepare_ties.h"
@@ -70,8 +68,8 @@ void build_step(WorldState& w) {
     of_models<&MotionModel::couple>(w, g);
     g.begin_phase("Solve regions as concurrent jobs");
     solve(w, g);
-    for (const ConstraintLaw* law : constraint_laws | std::views::reverse)
-        if (law->take) law->take(w, g);
+    for (std::size_t i = constraint_laws.size(); i-- > 0;)
+        if (constraint_laws[i]->take) constraint_laws[i]->take(w, g);
     of_laws<&ConstraintLaw::measure>(w, g);
     g.begin_phase("Apply impulses");
     of_models<&MotionModel::apply>(w, g);
