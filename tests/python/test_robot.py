@@ -100,6 +100,7 @@ def test_a_robot_has_the_masses_of_the_file() -> None:
     world = sk.World(threads=1)
     arm = world.add_robot(ARM, position=(1, 0, 0), coordinates={"elbow": 1.0}, name="left")
     assert set(world.bodies) == {"left/base", "left/upper", "left/lower", "left/left_finger", "left/right_finger"}
+    assert {joint.name for joint in world.joints} == {"left/shoulder", "left/elbow", "left/left", "left/right"}
     assert arm.links["lower"] == arm.links["palm"]  # joined by a fixed joint
     assert arm.links["palm"].mass == pytest.approx(0.8)
     # Lower link 0.6 kg at 0.1 m, palm 0.2 kg at 0.22 m: both along the turned link.
