@@ -280,3 +280,5 @@ def test_the_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(ImportError, match="pip install mujoco"):
         sk.load_robot(ARM)
+    with pytest.raises(sk.SceneError, match=r"nothing\.urdf: path: found No such file"):
+        sk.load_robot("nothing.urdf")

@@ -40,7 +40,6 @@ class _Reader:
         self.file = file
         self.packages = packages
         self.warnings: list[str] = []
-        mujoco = import_package("mujoco")
         try:
             root = ElementTree.parse(file).getroot()
         except OSError as error:
@@ -49,6 +48,7 @@ class _Reader:
             raise scene_error("", "", str(error), "an XML file", file=str(file)) from None
         if root.tag not in ("robot", "mujoco"):
             raise scene_error("", "", f"<{root.tag}>", "<robot> (URDF) or <mujoco> (MJCF)", file=str(file))
+        mujoco = import_package("mujoco")
         self.urdf = root if root.tag == "robot" else None
         try:
             self.spec = mujoco.MjSpec.from_file(str(file))
