@@ -96,6 +96,17 @@ def test_what_is_not_simulated_is_named() -> None:
     )
 
 
+def test_bodies_and_joints_without_name_are_numbered(tmp_path: pathlib.Path) -> None:
+    file = tmp_path / "robot.xml"
+    file.write_text(
+        '<mujoco><worldbody><body><joint/><geom size="0.1"/><body name="body_1"><joint name="x"/><geom size="0.1"/>'
+        '<body><joint type="ball"/><geom size="0.1"/></body></body></body></worldbody></mujoco>'
+    )
+    robot = sk.load_robot(file)
+    assert list(robot.links) == ["body_0", "body_1", "body_2"]
+    assert list(robot.joints) == ["joint_0", "x", "joint_2"]
+
+
 def test_a_robot_has_the_masses_of_the_file() -> None:
     world = sk.World(threads=1)
     arm = world.add_robot(ARM, position=(1, 0, 0), coordinates={"elbow": 1.0}, name="left")

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -53,6 +54,8 @@ class _Reader:
         try:
             self.spec = mujoco.MjSpec.from_file(str(file))
             self.spec.compiler.fusestatic = False
+            self.name_all(self.spec.bodies[1:], "body")
+            self.name_all(self.spec.joints, "joint")
             for mesh in self.spec.meshes:
                 mesh.file = self.found(mesh.file)
                 mesh.maxhullvert = _CORNERS if mesh.maxhullvert < 0 else mesh.maxhullvert
@@ -66,6 +69,16 @@ class _Reader:
 
     def warn(self, element: str, name: str, what: str) -> None:
         self.warnings.append(f"{element} '{name}': {what}" if name else f"{element}: {what}")
+
+    @staticmethod
+    def name_all(items: Sequence[Any], kind: str) -> None:
+        """Names the items without name by kind and number, such as "joint_0"."""
+        names = {item.name for item in items}
+        for number, item in enumerate(items):
+            if not item.name:
+                item.name = f"{kind}_{number}"
+                while item.name in names:
+                    item.name += "_"
 
     def found(self, file: str) -> str:
         """Path of the file of a mesh."""
