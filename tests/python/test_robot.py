@@ -96,6 +96,20 @@ def test_what_is_not_simulated_is_named() -> None:
     )
 
 
+def test_options_and_motors_that_are_not_simulated_are_named(tmp_path: pathlib.Path) -> None:
+    file = tmp_path / "robot.xml"
+    file.write_text(
+        '<mujoco><option gravity="0 0 -1" density="1.2"/><worldbody><body><joint name="x"/><geom size="0.1"/>'
+        '<body><joint name="y"/><geom size="0.1"/></body></body></worldbody><actuator><motor joint="y" '
+        'ctrlrange="-1 1"/></actuator><equality><joint joint1="y" joint2="x"/></equality></mujoco>'
+    )
+    assert sk.load_robot(file).warnings == (
+        "option 'gravity': is not read; pass it to World()",
+        "option 'density': forces of a fluid are not simulated",
+        "actuator 'of joint y': joints that an equality couples have no motor",
+    )
+
+
 def test_bodies_and_joints_without_name_are_numbered(tmp_path: pathlib.Path) -> None:
     file = tmp_path / "robot.xml"
     file.write_text(

@@ -231,7 +231,13 @@ class _Reader:
             )
         elif damping or friction or model.jnt_stiffness[j] or model.jnt_limited[j]:
             self.warn("joint", name, "limits, stiffness, damping and friction of ball joints are not supported")
-        for column, value in (("armature", model.dof_armature[dof]), ("margin", model.jnt_margin[j])):
+        columns = [("armature", model.dof_armature[dof]), ("margin", model.jnt_margin[j])]
+        # Columns of version 4 of the package.
+        later = (("jnt_stiffnesspoly", j), ("jnt_springyield", j), ("dof_dampingpoly", dof), ("jnt_actgravcomp", j))
+        for column, row in later:
+            if (values := getattr(model, column, None)) is not None:
+                columns.append((column.partition("_")[2], float(np.abs(values[row]).max())))
+        for column, value in columns:
             if value != 0:
                 self.warn("joint", name, f"{column} {value:g} is not simulated")
         limited = has_axis and bool(model.jnt_limited[j])
@@ -323,6 +329,10 @@ class _Reader:
                 raise scene_error(
                     f"joint '{name}'", "mimic", f"'{mimic[0]}'", "the name of a hinge or slider", file=str(self.file)
                 )
+        if self.urdf is None:
+            for joint in joints:
+                if joint.drive is not None and joint.name in mimics:
+                    self.warn("actuator", f"of joint {joint.name}", "joints that an equality couples have no motor")
         return [
             replace(joint, mimic=mimics[joint.name], drive=None) if joint.name in mimics else joint for joint in joints
         ]
@@ -363,6 +373,12 @@ class _Reader:
                 self.warn("body", model.body(b).name, "gravcomp is not simulated")
             if model.body_mocapid[b] >= 0:
                 self.warn("body", model.body(b).name, "mocap bodies stay fixed")
+        option = self.spec.option
+        if self.urdf is None and not np.array_equal(option.gravity, (0, 0, -9.81)):
+            self.warn("option", "gravity", "is not read; pass it to World()")
+        for name in ("wind", "density", "viscosity"):
+            if np.any(getattr(option, name)):
+                self.warn("option", name, "forces of a fluid are not simulated")
         default = ((1, 0.005, 0.0001), (0.02, 1), (0.9, 0.95, 0.001, 0.5, 2))
         given = (model.geom_friction, model.geom_solref, model.geom_solimp)
         if any(len(rows) and not np.allclose(rows, value) for rows, value in zip(given, default, strict=True)):
