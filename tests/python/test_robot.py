@@ -26,6 +26,13 @@ PENDULUM = """<robot name="pendulum"><link name="world"/>
 <link name="two"><inertial><origin xyz="0 0 -0.1"/><mass value="1"/>
   <inertia ixx="0.01" iyy="0.008" izz="0.005" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"""
 
+MESH = """<robot name="a"><link name="a">
+  <collision><geometry><mesh filename="{}"/></geometry></collision></link></robot>"""
+HINGE = """<robot name="a"><link name="a"/><link name="b"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 1 0"/>
+  <limit lower="-1" upper="1" effort="5" velocity="{}"/>{}</joint></robot>"""
+
 
 def exact_pendulum(angles: np.ndarray, seconds: float) -> np.ndarray:
     """The angles of the double pendulum PENDULUM, by the equations of Lagrange and the Runge-Kutta method of order 4.
@@ -279,6 +286,10 @@ def test_the_command_writes_a_scene(tmp_path: pathlib.Path, capsys: pytest.Captu
             '<actuator><motor name="m" joint="x"/></actuator></mujoco>',
             "actuator 'm': forcerange: found no limit",
         ),
+        (MESH.format("nothing.stl"), "mesh: filename: found 'nothing.stl', which does not exist"),
+        (MESH.format("part.dae"), "mesh: filename: found 'part.dae', expected a file of the type .stl, .obj"),
+        (HINGE.format("1", '<mimic joint="j"/>'), "joint 'j': mimic: found 'j', expected the name of another joint"),
+        (HINGE.format("fast", ""), "joint 'j': velocity: found 'fast', expected a number"),
     ],
 )
 def test_mistakes_of_a_file_are_named(text: str, message: str, tmp_path: pathlib.Path) -> None:

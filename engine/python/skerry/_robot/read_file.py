@@ -22,6 +22,7 @@ _KINDS = ("free", "ball", "slider", "hinge")  # by mjtJoint
 _PLANE, _HEIGHTS, _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER, _BOX, _MESH = range(8)  # mjtGeom
 _CORNERS = 64  # largest number of corners of the convex hull of a mesh
 _PACKAGE = "package://"
+_MESHES = (".stl", ".obj", ".msh")  # types that the package mujoco reads
 
 
 def load_robot(path: str | os.PathLike[str], *, packages: Mapping[str, str | os.PathLike[str]] | None = None) -> Robot:
@@ -61,6 +62,10 @@ class _Reader:
                 mesh.maxhullvert = _CORNERS if mesh.maxhullvert < 0 else mesh.maxhullvert
             if self.urdf is not None:
                 self.spec.strippath = False
+                for name, mimic in self.urdf_mimics(self.urdf):
+                    if mimic[0] == name:
+                        expected = "the name of another joint"
+                        raise scene_error(f"joint '{name}'", "mimic", f"'{name}'", expected, file=str(self.file))
             self.model = self.spec.compile()
         except ValueError as error:
             if hasattr(error, "found"):
@@ -82,7 +87,18 @@ class _Reader:
 
     def found(self, file: str) -> str:
         """Path of the file of a mesh."""
+        if not file:
+            return file  # the MJCF file contains the corners
+        if Path(file).suffix.lower() not in _MESHES:
+            raise scene_error(
+                "mesh", "filename", f"'{file}'", f"a file of the type {', '.join(_MESHES)}", file=str(self.file)
+            )
         if not file.startswith(_PACKAGE):
+            folder = self.file.parent / self.spec.meshdir
+            if not any(path.is_file() for path in (folder / file, folder / Path(file).name)):
+                raise scene_error(
+                    "mesh", "filename", f"'{file}', which does not exist", "a file", file=str(self.file)
+                )
             return file
         package, _, rest = file.removeprefix(_PACKAGE).partition("/")
         folders = [self.packages[package]] if package in self.packages else self.package_folders(package)
@@ -258,7 +274,7 @@ class _Reader:
         """The joints with the motors of the file. A URDF has a motor for each joint with an effort limit."""
         if self.urdf is not None:
             speed = {
-                joint.get("name"): float(limit.get("velocity", "inf")) or math.inf
+                joint.get("name"): self.fastest(joint.get("name", ""), limit.get("velocity", "inf"))
                 for joint in self.urdf.iter("joint")
                 if (limit := joint.find("limit")) is not None
             }
@@ -280,6 +296,13 @@ class _Reader:
             else:
                 of_name[of_joint.name] = replace(of_joint, drive=motor[0], strength=motor[1])
         return list(of_name.values())
+
+    def fastest(self, joint: str, text: str) -> float:
+        """The speed limit of a joint in a URDF, where 0 means that there is none."""
+        try:
+            return float(text) or math.inf
+        except ValueError:
+            raise scene_error(f"joint '{joint}'", "velocity", f"'{text}'", "a number", file=str(self.file)) from None
 
     def target_of(self, a: int) -> str | None:
         """Name of the joint of an actuator."""
