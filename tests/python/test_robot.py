@@ -111,7 +111,7 @@ def test_options_and_motors_that_are_not_simulated_are_named(tmp_path: pathlib.P
         'ctrlrange="-1 1"/></actuator><equality><joint joint1="y" joint2="x"/></equality></mujoco>'
     )
     assert sk.load_robot(file).warnings == (
-        "option 'gravity': is not read; pass it to World()",
+        "option 'gravity': is not read; set the gravity of the world or scene",
         "option 'density': forces of a fluid are not simulated",
         "actuator 'of joint y': joints that an equality couples have no motor",
     )

@@ -398,7 +398,7 @@ class _Reader:
                 self.warn("body", model.body(b).name, "mocap bodies stay fixed")
         option = self.spec.option
         if self.urdf is None and not np.array_equal(option.gravity, (0, 0, -9.81)):
-            self.warn("option", "gravity", "is not read; pass it to World()")
+            self.warn("option", "gravity", "is not read; set the gravity of the world or scene")
         for name in ("wind", "density", "viscosity"):
             if np.any(getattr(option, name)):
                 self.warn("option", name, "forces of a fluid are not simulated")
