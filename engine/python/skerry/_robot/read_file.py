@@ -96,9 +96,7 @@ class _Reader:
         if not file.startswith(_PACKAGE):
             folder = self.file.parent / self.spec.meshdir
             if not any(path.is_file() for path in (folder / file, folder / Path(file).name)):
-                raise scene_error(
-                    "mesh", "filename", f"'{file}', which does not exist", "a file", file=str(self.file)
-                )
+                raise scene_error("mesh", "filename", f"'{file}', which does not exist", "a file", file=str(self.file))
             return file
         package, _, rest = file.removeprefix(_PACKAGE).partition("/")
         folders = [self.packages[package]] if package in self.packages else self.package_folders(package)
