@@ -37,3 +37,13 @@ def test_directions_and_tetrahedra_can_be_arrays() -> None:
         world.add_fibres(body, directions)
     with pytest.raises(sk.SceneError, match="tension: found -1"):
         world.add_fibres(body, (0, 0, 1), tension=-1.0)
+
+
+def test_a_muscle_between_held_ends_keeps_the_balance_of_momentum() -> None:
+    world = sk.World(gravity=(0.0, 0.0, 0.0), threads=1)
+    size = (0.1, 0.1, 0.4)
+    body = world.add_body(sk.Mesh.box(size, (2, 2, 6)), sk.Material(young_modulus=1e6), dynamics="explicit")
+    body.attach(np.flatnonzero(np.abs(body.positions[:, 2]) > 0.199))
+    world.add_fibres(body, (0, 0, 1), tension=3e4)
+    world.advance(0.1)
+    assert world.report().momentum_error_share < 1e-9

@@ -140,3 +140,14 @@ def test_a_joint_mimics_another_one() -> None:
         hinge.set_mimic(leader, ratio=0)
     hinge.set_mimic(None)
     assert hinge.mimic is None and hinge.state.mimic == 0
+
+
+def test_the_error_of_a_joint_without_load_is_relative_to_the_weight() -> None:
+    world = sk.World(threads=1)
+    first, second = (
+        world.add_body(sk.Sphere(0.05), sk.Material(), position=(0, 0, z), dynamics="rigid") for z in (1.0, 1.3)
+    )
+    world.add_joint("ball", first, second, point=(0, 0, 1.3))
+    world.advance(0.3)
+    assert world.report().worst_error < 1e-6
+    assert world.report().unconverged == 0

@@ -26,6 +26,13 @@ PENDULUM = """<robot name="pendulum"><link name="world"/>
 <link name="two"><inertial><origin xyz="0 0 -0.1"/><mass value="1"/>
   <inertia ixx="0.01" iyy="0.008" izz="0.005" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"""
 
+MESH = """<robot name="a"><link name="a">
+  <collision><geometry><mesh filename="{}"/></geometry></collision></link></robot>"""
+HINGE = """<robot name="a"><link name="a"/><link name="b"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 1 0"/>
+  <limit lower="-1" upper="1" effort="5" velocity="{}"/>{}</joint></robot>"""
+
 
 def exact_pendulum(angles: np.ndarray, seconds: float) -> np.ndarray:
     """The angles of the double pendulum PENDULUM, by the equations of Lagrange and the Runge-Kutta method of order 4.
@@ -96,10 +103,36 @@ def test_what_is_not_simulated_is_named() -> None:
     )
 
 
+def test_options_and_motors_that_are_not_simulated_are_named(tmp_path: pathlib.Path) -> None:
+    file = tmp_path / "robot.xml"
+    file.write_text(
+        '<mujoco><option gravity="0 0 -1" density="1.2"/><worldbody><body><joint name="x"/><geom size="0.1"/>'
+        '<body><joint name="y"/><geom size="0.1"/></body></body></worldbody><actuator><motor joint="y" '
+        'ctrlrange="-1 1"/></actuator><equality><joint joint1="y" joint2="x"/></equality></mujoco>'
+    )
+    assert sk.load_robot(file).warnings == (
+        "option 'gravity': is not read; set the gravity of the world or scene",
+        "option 'density': forces of a fluid are not simulated",
+        "actuator 'of joint y': joints that an equality couples have no motor",
+    )
+
+
+def test_bodies_and_joints_without_name_are_numbered(tmp_path: pathlib.Path) -> None:
+    file = tmp_path / "robot.xml"
+    file.write_text(
+        '<mujoco><worldbody><body><joint/><geom size="0.1"/><body name="body_1"><joint name="x"/><geom size="0.1"/>'
+        '<body><joint type="ball"/><geom size="0.1"/></body></body></body></worldbody></mujoco>'
+    )
+    robot = sk.load_robot(file)
+    assert list(robot.links) == ["body_0", "body_1", "body_2"]
+    assert list(robot.joints) == ["joint_0", "x", "joint_2"]
+
+
 def test_a_robot_has_the_masses_of_the_file() -> None:
     world = sk.World(threads=1)
     arm = world.add_robot(ARM, position=(1, 0, 0), coordinates={"elbow": 1.0}, name="left")
     assert set(world.bodies) == {"left/base", "left/upper", "left/lower", "left/left_finger", "left/right_finger"}
+    assert {joint.name for joint in world.joints} == {"left/shoulder", "left/elbow", "left/left", "left/right"}
     assert arm.links["lower"] == arm.links["palm"]  # joined by a fixed joint
     assert arm.links["palm"].mass == pytest.approx(0.8)
     # Lower link 0.6 kg at 0.1 m, palm 0.2 kg at 0.22 m: both along the turned link.
@@ -253,6 +286,10 @@ def test_the_command_writes_a_scene(tmp_path: pathlib.Path, capsys: pytest.Captu
             '<actuator><motor name="m" joint="x"/></actuator></mujoco>',
             "actuator 'm': forcerange: found no limit",
         ),
+        (MESH.format("nothing.stl"), "mesh: filename: found 'nothing.stl', which does not exist"),
+        (MESH.format("part.dae"), "mesh: filename: found 'part.dae', expected a file of the type .stl, .obj"),
+        (HINGE.format("1", '<mimic joint="j"/>'), "joint 'j': mimic: found 'j', expected the name of another joint"),
+        (HINGE.format("fast", ""), "joint 'j': velocity: found 'fast', expected a number"),
     ],
 )
 def test_mistakes_of_a_file_are_named(text: str, message: str, tmp_path: pathlib.Path) -> None:
@@ -279,3 +316,5 @@ def test_the_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(ImportError, match="pip install mujoco"):
         sk.load_robot(ARM)
+    with pytest.raises(sk.SceneError, match=r"nothing\.urdf: path: found No such file"):
+        sk.load_robot("nothing.urdf")

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
@@ -17,7 +18,8 @@ namespace {
 struct Present {
     Real kinetic = 0, elastic = 0, potential = 0;  // J
     Vec3 momentum = Vec3::Zero();                  // kg m/s
-    Real momentum_size = 0;  // sum of the magnitudes of the momenta of all nodes and bodies [kg m/s]
+    // sum of the magnitudes of the momenta of all nodes and bodies, and of the impulses of applied forces in a step
+    Real momentum_size = 0;  // [kg m/s]
 };
 
 Present measure(const Model& model, Real time, Real lag) {
@@ -54,9 +56,12 @@ Present measure(const Model& model, Real time, Real lag) {
             lag * kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
         Real power = kicked.dot(model.settings.gravity);
         if (model.forced)  // the forces of the last step are used, as in balance.work
-            for (std::size_t n = 0; n < nodes.position.size(); ++n)
+            for (std::size_t n = 0; n < nodes.position.size(); ++n) {
+                // Fibres and springs exchange momentum between nodes also while all nodes are at rest.
+                now.momentum_size += 2 * std::abs(lag) * nodes.applied_before[n].norm();
                 if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
                     power += nodes.applied_before[n].dot(nodes.velocity[n]);
+            }
         now.kinetic += lag * power;
     }
     now.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position) + implicit;

@@ -221,6 +221,7 @@ Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<
 void add_joint(const JointPlaceInRegion& place, const Vec4& u, LoadSums& sums) {
     const Vec3 of_rows = matrix_of(place.part.frame).transpose() * u.head<3>();
     const Vec3 residual = place.law.natural_map(Vec3::Zero(), of_rows, place.contact.diagonal);
+    sums.inverse_diagonals += place.contact.inverse_diagonal;
     sums.moving += place.contact.inverse_diagonal * u.squaredNorm();
     if (residual.isZero(0)) return;
     sums.separating = false;

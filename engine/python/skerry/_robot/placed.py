@@ -131,6 +131,7 @@ def add_robot(
                 motor=joint.motor,
                 passive=joint.joint.passive,
             )
+            joints[joint.joint.name].name = f"{name}/{joint.joint.name}"
         for joint in plan.joints:
             if joint.joint.mimic is not None:
                 leader, ratio, offset = joint.joint.mimic

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -21,6 +22,7 @@ _KINDS = ("free", "ball", "slider", "hinge")  # by mjtJoint
 _PLANE, _HEIGHTS, _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER, _BOX, _MESH = range(8)  # mjtGeom
 _CORNERS = 64  # largest number of corners of the convex hull of a mesh
 _PACKAGE = "package://"
+_MESHES = (".stl", ".obj", ".msh")  # types that the package mujoco reads
 
 
 def load_robot(path: str | os.PathLike[str], *, packages: Mapping[str, str | os.PathLike[str]] | None = None) -> Robot:
@@ -40,7 +42,6 @@ class _Reader:
         self.file = file
         self.packages = packages
         self.warnings: list[str] = []
-        mujoco = import_package("mujoco")
         try:
             root = ElementTree.parse(file).getroot()
         except OSError as error:
@@ -49,15 +50,22 @@ class _Reader:
             raise scene_error("", "", str(error), "an XML file", file=str(file)) from None
         if root.tag not in ("robot", "mujoco"):
             raise scene_error("", "", f"<{root.tag}>", "<robot> (URDF) or <mujoco> (MJCF)", file=str(file))
+        mujoco = import_package("mujoco")
         self.urdf = root if root.tag == "robot" else None
         try:
             self.spec = mujoco.MjSpec.from_file(str(file))
             self.spec.compiler.fusestatic = False
+            self.name_all(self.spec.bodies[1:], "body")
+            self.name_all(self.spec.joints, "joint")
             for mesh in self.spec.meshes:
                 mesh.file = self.found(mesh.file)
                 mesh.maxhullvert = _CORNERS if mesh.maxhullvert < 0 else mesh.maxhullvert
             if self.urdf is not None:
                 self.spec.strippath = False
+                for name, mimic in self.urdf_mimics(self.urdf):
+                    if mimic[0] == name:
+                        expected = "the name of another joint"
+                        raise scene_error(f"joint '{name}'", "mimic", f"'{name}'", expected, file=str(self.file))
             self.model = self.spec.compile()
         except ValueError as error:
             if hasattr(error, "found"):
@@ -67,9 +75,28 @@ class _Reader:
     def warn(self, element: str, name: str, what: str) -> None:
         self.warnings.append(f"{element} '{name}': {what}" if name else f"{element}: {what}")
 
+    @staticmethod
+    def name_all(items: Sequence[Any], kind: str) -> None:
+        """Names the items without name by kind and number, such as "joint_0"."""
+        names = {item.name for item in items}
+        for number, item in enumerate(items):
+            if not item.name:
+                item.name = f"{kind}_{number}"
+                while item.name in names:
+                    item.name += "_"
+
     def found(self, file: str) -> str:
         """Path of the file of a mesh."""
+        if not file:
+            return file  # the MJCF file contains the corners
+        if Path(file).suffix.lower() not in _MESHES:
+            raise scene_error(
+                "mesh", "filename", f"'{file}'", f"a file of the type {', '.join(_MESHES)}", file=str(self.file)
+            )
         if not file.startswith(_PACKAGE):
+            folder = self.file.parent / self.spec.meshdir
+            if not any(path.is_file() for path in (folder / file, folder / Path(file).name)):
+                raise scene_error("mesh", "filename", f"'{file}', which does not exist", "a file", file=str(self.file))
             return file
         package, _, rest = file.removeprefix(_PACKAGE).partition("/")
         folders = [self.packages[package]] if package in self.packages else self.package_folders(package)
@@ -218,7 +245,13 @@ class _Reader:
             )
         elif damping or friction or model.jnt_stiffness[j] or model.jnt_limited[j]:
             self.warn("joint", name, "limits, stiffness, damping and friction of ball joints are not supported")
-        for column, value in (("armature", model.dof_armature[dof]), ("margin", model.jnt_margin[j])):
+        columns = [("armature", model.dof_armature[dof]), ("margin", model.jnt_margin[j])]
+        # Columns of version 4 of the package.
+        later = (("jnt_stiffnesspoly", j), ("jnt_springyield", j), ("dof_dampingpoly", dof), ("jnt_actgravcomp", j))
+        for column, row in later:
+            if (values := getattr(model, column, None)) is not None:
+                columns.append((column.partition("_")[2], float(np.abs(values[row]).max())))
+        for column, value in columns:
             if value != 0:
                 self.warn("joint", name, f"{column} {value:g} is not simulated")
         limited = has_axis and bool(model.jnt_limited[j])
@@ -239,7 +272,7 @@ class _Reader:
         """The joints with the motors of the file. A URDF has a motor for each joint with an effort limit."""
         if self.urdf is not None:
             speed = {
-                joint.get("name"): float(limit.get("velocity", "inf")) or math.inf
+                joint.get("name"): self.fastest(joint.get("name", ""), limit.get("velocity", "inf"))
                 for joint in self.urdf.iter("joint")
                 if (limit := joint.find("limit")) is not None
             }
@@ -261,6 +294,13 @@ class _Reader:
             else:
                 of_name[of_joint.name] = replace(of_joint, drive=motor[0], strength=motor[1])
         return list(of_name.values())
+
+    def fastest(self, joint: str, text: str) -> float:
+        """The speed limit of a joint in a URDF, where 0 means that there is none."""
+        try:
+            return float(text) or math.inf
+        except ValueError:
+            raise scene_error(f"joint '{joint}'", "velocity", f"'{text}'", "a number", file=str(self.file)) from None
 
     def target_of(self, a: int) -> str | None:
         """Name of the joint of an actuator."""
@@ -310,6 +350,10 @@ class _Reader:
                 raise scene_error(
                     f"joint '{name}'", "mimic", f"'{mimic[0]}'", "the name of a hinge or slider", file=str(self.file)
                 )
+        if self.urdf is None:
+            for joint in joints:
+                if joint.drive is not None and joint.name in mimics:
+                    self.warn("actuator", f"of joint {joint.name}", "joints that an equality couples have no motor")
         return [
             replace(joint, mimic=mimics[joint.name], drive=None) if joint.name in mimics else joint for joint in joints
         ]
@@ -350,6 +394,12 @@ class _Reader:
                 self.warn("body", model.body(b).name, "gravcomp is not simulated")
             if model.body_mocapid[b] >= 0:
                 self.warn("body", model.body(b).name, "mocap bodies stay fixed")
+        option = self.spec.option
+        if self.urdf is None and not np.array_equal(option.gravity, (0, 0, -9.81)):
+            self.warn("option", "gravity", "is not read; set the gravity of the world or scene")
+        for name in ("wind", "density", "viscosity"):
+            if np.any(getattr(option, name)):
+                self.warn("option", name, "forces of a fluid are not simulated")
         default = ((1, 0.005, 0.0001), (0.02, 1), (0.9, 0.95, 0.001, 0.5, 2))
         given = (model.geom_friction, model.geom_solref, model.geom_solimp)
         if any(len(rows) and not np.allclose(rows, value) for rows, value in zip(given, default, strict=True)):
