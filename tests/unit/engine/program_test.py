@@ -287,6 +287,12 @@ class ProgramTest(ProgramCase):
         for name in steps:  # the same run gives the same bytes
             self.assertEqual((self.folder / "again" / name).read_bytes(), (self.folder / "steps" / name).read_bytes())
 
+    def test_the_summary_of_exported_problems_names_rollers(self):
+        scene = self.write("rolls.json", {**SCENE, "seconds": 0.01, "bodies": [
+            {**SCENE["bodies"][0], "dynamics": "explicit", "pin": {"nodes": [0], "axes": ["x"]}}]})
+        said = self.skerry("run", scene, "--export-problems", self.folder / "rolls").stdout
+        self.assertIn("nodes on rollers", said)
+
     def test_exporting_changes_nothing(self):
         hashes = []
         for flags in ([], ["--export-problems", self.folder / "problems", "--export-every", 7]):
