@@ -1,6 +1,7 @@
 // Materials that yield: stresses in closed form, energy, stability, saving, changes and refusals.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <sstream>
 
 #include "tests/support/element_kinds.h"
 #include "tests/support/temporary_folder.h"
@@ -201,6 +202,20 @@ TEST_CASE("a body that is reset after plastic flow deforms as a new one", "[scen
     const Mat3 F = axial(-0.1, 0.2), expected = fresh.kirchhoff(F);
     CHECK((used.kirchhoff(F) - expected).norm() < 1e-8 * expected.norm());
     CHECK(used.plastic_strain() == Approx(fresh.plastic_strain()).epsilon(1e-9));
+}
+
+TEST_CASE("a trace shows the plastic flow of worlds with a material that yields", "[scene]") {
+    for (const bool yields : {true, false}) {
+        MaterialSettings material = metal();
+        if (!yields) material.plasticity.reset();
+        World world({.gravity = Vec3::Zero()});
+        world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = world.add_material(material)});
+        world.set_tracing(true);
+        REQUIRE(world.advance(1e-4).ok());
+        std::ostringstream trace;
+        world.write_trace(trace);
+        CHECK((trace.str().find("dynamics/yield_elements") != std::string::npos) == yields);
+    }
 }
 
 TEST_CASE("plasticity is refused where it does not act, and only its values change", "[scene]") {
