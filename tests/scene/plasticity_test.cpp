@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
+#include "skerry/error.h"
 #include "tests/support/element_kinds.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
@@ -240,7 +241,14 @@ TEST_CASE("plasticity is refused where it does not act, and only its values chan
     CHECK(world.dynamics_choice(body).reason == DynamicsReason::plasticity);
     MaterialSettings next = metal();
     next.plasticity.reset();
-    CHECK_THROWS_WITH(world.set_material(material, next), Contains("neither appear nor vanish"));
+    try {
+        world.set_material(material, next);
+        FAIL("a material lost its plasticity");
+    } catch (const SceneError& error) {
+        CHECK(error.complaint().found == "no plasticity");
+        CHECK(error.complaint().expected == "plasticity");
+        CHECK_THAT(error.complaint().hint, Contains("add a new material"));
+    }
     std::vector<Vec3> shape;
     for (const Vec3& x : mesh.nodes) shape.emplace_back(axial(0.3, -0.14) * x);
     world.set_positions(body, shape);
