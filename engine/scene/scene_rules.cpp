@@ -40,8 +40,7 @@ MaterialSettings law_of(const OrthotropicModuli& moduli, const MaterialSettings&
 }
 template <class Entry>
 struct LawBy {};
-/// The constitutive laws that the key "model" can give.
-struct LawByName {};
+struct LawByName {};  // laws that the key "model" can give
 std::string_view no_hint(std::string_view) {
     return {};
 }
