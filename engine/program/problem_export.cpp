@@ -43,10 +43,9 @@ public:
         : folder_(folder), scene_(scene), of_(options.problems_of), every_(options.problems_every) {}
 
     void open(World& world, const RunStart& start) override {
+        const auto rolls = [&](AttachmentHandle attachment) { return !world.directions(attachment).empty(); };
         joined_ = !Joints(world).all().empty() || !Ties(world).all().empty() || !Cables(world).all().empty() ||
-                  std::ranges::any_of(world.attachments(), [&world](AttachmentHandle attachment) {
-                      return !world.directions(attachment).empty();
-                  });
+                  std::ranges::any_of(world.attachments(), rolls);
         const auto take = [this, &world](const StepProblem& step) {
             try {
                 write_step(step);
@@ -80,7 +79,7 @@ private:
     std::string scene_;
     ProblemsOf of_;
     std::optional<int> every_;  // number of steps between two exported steps
-    bool joined_ = false;       // true if the world has joints, ties, cables or rollers
+    bool joined_ = false;       // true if the world has joints, ties, nodes on rollers or cables
     long files_ = 0, steps_ = 0;
     double seconds_ = 0;  // wall time of the export [s]
     std::exception_ptr failure_;

@@ -40,6 +40,7 @@ MaterialSettings law_of(const OrthotropicModuli& moduli, const MaterialSettings&
 }
 template <class Entry>
 struct LawBy {};
+struct LawByName {};  // laws that the key "model" can give
 std::string_view no_hint(std::string_view) {
     return {};
 }
@@ -117,6 +118,22 @@ struct Value<LawBy<Entry>> {
         called_at(place, [&] { out = law_of(entry, out); });
     }
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<Entry>::schema(book, doc); }
+};
+
+/// Reads the name of a law. The law "orthotropic" has elastic constants of its own, so its own key gives it.
+template <>
+struct Value<LawByName> {
+    static void read(const Json& json, const Place& place, const KeyDoc& doc, MaterialSettings& out) {
+        Value<MaterialModel>::read(json, place, doc, out.model);
+        if (out.model == MaterialModel::orthotropic)
+            place.refuse(json.dump(), "another constitutive law",
+                         "replace the key by \"orthotropic\": {...}, which sets the law and its elastic constants");
+    }
+    static Json schema(SchemaBook&, const KeyDoc&) {
+        std::vector<std::string> names = Value<MaterialModel>::names();
+        std::erase(names, name_of(MaterialModel::orthotropic));
+        return enum_schema(names);
+    }
 };
 
 template <>
@@ -317,7 +334,7 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
             .key("bulk_viscosity", &M::bulk_viscosity,
                  {.meaning = "damping ratio of volume changes at the highest natural frequency of an element",
                   .limits = within(0, largest_bulk_viscosity)})
-            .key("model", &M::model, {.meaning = "constitutive law"})
+            .preset<LawByName>("model", {.meaning = "constitutive law"})
             .key("plasticity", &M::plasticity, {.meaning = "yield of the law \"hencky\"; for explicit bodies"})
             .preset<LawBy<OgdenEntry>>("ogden",
                                        {.meaning = "law of Ogden for rubber; sets the model and the elastic moduli"})

@@ -77,6 +77,8 @@ def test_orthotropic_constants() -> None:
     assert body.material.settings == wood
     with pytest.raises(sk.SceneError, match=r"poisson_ratio\[0\]: found 9"):
         sk.orthotropic(sk.OrthotropicModuli(poisson_ratio=(9, 0.3, 0.3)))
+    with pytest.raises(sk.SceneError, match="orthotropic: found no elastic constants"):
+        world.add_material(model="orthotropic", young_modulus=1e9)
 
 
 def test_an_unknown_name_is_refused_with_the_names():

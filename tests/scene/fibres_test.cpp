@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/world/world_state.h"
+#include "skerry/relax.h"
 #include "skerry/scene.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/temporary_folder.h"
@@ -316,6 +317,26 @@ TEST_CASE("fibres that cannot be are refused by field, and change nothing", "[sc
     refused({.tetrahedra = {0, 0}}, "tetrahedra: found tetrahedron 0");
     refused({.tetrahedra = {100000}}, "tetrahedron 100000");
     CHECK_THROWS_WITH(fibres.set_tension(muscle.fibres, -1), Contains("tension"));
+}
+
+TEST_CASE("load steps relax a muscle to the stretch of its whole tension", "[scene][fibres]") {
+    const auto stretch_after = [](int load_steps) {
+        Muscle muscle(along_z(2e3), soft(60));
+        std::vector<Real> loads;
+        const RelaxReport report =
+            relax(muscle.world, {.tolerance = 1e-4, .load_steps = load_steps}, [&](const RelaxReport& now) {
+                if (loads.empty() || loads.back() != now.load) loads.push_back(now.load);
+                return true;
+            });
+        CHECK(report.converged);
+        CHECK(report.load == 1);
+        CHECK(loads.size() == static_cast<std::size_t>(load_steps));
+        const FibreState state = muscle.state();
+        CHECK(state.tension == 2e3);
+        CHECK(state.stretch[0] < 0.96);
+        return state.stretch[0];
+    };
+    CHECK(stretch_after(3) == Approx(stretch_after(1)).epsilon(1e-4));
 }
 
 TEST_CASE("a scene gives fibres by set, and directions by an array of the mesh file", "[scene][fibres]") {

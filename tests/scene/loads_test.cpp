@@ -130,6 +130,33 @@ TEST_CASE("drag gives the terminal velocity exactly and the decay to first order
     }
 }
 
+TEST_CASE("drag slows the rotation of rigid bodies with given masses", "[scene]") {
+    constexpr Real rate = 2;
+    World world(weightless(1e-3));
+    BodySettings settings{.material = world.add_material({}),
+                          .angular_velocity = {0, 0, 3},
+                          .dynamics = BodyDynamics::rigid,
+                          .mass = 1,
+                          .inertia = Mat3(Vec3(0.02, 0.03, 0.04).asDiagonal())};
+    // The centre is in the middle of the nodes, or so far away that nodes have negative masses.
+    std::vector<BodyHandle> bodies;
+    for (const Real x : {0.0, 1.0}) {
+        settings.center_of_mass = Vec3(x, 0, 0);
+        settings.position = {0, 3 * x, 0};
+        bodies.push_back(world.add_body(cube, settings));
+    }
+    const Vec3 wind(1, 0, 0.5);
+    Loads(world).add(DragField{.rate = rate, .wind = wind});
+    REQUIRE(world.advance(0.5).ok());
+    const Real decay = std::exp(-rate * 0.5);
+    for (const BodyHandle body : bodies) {
+        // The error of the scheme is in proportion to rate times step.
+        CHECK((world.velocity(body).angular_velocity - decay * Vec3(0, 0, 3)).norm() < 3e-3 * decay * 3);
+    }
+    const Vec3 start = Vec3(0, 0, 0);
+    CHECK((world.velocity(bodies[1]).velocity - (wind + decay * (start - wind))).norm() < 3e-3);
+}
+
 TEST_CASE("drag shortens the stable step as the quadratic inequality says", "[scene]") {
     Flight flight(weightless(), BodyDynamics::explicit_elastic, lossless({}));
     const Real free = flight.world.stable_step();

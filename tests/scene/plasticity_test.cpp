@@ -1,7 +1,9 @@
 // Materials that yield: stresses in closed form, energy, stability, saving, changes and refusals.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <sstream>
 
+#include "skerry/error.h"
 #include "tests/support/element_kinds.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
@@ -203,6 +205,20 @@ TEST_CASE("a body that is reset after plastic flow deforms as a new one", "[scen
     CHECK(used.plastic_strain() == Approx(fresh.plastic_strain()).epsilon(1e-9));
 }
 
+TEST_CASE("a trace shows the plastic flow of worlds with a material that yields", "[scene]") {
+    for (const bool yields : {true, false}) {
+        MaterialSettings material = metal();
+        if (!yields) material.plasticity.reset();
+        World world({.gravity = Vec3::Zero()});
+        world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = world.add_material(material)});
+        world.set_tracing(true);
+        REQUIRE(world.advance(1e-4).ok());
+        std::ostringstream trace;
+        world.write_trace(trace);
+        CHECK((trace.str().find("dynamics/yield_elements") != std::string::npos) == yields);
+    }
+}
+
 TEST_CASE("plasticity is refused where it does not act, and only its values change", "[scene]") {
     using Catch::Contains;
     World world({.gravity = Vec3::Zero()});
@@ -225,7 +241,14 @@ TEST_CASE("plasticity is refused where it does not act, and only its values chan
     CHECK(world.dynamics_choice(body).reason == DynamicsReason::plasticity);
     MaterialSettings next = metal();
     next.plasticity.reset();
-    CHECK_THROWS_WITH(world.set_material(material, next), Contains("neither appear nor vanish"));
+    try {
+        world.set_material(material, next);
+        FAIL("a material lost its plasticity");
+    } catch (const SceneError& error) {
+        CHECK(error.complaint().found == "no plasticity");
+        CHECK(error.complaint().expected == "plasticity");
+        CHECK_THAT(error.complaint().hint, Contains("add a new material"));
+    }
     std::vector<Vec3> shape;
     for (const Vec3& x : mesh.nodes) shape.emplace_back(axial(0.3, -0.14) * x);
     world.set_positions(body, shape);

@@ -47,6 +47,7 @@ public:
 
     /// Adds fibres. Stiff fibres shorten the step of the world.
     FibreHandle add(const FibreSettings& fibres);
+    BodyHandle body(FibreHandle fibres) const;
     FibreState state(FibreHandle fibres) const;
     /// Settings of the fibres, with a direction for each tetrahedron.
     FibreSettings settings(FibreHandle fibres) const;

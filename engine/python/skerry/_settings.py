@@ -26,6 +26,7 @@ from ._arrays import (
     time_table,
     vector,
 )
+from ._errors import scene_error
 
 Integrator: TypeAlias = Literal["symplectic_euler", "leapfrog"]
 Backend: TypeAlias = Literal["tbb", "openmp", "threads", "serial", "automatic"]
@@ -167,6 +168,9 @@ class OrthotropicModuli:
         _make_vectors(self, "young_modulus", "poisson_ratio", "shear_modulus", "first_axis", "second_axis")
 
 
+_no_moduli = OrthotropicModuli()  # default of Material.orthotropic
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plasticity:
     """Plasticity of von Mises with isotropic hardening.
@@ -215,11 +219,15 @@ class Material:
     bulk_viscosity: float = 0.06
     model: MaterialModel = "stable_neo_hookean"
     terms: tuple[tuple[float, float], ...] = ((1.0, 2.0),)
-    orthotropic: OrthotropicModuli = OrthotropicModuli()
+    orthotropic: OrthotropicModuli = _no_moduli
     plasticity: Plasticity | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "terms", tuple((share, exponent) for share, exponent in self.terms))
+        if self.model == "orthotropic" and self.orthotropic is _no_moduli:
+            raise scene_error(
+                "material", "orthotropic", "no elastic constants", 'those of the law "orthotropic"', "use orthotropic()"
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -51,6 +51,8 @@ void bind_fibres(WorldClass& type) {
     bind_view<FibreHandle>(type, "fibres_of_world");
     type.def("add_fibres", guarded(&add_fibres))
         .def("fibre_settings", guarded(settings_of_fibres))
+        .def("fibre_body",
+             guarded([](World& world, const FibreHandle& fibres) { return object_of(Fibres(world).body(fibres)); }))
         .def("fibre_state",
              guarded([](World& world, const FibreHandle& fibres) { return values_of(Fibres(world).state(fibres)); }))
         .def("set_tension", guarded([](World& world, const FibreHandle& fibres, const TensionPairs& tension) {

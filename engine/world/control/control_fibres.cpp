@@ -129,6 +129,11 @@ FibreHandle Fibres::add(const FibreSettings& fibres) {
     return handle;
 }
 
+BodyHandle Fibres::body(FibreHandle fibres) const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    return handle_of_body(model, model.fibres.body[static_cast<std::size_t>(model.row(fibres, "body"))]);
+}
+
 FibreState Fibres::state(FibreHandle fibres) const {
     const WorldState& world = WorldAccess::state_of(*world_);
     const Model& model = world.model;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/material_row.h"
@@ -100,8 +101,13 @@ void weigh(Model& model, std::size_t body) {
 void require_changeable(const Model& model, const MaterialRow& now, const MaterialRow& next,
                         std::span<const std::size_t> bodies) {
     if (now.constants.yields() != next.constants.yields())
-        refuse("material", "plasticity", next.constants.yields() ? "a material that yields" : "none",
-               "the plasticity of an existing material may change, but neither appear nor vanish; add a new material");
+        Complaint{.file = {},
+                  .object = "material",
+                  .field = "plasticity",
+                  .found = next.constants.yields() ? "plasticity" : "no plasticity",
+                  .expected = now.constants.yields() ? "plasticity" : "no plasticity",
+                  .hint = "add a new material; the plasticity of an existing one can change, but not appear or vanish"}
+            .raise();
     const auto flowed = std::ranges::find_if(bodies, [&](std::size_t body) { return has_flowed(model, body); });
     if (flowed != bodies.end() && !now.same_elements(next))
         refuse("material", "young_modulus, poisson_ratio, density, losses",

@@ -141,6 +141,8 @@ void keep_frames(WorldState& world) {
 void flow(WorldState& world) {
     ElementInputs moved = world.model.awake_elements();
     if (world.model.any_asleep) moved.body_asleep = world.transaction.rested(world.model.bodies);
+    const bool yields = std::ranges::any_of(world.model.materials.constants, &MaterialConstants::yields);
+    const TraceZone zone(world.record.tracing && yields ? &world.record.trace : nullptr, "dynamics/yield_elements");
     world.scratch.findings.plastic = yield_blocks(world, moved, world.model.all_blocks());
 }
 

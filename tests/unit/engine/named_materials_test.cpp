@@ -96,6 +96,21 @@ TEST_CASE("a scene gives the moduli of rubber as papers do", "[unit]") {
                       Catch::Contains("no key \"c01\""));
 }
 
+TEST_CASE("a scene gives the law \"orthotropic\" with its elastic constants only", "[unit]") {
+    const TemporaryFolder folder;
+    const auto planned = [&](const std::string& keys) {
+        return plan_scene(folder.write("m.json", material_with(keys))).materials.at(0).second;
+    };
+    const std::string constants =
+        R"("orthotropic": {"young_modulus": [2e6, 1e6, 1e6], "poisson_ratio": [0.3, 0.3, 0.3],
+                           "shear_modulus": [4e5, 4e5, 4e5]})";
+    CHECK(planned(constants).model == MaterialModel::orthotropic);
+    CHECK_THROWS_WITH(planned(R"("model": "orthotropic", "E": 1e9)"),
+                      Catch::Contains("model: found \"orthotropic\", expected another constitutive law") &&
+                          Catch::Contains("replace the key by \"orthotropic\""));
+    CHECK_THROWS_WITH(planned(R"("model": "hencky", )" + constants), Catch::Contains("at most one"));
+}
+
 TEST_CASE("a scene gives the plasticity of a material, and named metals list their yield stress", "[unit]") {
     const TemporaryFolder folder;
     const auto planned = [&](const std::string& keys) {

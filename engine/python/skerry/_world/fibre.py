@@ -102,5 +102,5 @@ class WorldFibres:
         return ObjectList(self._new_fibres(handle) for handle in self._core.fibres_of_world())
 
     def _new_fibres(self, handle: Any) -> FibreFamily:
-        body = self._core.name(self._core.fibre_state(handle)["body"])
+        body = self._core.name(self._core.fibre_body(handle))
         return FibreFamily(cast("World", self), handle, f"fibres in body '{body}'")

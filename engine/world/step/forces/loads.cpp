@@ -1,6 +1,9 @@
 // Force element for loads and force fields.
+#include <algorithm>
+
 #include "engine/world/step/seams.h"
 #include "systems/forces/add_loads.h"
+#include "systems/forces/drag_couples.h"
 
 namespace skerry {
 
@@ -17,6 +20,11 @@ void add_load_stages(WorldState& w, TaskGraph& g) {
     const auto if_any = only_if([](std::span<const Index> body) { return !body.empty(); }, read(m.loads.body));
     g.stage("forces/add_loads", add_loads, inputs<LoadInputs>(m.loads, m.bodies, m.nodes, p.gravity, p.intervals),
             make(s.fields), write(m.nodes.applied_force), if_any);
+    const auto if_drag =
+        only_if([](std::span<const LoadKind> kind) { return std::ranges::find(kind, LoadKind::drag) != kind.end(); },
+                read(m.loads.kind));
+    g.stage("forces/add_drag_couples", add_drag_couples, inputs<DraggedBodies>(m.rigid_bodies, m.bodies, m.nodes),
+            read(s.fields), write(m.nodes.applied_force), if_drag);
 }
 
 void list_driven_loads(WorldState& w, TaskGraph& g) {

@@ -1,0 +1,43 @@
+// Drag of the rotation of rigid bodies (docs/methods/loads.md).
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+#include "components/node_table.h"
+#include "components/rigid_body_table.h"
+#include "components/types.h"
+#include "jobs/access.h"
+#include "systems/forces/add_loads.h"
+
+namespace skerry {
+
+struct DraggedBodies {
+    std::span<const Index> body;                     // BodyTable row of each rigid or implicit body
+    std::span<const Vec3> center, angular_momentum;  // [m], [kg m^2/s]
+    // Columns of BodyTable and NodeTable:
+    std::span<const Range> body_nodes, body_implicit;
+    std::span<const Real> mass;                // [kg]
+    std::span<const Vec3> position, velocity;  // at the start of the step [m, m/s]
+
+    static DraggedBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& body,
+                              const NodeTable& node) {
+        return {.body = binder.read(rigid.body),
+                .center = binder.read(rigid.center),
+                .angular_momentum = binder.read(rigid.angular_momentum),
+                .body_nodes = binder.read(body.nodes),
+                .body_implicit = binder.read(body.implicit),
+                .mass = binder.read(node.mass),
+                .position = binder.read(node.position),
+                .velocity = binder.read(node.velocity)};
+    }
+};
+
+/// Adds couples to the drag of rigid bodies in `applied_force`, by node [N], so that its moment about the centre of
+/// mass is -drag L with the angular momentum L. The moment of add_loads() contains the inertia of the nodes instead of
+/// that of the body, and speeds up rotation if masses of nodes are negative. The forces of a couple have no sum. Nodes
+/// on a line can bear no couple along it. `fields`: from add_loads(). Returns false if there is no rigid or implicit
+/// body.
+bool add_drag_couples(const DraggedBodies& bodies, std::span<const BodyField> fields, std::span<Vec3> applied_force);
+
+}  // namespace skerry
