@@ -30,6 +30,11 @@ void validate(const SurfaceSettings& surface, const std::string& object);
 /// Throws a SceneError whose message consists of these parts.
 [[noreturn]] void refuse(const std::string& object, const char* field, const std::string& found,
                          const std::string& expected);
+/// Refuses a number that is not good or not finite.
+void require(bool good, const std::string& object, const char* field, Real found, const char* expected);
+/// Text of a number or a vector in messages.
+std::string shown(Real value);
+std::string shown(const Vec3& value);
 /// Checks that the three components of a field of `object` are finite.
 void require_finite(const std::string& object, const char* field, const Vec3& found);
 /// Checks that the keys of a field of `object` are finite and have ascending times, and that there is a key.

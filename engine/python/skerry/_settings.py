@@ -8,25 +8,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, Generic, Literal, TypeAlias, TypeVar
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import (
-    RotationLike,
     TimeTable,
     TimeTableLike,
-    Vector,
-    VectorLike,
     index_array,
     read_only,
     real_array,
-    rotation,
     time_table,
-    vector,
 )
 from ._errors import scene_error
+from ._fields import Field, RotationField, VectorField, held, make_keys, make_rotation, make_vectors
 
 Integrator: TypeAlias = Literal["symplectic_euler", "leapfrog"]
 Backend: TypeAlias = Literal["tbb", "openmp", "threads", "serial", "automatic"]
@@ -41,51 +37,6 @@ JointKind: TypeAlias = Literal["ball", "hinge", "slider", "fixed"]
 TieKind: TypeAlias = Literal["weld", "slide"]
 CavityLaw: TypeAlias = Literal["pressure", "gas", "liquid"]
 SpringSide: TypeAlias = Literal["both", "tension", "compression"]
-
-Given = TypeVar("Given", contravariant=True)
-Held = TypeVar("Held", covariant=True)
-
-
-class Field(Generic[Given, Held]):
-    """Tells type checkers that a field is set to one type and holds another. No object of this class is made."""
-
-    def __get__(self, instance: object, owner: object) -> Held:
-        raise NotImplementedError
-
-    def __set__(self, instance: object, value: Given) -> None:
-        raise NotImplementedError
-
-
-VectorField: TypeAlias = Field[VectorLike, Vector]
-RotationField: TypeAlias = Field[RotationLike, Vector]
-
-
-def held(default: Any) -> Any:
-    """A default value of a Field."""
-    return default
-
-
-def _make_vectors(record: object, *names: str) -> None:
-    """Replaces array-likes in the fields of a new record by tuples of three numbers."""
-    for name in names:
-        object.__setattr__(record, name, vector(getattr(record, name), f"{type(record).__name__}.{name}"))
-
-
-def _make_rotation(record: object) -> None:
-    given = getattr(record, "rotation")
-    object.__setattr__(record, "rotation", rotation(given, f"{type(record).__name__}.rotation"))
-
-
-def _make_keys(record: object, kind: type) -> None:
-    """Replaces the sequence in the field `keys` of a new record by a tuple of records of the given class."""
-    keys: Iterable[Any] = getattr(record, "keys")
-    place = f"{type(record).__name__}.keys"
-    if isinstance(keys, kind):
-        raise TypeError(f"{place}: found one {kind.__name__}, expected a list of them")
-    object.__setattr__(record, "keys", tuple(keys))
-    for number, key in enumerate(getattr(record, "keys")):
-        if not isinstance(key, kind):
-            raise TypeError(f"{place}[{number}]: found {key!r}, expected a {kind.__name__}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,7 +94,7 @@ class Settings:
     continuous_collision: bool = True
 
     def __post_init__(self) -> None:
-        _make_vectors(self, "gravity")
+        make_vectors(self, "gravity")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -165,7 +116,7 @@ class OrthotropicModuli:
     second_axis: VectorField = held((0.0, 1.0, 0.0))
 
     def __post_init__(self) -> None:
-        _make_vectors(self, "young_modulus", "poisson_ratio", "shear_modulus", "first_axis", "second_axis")
+        make_vectors(self, "young_modulus", "poisson_ratio", "shear_modulus", "first_axis", "second_axis")
 
 
 _no_moduli = OrthotropicModuli()  # default of Material.orthotropic
@@ -259,7 +210,7 @@ class Plane:
     point: VectorField = held((0.0, 0.0, 0.0))
 
     def __post_init__(self) -> None:
-        _make_vectors(self, "normal", "point")
+        make_vectors(self, "normal", "point")
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,7 +233,7 @@ class Box:
     size: VectorField = held((1.0, 1.0, 1.0))
 
     def __post_init__(self) -> None:
-        _make_vectors(self, "size")
+        make_vectors(self, "size")
 
 
 @dataclass(frozen=True, slots=True)
@@ -372,8 +323,8 @@ class Pose:
     rotation: RotationField = held((0.0, 0.0, 0.0))
 
     def __post_init__(self) -> None:
-        _make_vectors(self, "position")
-        _make_rotation(self)
+        make_vectors(self, "position")
+        make_rotation(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -390,8 +341,8 @@ class MotionKey:
     rotation: RotationField = held((0.0, 0.0, 0.0))
 
     def __post_init__(self) -> None:
-        _make_vectors(self, "position")
-        _make_rotation(self)
+        make_vectors(self, "position")
+        make_rotation(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -408,8 +359,8 @@ class Motion:
     keys: Field[Iterable[MotionKey], tuple[MotionKey, ...]] = held(())
 
     def __post_init__(self) -> None:
-        _make_vectors(self, "velocity", "angular_velocity")
-        _make_keys(self, MotionKey)
+        make_vectors(self, "velocity", "angular_velocity")
+        make_keys(self, MotionKey)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -460,7 +411,7 @@ class Motor:
     keys: Field[Iterable[MotorKey], tuple[MotorKey, ...]] = held(())
 
     def __post_init__(self) -> None:
-        _make_keys(self, MotorKey)
+        make_keys(self, MotorKey)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

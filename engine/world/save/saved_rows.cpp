@@ -14,17 +14,6 @@ namespace skerry {
 
 namespace {
 
-template <class T>
-void append(std::span<const T> row, Ragged<T>& rows) {
-    if (rows.offset.empty()) rows.offset.push_back(0);
-    for (const T& item : row) rows.item.push_back(item);
-    rows.offset.push_back(static_cast<Index>(rows.item.size()));
-}
-
-void append_text(const std::string& text, Ragged<std::uint8_t>& rows) {
-    append(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()), rows);
-}
-
 std::string text_of(std::span<const std::uint8_t> row) {
     return {row.begin(), row.end()};
 }

@@ -11,12 +11,6 @@ namespace skerry {
 
 namespace {
 
-template <class T>
-void append_row(std::span<const T> row, Ragged<T>& rows) {
-    for (const T& item : row) rows.item.push_back(item);
-    rows.offset.push_back(static_cast<Index>(rows.item.size()));
-}
-
 void expect_set_rows(const SavedFile& file, const std::string& path, const auto& rows, std::size_t expected) {
     expect_size(file, path + "/offset", rows.offset.size(), expected + 1);
     expect_all_offsets(file, path + "/offset", rows.offset, rows.item.size());
@@ -32,13 +26,13 @@ SavedSets sets_to_save(const Model& model) {
     for (std::size_t b = 0; b < model.body_records.size(); ++b) {
         const BodyRecord& record = model.body_records[b];
         const std::vector<Index> label(record.label.begin(), record.label.end());
-        append_row(std::span(label), saved.label);
+        append(std::span(label), saved.label);
         for (const auto& [name, set] : record.sets) {
             saved.body.push_back(static_cast<Index>(b));
-            append_row(std::span(reinterpret_cast<const std::uint8_t*>(name.data()), name.size()), saved.name);
-            append_row(std::span(set.nodes), saved.nodes);
-            append_row(std::span(set.tetrahedra), saved.tetrahedra);
-            append_row(std::span(set.faces), saved.faces);
+            append_text(name, saved.name);
+            append(std::span(set.nodes), saved.nodes);
+            append(std::span(set.tetrahedra), saved.tetrahedra);
+            append(std::span(set.faces), saved.faces);
         }
     }
     return saved;

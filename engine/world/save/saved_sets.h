@@ -3,12 +3,25 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <string>
 
 #include "components/ragged.h"
 #include "engine/world/save/saved_file.h"
 #include "engine/world/state/model.h"
 
 namespace skerry {
+
+/// Appends a list to a list of lists.
+template <class T>
+void append(std::span<const T> row, Ragged<T>& rows) {
+    if (rows.offset.empty()) rows.offset.push_back(0);
+    for (const T& item : row) rows.item.push_back(item);
+    rows.offset.push_back(static_cast<Index>(rows.item.size()));
+}
+inline void append_text(const std::string& text, Ragged<std::uint8_t>& rows) {
+    append(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()), rows);
+}
 
 struct SavedSets {
     Ragged<Index> label;        // BodyRecord::label

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from .. import _core
 from .._arrays import checked, vector
-from .._settings import VectorField, held
+from .._fields import VectorField, held
 
 if TYPE_CHECKING:
     from .body import Body

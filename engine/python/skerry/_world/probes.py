@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from .. import _core
 from .._arrays import Vector, VectorLike, checked, index_array, name_text, real_array
-from .._settings import Field, held
+from .._fields import Field, held
 
 if TYPE_CHECKING:
     from .body import Attachment, Body
