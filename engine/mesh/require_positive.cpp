@@ -102,6 +102,52 @@ std::string crossing_of(const SurfaceMesh& surface) {
     return found;
 }
 
+/// Sign of the side of the line through `p` and `q` on which `x` lies, seen along the first axis. The sign of a point
+/// on the line depends on the line only, so that exactly one of two triangles at an edge contains the point.
+int side_of(const Vec3& x, const Vec3& p, const Vec3& q) {
+    const bool swapped = q.z() < p.z() || (q.z() == p.z() && q.y() < p.y());
+    const Vec3 &a = swapped ? q : p, &b = swapped ? p : q;
+    const bool left = (b.y() - a.y()) * (x.z() - a.z()) - (b.z() - a.z()) * (x.y() - a.y()) >= 0;
+    return left == swapped ? -1 : 1;
+}
+
+/// Describes the first triangle with a point behind it that lies in two volumes, or returns an empty text. It finds
+/// shells whose faces coincide where they overlap, such as aligned boxes, and shells that are within others.
+std::string doubled_volume_of(const SurfaceMesh& surface) {
+    constexpr Real depth = 1e-6;  // depth of the points, relative to the size of the surface
+    std::vector<Aabb> boxes(surface.triangles.size(), empty_box());
+    Aabb whole = empty_box();
+    for (std::size_t t = 0; t < boxes.size(); ++t)
+        for (const Index n : surface.triangles[t]) {
+            grow(boxes[t], surface.nodes[static_cast<std::size_t>(n)]);
+            grow(whole, surface.nodes[static_cast<std::size_t>(n)]);
+        }
+    const BoxTree tree(boxes);
+    const auto corner = [&](std::size_t t, std::size_t k) -> const Vec3& {
+        return surface.nodes[static_cast<std::size_t>(surface.triangles[t][k])];
+    };
+    for (std::size_t t = 0; t < boxes.size(); ++t) {
+        const Vec3 &a = corner(t, 0), &b = corner(t, 1), &c = corner(t, 2);
+        const Vec3 normal = (b - a).cross(c - a).normalized();
+        if (normal.isZero()) continue;
+        const Vec3 x = 0.41 * a + 0.35 * b + 0.24 * c - depth * (whole.upper - whole.lower).norm() * normal;
+        Aabb ray = empty_box();
+        grow(ray, x);
+        grow(ray, Vec3(x.x() + 2 * (whole.upper - whole.lower).norm(), x.y(), x.z()));
+        int winding = 0;  // number of volumes that contain the point
+        tree.for_each_overlap(ray, [&](Index found) {
+            const auto other = static_cast<std::size_t>(found);
+            const Vec3 &p = corner(other, 0), &q = corner(other, 1), &r = corner(other, 2);
+            const int side = side_of(x, p, q);
+            if (side_of(x, q, r) != side || side_of(x, r, p) != side) return;
+            const Vec3 across = (q - p).cross(r - p);
+            if (across.dot(p - x) * across.x() > 0) winding += side;
+        });
+        if (winding > 1) return "triangle " + std::to_string(t) + ", behind which volumes overlap";
+    }
+    return {};
+}
+
 }  // namespace
 
 void require_shells(const SurfaceMesh& surface, const std::string& what, bool may_cross) {
@@ -127,12 +173,14 @@ void require_shells(const SurfaceMesh& surface, const std::string& what, bool ma
             .raise();
     }
     if (may_cross) return;
-    if (const std::string found = crossing_of(surface); !found.empty())
+    std::string found = crossing_of(surface);
+    if (found.empty()) found = doubled_volume_of(surface);
+    if (!found.empty())
         Complaint{what,
                   "mesh",
                   "triangles",
                   found,
-                  "triangles that do not cross",
+                  "shells that do not overlap",
                   "or give mass, center_of_mass and inertia, because volumes that overlap count twice"}
             .raise();
 }

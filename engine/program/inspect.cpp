@@ -304,17 +304,17 @@ int inspect_scene(const InspectOptions& options) {
         return exit_ok;
     }
     std::string joined;
-    for (const auto& [count, name] :
-         std::initializer_list<std::pair<std::size_t, const char*>>{{plan.joints.size(), "joints"},
-                                                                    {plan.ties.size(), "ties"},
-                                                                    {plan.cables.size(), "cables"},
-                                                                    {plan.cavities.size(), "cavities"},
-                                                                    {plan.pipes.size(), "pipes"},
-                                                                    {plan.loads.size(), "loads"},
-                                                                    {plan.fibres.size(), "families of fibres"},
-                                                                    {plan.springs.size(), "springs"},
-                                                                    {plan.pairs.size(), "pairs of materials"},
-                                                                    {surfaces, "surface sets"}})
+    for (const auto& [count, name] : std::initializer_list<std::pair<std::size_t, const char*>>{
+             {plan.joints.size(), "joints"},
+             {plan.ties.size(), "ties"},
+             {plan.cables.size(), "cables"},
+             {plan.cavities.size(), "cavities"},
+             {plan.pipes.size(), "pipes"},
+             {plan.loads.size(), "loads"},
+             {plan.fibres.size(), plan.fibres.size() == 1 ? "family of fibres" : "families of fibres"},
+             {plan.springs.size(), "springs"},
+             {plan.pairs.size(), "pairs of materials"},
+             {surfaces, "surface sets"}})
         if (count > 0) joined += ", " + grouped(count) + " " + name;
     std::cout << scene.name << ": " << scene.description << "\n"
               << "  bodies        " << grouped(report.bodies) << ", " << grouped(report.nodes) << " nodes, "

@@ -132,6 +132,26 @@ TEST_CASE("rows and nodes that cannot be are refused", "[unit]") {
     CHECK_THROWS_WITH(mesh::require_positive(mesh, "a"), Contains("a: node 1: position"));
 }
 
+TEST_CASE("aligned or nested shells that overlap are refused, and shells that only touch are not", "[unit]") {
+    const auto joined = [](Real size, Real shift) {
+        SurfaceMesh both = mesh::boundary(mesh::box({1, 1, 1}, {1, 1, 1}));
+        const SurfaceMesh other = mesh::boundary(mesh::box({size, size, size}, {1, 1, 1}));
+        const auto count = static_cast<Index>(both.nodes.size());
+        for (const Vec3& node : other.nodes) both.nodes.push_back(node + Vec3(shift, 0, 0));
+        for (const auto& t : other.triangles) both.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+        return both;
+    };
+    for (const auto& [size, shift] : {std::pair<Real, Real>{1, 0.5}, {0.5, 0.1}, {1, 0}}) {
+        CAPTURE(size, shift);
+        CHECK_THROWS_WITH(mesh::require_shells(joined(size, shift), "part", false),
+                          Contains("part: mesh: triangles") && Contains("volumes overlap") &&
+                              Contains("give mass, center_of_mass and inertia"));
+        CHECK_NOTHROW(mesh::require_shells(joined(size, shift), "part", true));
+    }
+    CHECK_NOTHROW(mesh::require_shells(joined(1, 1), "part", false));
+    CHECK_NOTHROW(mesh::require_shells(joined(1, 3), "part", false));
+}
+
 TEST_CASE("boundary triangles look outwards", "[unit]") {
     const SurfaceMesh surface = mesh::boundary(mesh::box({1, 1, 1}, {3, 2, 2}));
     Real volume = 0;  // by the divergence theorem
