@@ -21,11 +21,15 @@ constexpr Real most_gravity = 5000;                      // [m/s^2]
 constexpr Real most_size_ratio = 999;                    // size of the longest body over that of the shortest
 // Distance of a body from the origin as a multiple of its size, beyond which a pin hardly rotates about the origin.
 constexpr Real most_pivot_distance = 1;
+constexpr Real most_surface_size = 20;    // size of a rigid body from a surface file, as of 20 mm read as m [m]
+constexpr Real least_given_density = 1;   // mean density of a body with a given mass; hollow bodies are light [kg/m^3]
+constexpr Real least_yield_ratio = 1e-6;  // yield stress over Young's modulus
 
 struct Extent {
     Real size = 0;               // longest edge of the bounding box [m]
     Real height = 0;             // extent along the direction of gravity [m]
     Vec3 center = Vec3::Zero();  // center of the bounding box in the frame of the mesh [m]
+    Vec3 edges = Vec3::Zero();   // edges of the bounding box in the frame of the mesh [m]
 };
 
 Extent extent_of(const Mesh& mesh, const BodySettings& body, const Vec3& gravity) {
@@ -39,7 +43,7 @@ Extent extent_of(const Mesh& mesh, const BodySettings& body, const Vec3& gravity
         lowest = std::min(lowest, down.dot(node));
         highest = std::max(highest, down.dot(node));
     }
-    return {(upper - lower).maxCoeff(), highest - lowest, (lower + upper) / 2};
+    return {(upper - lower).maxCoeff(), highest - lowest, (lower + upper) / 2, upper - lower};
 }
 
 /// Formats an estimate with two digits, for example "20,000" or "3.9".
@@ -74,6 +78,46 @@ void warn_of_sag(const ScenePlan& plan, const BodyPlan& body, Real height, std::
                        " kg/m^3): is E in Pa, the density in kg/m^3, and the mesh in m (mesh.scale)?");
 }
 
+/// Volume of a mesh of tetrahedra or of a closed surface [m^3].
+Real volume_of(const Mesh& mesh) {
+    Real six_volumes = 0;
+    const Vec3& origin = mesh.nodes.front();
+    const auto edge = [&](Index n, const Vec3& from) -> Vec3 { return mesh.nodes[static_cast<std::size_t>(n)] - from; };
+    for (const auto& t : mesh.triangles)
+        six_volumes += edge(t[0], origin).dot(edge(t[1], origin).cross(edge(t[2], origin)));
+    for (const auto& t : mesh.tetrahedra) {
+        const Vec3& corner = mesh.nodes[static_cast<std::size_t>(t[0])];
+        six_volumes += edge(t[1], corner).dot(edge(t[2], corner).cross(edge(t[3], corner)));
+    }
+    return six_volumes / 6;
+}
+
+/// Warns of the size and the given mass properties of a rigid body.
+void warn_of_rigid(const BodySettings& body, const Mesh& mesh, const Extent& extent,
+                   std::vector<std::string>& warnings) {
+    if (body.dynamics != BodyDynamics::rigid || mesh.nodes.empty()) return;
+    const std::string who = "body \"" + body.name + "\"";
+    if (!mesh.triangles.empty() && extent.size > most_surface_size)
+        warnings.push_back(who + " is " + with_unit(extent.size, "m") +
+                           " long: is its surface in m? STL files have no units; for a file in millimetres set "
+                           "\"scale\": 0.001 in \"mesh\"");
+    if (!body.mass) return;
+    const Real density = *body.mass / volume_of(mesh), diagonal = extent.edges.norm();
+    if (density > most_density || density < least_given_density)
+        warnings.push_back(who + " has a mass of " + short_number(*body.mass) + " kg and a mean density of " +
+                           short_number(density, 2) + " kg/m^3: is \"mass\" in kg, and the mesh in m?");
+    if (!body.inertia || !body.center_of_mass) return;
+    const Real radius = std::sqrt(body.inertia->diagonal().maxCoeff() / *body.mass);
+    if (radius > diagonal)
+        warnings.push_back(who + " has a radius of gyration of " + with_unit(radius, "m") +
+                           ", more than the diagonal of its bounding box of " + with_unit(diagonal, "m") +
+                           ": is \"inertia\" in kg m^2, and \"mass\" in kg?");
+    const Vec3 outside = (*body.center_of_mass - extent.center).cwiseAbs() - extent.edges / 2;
+    if (outside.maxCoeff() > diagonal)
+        warnings.push_back(who + " has its centre of mass " + with_unit(outside.maxCoeff(), "m") +
+                           " outside its bounding box: is \"center_of_mass\" in m, and in the frame of the mesh?");
+}
+
 void warn_of_sizes(const ScenePlan& plan, const std::vector<Extent>& extents, std::vector<std::string>& warnings) {
     const auto by_size = [](const Extent& a, const Extent& b) { return a.size < b.size; };
     const auto [least, most] = std::ranges::minmax_element(extents, by_size);
@@ -96,6 +140,10 @@ void warn_of_material(const std::string& name, const MaterialSettings& material,
     if (material.young_modulus > most_modulus)
         warnings.push_back("material \"" + name + "\" has a Young's modulus of " +
                            short_number(material.young_modulus) + " Pa, more than diamond: is it in Pa?");
+    if (material.plasticity && material.plasticity->yield_stress < least_yield_ratio * material.young_modulus)
+        warnings.push_back("material \"" + name + "\" has a yield stress of " +
+                           short_number(material.plasticity->yield_stress) + " Pa, far below its Young's modulus of " +
+                           short_number(material.young_modulus) + " Pa: are both in Pa?");
 }
 
 /// Warns if a collider has another pose than its keys. The run uses the keys.
@@ -143,6 +191,16 @@ std::vector<std::string> plan_warnings(const ScenePlan& plan) {
                           body.settings.rotation == before->settings.rotation;
         extents.push_back(copy ? extents.back() : extent_of(plan.meshes[body.mesh], body.settings, gravity));
         if (!copy) warn_of_sag(plan, body, extents.back().height, warnings);
+        const bool same_mass = copy && body.settings.mass == before->settings.mass &&
+                               body.settings.center_of_mass == before->settings.center_of_mass &&
+                               body.settings.inertia == before->settings.inertia;
+        if (!same_mass) warn_of_rigid(body.settings, plan.meshes[body.mesh], extents.back(), warnings);
+        if (!copy && body.settings.dynamics == BodyDynamics::rigid)
+            for (const std::size_t m : materials_of(body))
+                if (plan.materials[m].second.plasticity)
+                    warnings.push_back("body \"" + body.settings.name +
+                                       "\" is rigid and does not yield: the plasticity of " + "material \"" +
+                                       plan.materials[m].first + "\" is not used for it");
         warn_of_pivots(body, extents.back(), warnings);
         before = &body;
     }

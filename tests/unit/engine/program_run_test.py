@@ -117,6 +117,13 @@ class ProgramRunTest(ProgramCase):
         self.assertIn("more than diamond", warnings("materials.rubber.E=2e14")[0])
         self.assertIn("is it in m/s^2?", warnings("settings.gravity=[0,0,-9810]", "materials.rubber.E=1e8")[0])
         self.assertEqual(warnings("materials.rubber.E=0.02", "settings.gravity=[0,0,0]"), [])
+        heavy = ['bodies[0].dynamics="rigid"', "bodies[0].mass=1e6"]
+        self.assertIn('is "mass" in kg', warnings(*heavy)[0])
+        self.assertIn("centre of mass", warnings(*heavy, "bodies[0].center_of_mass=[9,0,0]",
+                                                 "bodies[0].inertia=[[1e6,0,0],[0,1e6,0],[0,0,1e6]]")[-1])
+        yields = ['materials.rubber.model="hencky"', 'materials.rubber.plasticity={"yield_stress":1e-4}']
+        self.assertIn("far below its Young's modulus", warnings(*yields, 'bodies[0].dynamics="rigid"')[-1])
+        self.assertIn("does not yield", warnings(*yields, 'bodies[0].dynamics="rigid"')[0])
         small = '{"name":"chip","mesh":{"ball":{"radius":1e-5,"resolution":2}},"material":"rubber","position":[9,9,9]}'
         block = json.dumps(SCENE["bodies"][0])
         self.assertIn("mesh.scale to 0.001", warnings(f"bodies=[{block},{small}]")[0])
