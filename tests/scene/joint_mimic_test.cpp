@@ -143,6 +143,31 @@ TEST_CASE("a joint mimics a leader whose bodies impulses cannot move", "[scene][
     CHECK(Joints(held.world).state(held.slider).coordinate == Approx(0.2 * Rack::ratio).epsilon(1e-6));
 }
 
+TEST_CASE("a mimic at rest converges although the squares of its velocities underflow", "[scene][joints]") {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    settings.threads = 1;
+    World world(settings);
+    const MaterialHandle material = world.add_material({.young_modulus = 1e6, .poisson_ratio = 0.3, .density = 1000});
+    const auto add = [&](const Vec3& size, const std::array<int, 3>& cells, const Vec3& place) {
+        return world.add_body(mesh::box(size, cells),
+                              {.material = material, .position = place, .dynamics = BodyDynamics::rigid});
+    };
+    const BodyHandle base = add({0.02, 0.3, 0.02}, {1, 2, 1}, {0, 0.15, 0});
+    world.attach(base, std::array<Index, 4>{0, 1, 2, 4});
+    const auto arm = [&](Real y) {
+        return Joints(world).add({.kind = JointKind::hinge,
+                                  .first = add({0.1, 0.02, 0.02}, {2, 1, 1}, {0.06, y, 0}),
+                                  .second = base,
+                                  .point = {0, y, 0},
+                                  .axis = {0, 1, 0}});
+    };
+    const JointHandle leader = arm(0.05);
+    Joints(world).set_mimic(arm(0.25), JointMimic{.leader = leader});
+    REQUIRE(world.advance(2).ok());
+    CHECK(world.report().worst_error < 1e-3);
+}
+
 TEST_CASE("mechanisms that only a mimic couples sleep and wake together", "[scene][joints]") {
     Rack rack({0, 0, -standard_gravity}, true);
     Joints(rack.world).set_motor(rack.hinge, JointMotor{.speed = 0, .strength = 10});

@@ -196,6 +196,24 @@ TEST_CASE("rollers that press a block into a plane prevail, and every step conve
         CHECK(std::abs(world.positions(block)[n].z() - mesh.nodes[n].z() + 1e-3) < 1e-12);
 }
 
+TEST_CASE("nodes on rollers that touch a plane never cross it while the block leans against a wall", "[scene]") {
+    World world(Settings{});
+    const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {3, 3, 3});
+    const BodyHandle block = world.add_body(
+        mesh, {.material = world.add_material({.young_modulus = young, .poisson_ratio = poisson, .damping = 20}),
+               .position = {0, 0, 0.05},
+               .contact_distance = 0.002});
+    const std::vector<Index> bottom = nodes_at(mesh, 2, -0.05);
+    world.attach(block, bottom, {}, Vec3::Zero(), {Vec3::UnitZ()});
+    world.add_collider(Plane{});
+    world.add_collider(Plane{{-1, 0, 0}, {0.052, 0, 0}});
+    world.set_gravity({5, 0, -standard_gravity});
+    REQUIRE(world.advance(0.2).ok());
+    CHECK(world.report().mean_contacts > 16);  // the floor and the wall
+    CHECK(world.report().crossings_found == 0);
+    for (const Index n : bottom) CHECK(world.positions(block)[static_cast<std::size_t>(n)].z() == 0);
+}
+
 TEST_CASE("a node on an inclined roller moves along the incline only", "[scene]") {
     World world(weightless());
     const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});

@@ -142,7 +142,9 @@ ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec
         push_out[n] -= direction.dot(push_out[n]) * direction;
         const Real before = direction.dot(velocity_next[n]);
         const Real impulse = inputs.mass[n] * (speed - before);
-        velocity_next[n] += impulse * inputs.inverse_mass[n] * direction;
+        // The impulse times the inverse mass would leave rounding errors, which move a node that touches a plane
+        // through the plane.
+        velocity_next[n] += (speed - before) * direction;
         held_impulse[i] += impulse * direction;
         sum.impulse += impulse * direction;
         sum.work += impulse * (before + speed) / 2;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "components/options.h"
@@ -68,7 +69,9 @@ public:
                 if (own().moves(static_cast<Index>(i))) part += own().squared_residual(static_cast<Index>(i));
             return part;
         });
-        if (sum == 0) return 0;  // the solution is exact; without this line a scale of zero would give 0 / 0
+        // Near the underflow the sum and the scale have no accurate digits, and a scale of zero has no quotient.
+        constexpr Real least_energy = std::numeric_limits<Real>::min() / std::numeric_limits<Real>::epsilon();  // [J]
+        if (sum < least_energy) return 0;
         return std::sqrt(sum) / scale_;
     }
     /// True if the error is worth measuring. The change of a sweep approximates the natural map at the start of the
