@@ -198,7 +198,7 @@ TEST_CASE("a thick sphere widens under a prescribed pressure as Lame found", "[s
           Approx(stress / modulus * ((1 - 2 * nu) * a + (1 + nu) * b * b * b / (2 * a * a))).epsilon(0.01));
 }
 
-TEST_CASE("volume control leads a balloon past its greatest pressure", "[scene][cavities]") {
+TEST_CASE("volume control leads a balloon past its greatest pressure", "[scene][cavities][long]") {
     constexpr Real a = 0.09, b = 0.1, modulus = 1e5, nu = 0.49, duration = 2;
     const Mesh mesh = hollow_sphere(a, b, 6, 1);
     World world(accurate(no_gravity));

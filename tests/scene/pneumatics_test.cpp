@@ -54,7 +54,7 @@ const TimeTable in_two_stages({{0, 0}, {0.1, low}, {0.25, low}, {0.35, high}});
 }  // namespace
 
 TEST_CASE("a pneumatic finger presses a wall harder at a higher pressure, and no harder if its host repeats the value",
-          "[scene][cavities]") {
+          "[scene][cavities][long]") {
     Finger once(in_two_stages);
     once.press(0.23);
     const Real before = once.press(0.02);
@@ -92,7 +92,8 @@ TEST_CASE("a pneumatic finger under constant pressure neither gains energy nor m
     CHECK(fine.press(0.1) == Approx(start).epsilon(1e-3));
 }
 
-TEST_CASE("two pneumatic fingers lift a cube, and hold it with its weight and enough friction", "[scene][cavities]") {
+TEST_CASE("two pneumatic fingers lift a cube, and hold it with its weight and enough friction",
+          "[scene][cavities][long]") {
     // The ordinary test grips and lifts at once, and holds for a moment.
     const std::string lift = R"(=[{"time": 0.18, "position": [0, 0, 0]}, {"time": 0.33, "position": [0, 0, 0.01]}])";
     const std::string blow = ".pressure=[[0, 0], [0.12, 1.5e4]]";
@@ -162,7 +163,8 @@ Real inner_volume(World& world, BodyHandle tyre, const Vec3& center) {
 
 }  // namespace
 
-TEST_CASE("a tyre on a rim rolls without slip, and its air has the volume between the two", "[scene][cavities][ties]") {
+TEST_CASE("a tyre on a rim rolls without slip, and its air has the volume between the two",
+          "[scene][cavities][ties][long]") {
     Scene scene = load_scene(folder + "tyre.json");
     World& world = scene.world;
     const BodyHandle tyre = world.bodies()[0], rim = world.bodies()[1];

@@ -162,7 +162,7 @@ TEST_CASE("a block on rollers resists a blow along them like a held block, and c
     CHECK(strike({Vec3::UnitZ()}) == Approx(strike({})).margin(1e-6));
 }
 
-TEST_CASE("rollers that lift a block carry and lift another block on it", "[scene]") {
+TEST_CASE("rollers that lift a block carry and lift another block on it", "[scene][long]") {
     World world(accurate({0, 0, -standard_gravity}, 1e-10));
     const MaterialHandle smooth = world.add_material({.young_modulus = young, .friction = 0, .damping = 100});
     const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});

@@ -316,7 +316,7 @@ TEST_CASE("forces on fingers, pads and ball add up to their changes of momentum 
     CHECK(world.report().energy_error_share < 1e-3);
 }
 
-TEST_CASE("the egg turns with the hand that grips it, by one radian", "[scene][scenes]") {
+TEST_CASE("the egg turns with the hand that grips it, by one radian", "[scene][scenes][long]") {
     Scene scene = open_with_pads("hand", {3, 6, 9});
     World& world = scene.world;
     const BodyHandle egg = body_of(world, "egg");

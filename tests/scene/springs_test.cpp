@@ -139,7 +139,7 @@ TEST_CASE("springs conserve momentum between bodies of every kind", "[scene][spr
     CHECK(report.dissipated > 0);
 }
 
-TEST_CASE("a stiff spring at the stable step gains no energy in 100,000 steps", "[scene][springs]") {
+TEST_CASE("a stiff spring at the stable step gains no energy in 100,000 steps", "[scene][springs][long]") {
     for (const BodyDynamics dynamics : {BodyDynamics::rigid, BodyDynamics::explicit_elastic}) {
         CAPTURE(static_cast<int>(dynamics));
         for (const Real damping : {0.0, 1.0}) {

@@ -105,7 +105,7 @@ TEST_CASE("a weld to a rigid body across a gap conserves angular momentum", "[sc
     CHECK((after.angular - before.angular).norm() < 1e-11 * before.angular.norm());
 }
 
-TEST_CASE("a tie stays exact for ten thousand steps", "[scene][ties]") {
+TEST_CASE("a tie stays exact for ten thousand steps", "[scene][ties][long]") {
     for (const BodyDynamics dynamics :
          {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic, BodyDynamics::rigid}) {
         Settings settings = without_gravity(1e-6);

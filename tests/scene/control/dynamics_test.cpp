@@ -186,7 +186,7 @@ TEST_CASE("a body with an inverted tetrahedron is not frozen, and the number of 
     CHECK(bar.world.dynamics(bar.body) == deformable);
 }
 
-TEST_CASE("a cube that is frozen and thawed twenty times is neither lifted nor moved", "[scene]") {
+TEST_CASE("a cube that is frozen and thawed twenty times is neither lifted nor moved", "[scene][long]") {
     for (const bool pressed : {false, true})
         for (const BodyDynamics thawed : {deformable, implicit}) {
             CAPTURE(pressed, name_of(thawed));

@@ -94,7 +94,7 @@ Real frame_error(World& world, BodyHandle body) {
 
 }  // namespace
 
-TEST_CASE("a body that is reset stays in its rest shape, with any losses and dynamics", "[scene]") {
+TEST_CASE("a body that is reset stays in its rest shape, with any losses and dynamics", "[scene][long]") {
     for (const BodyDynamics dynamics : {deformable, implicit, rigid})
         for (const Real loss : {0.0, 0.05, 0.3}) {
             CAPTURE(name_of(dynamics), loss);
