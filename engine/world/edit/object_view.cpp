@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "engine/world/complaint.h"
 #include "engine/world/edit/joining_rows.h"
 #include "engine/world/edit/objects.h"
 #include "engine/world/step/step.h"
+#include "engine/world/validate.h"
 #include "engine/world/world_state.h"
 
 namespace skerry {
