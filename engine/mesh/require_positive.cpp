@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <sstream>
 #include <vector>
 
@@ -86,12 +87,16 @@ bool passes(const SurfaceMesh& surface, const std::array<Index, 3>& first, const
     return false;
 }
 
-/// Describes the first two triangles that cross, or returns an empty text.
-std::string crossing_of(const SurfaceMesh& surface) {
+/// Bounding boxes of all triangles.
+std::vector<Aabb> boxes_of(const SurfaceMesh& surface) {
     std::vector<Aabb> boxes(surface.triangles.size(), empty_box());
     for (std::size_t t = 0; t < boxes.size(); ++t)
         for (const Index n : surface.triangles[t]) grow(boxes[t], surface.nodes[static_cast<std::size_t>(n)]);
-    const BoxTree tree(boxes);
+    return boxes;
+}
+
+/// Describes the first two triangles that cross, or returns an empty text. `tree`: made of the boxes.
+std::string crossing_of(const SurfaceMesh& surface, std::span<const Aabb> boxes, const BoxTree& tree) {
     std::string found;
     for (std::size_t t = 0; t < boxes.size() && found.empty(); ++t)
         tree.for_each_overlap(boxes[t], [&](Index other) {
@@ -113,27 +118,22 @@ int side_of(const Vec3& x, const Vec3& p, const Vec3& q) {
 
 /// Describes the first triangle with a point behind it that lies in two volumes, or returns an empty text. It finds
 /// shells whose faces coincide where they overlap, such as aligned boxes, and shells that are within others.
-std::string doubled_volume_of(const SurfaceMesh& surface) {
+std::string doubled_volume_of(const SurfaceMesh& surface, const BoxTree& tree) {
     constexpr Real depth = 1e-6;  // depth of the points, relative to the size of the surface
-    std::vector<Aabb> boxes(surface.triangles.size(), empty_box());
     Aabb whole = empty_box();
-    for (std::size_t t = 0; t < boxes.size(); ++t)
-        for (const Index n : surface.triangles[t]) {
-            grow(boxes[t], surface.nodes[static_cast<std::size_t>(n)]);
-            grow(whole, surface.nodes[static_cast<std::size_t>(n)]);
-        }
-    const BoxTree tree(boxes);
+    for (const Vec3& x : surface.nodes) grow(whole, x);
+    const Real size = (whole.upper - whole.lower).norm();
     const auto corner = [&](std::size_t t, std::size_t k) -> const Vec3& {
         return surface.nodes[static_cast<std::size_t>(surface.triangles[t][k])];
     };
-    for (std::size_t t = 0; t < boxes.size(); ++t) {
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
         const Vec3 &a = corner(t, 0), &b = corner(t, 1), &c = corner(t, 2);
         const Vec3 normal = (b - a).cross(c - a).normalized();
         if (normal.isZero()) continue;
-        const Vec3 x = 0.41 * a + 0.35 * b + 0.24 * c - depth * (whole.upper - whole.lower).norm() * normal;
+        const Vec3 x = 0.41 * a + 0.35 * b + 0.24 * c - depth * size * normal;
         Aabb ray = empty_box();
         grow(ray, x);
-        grow(ray, Vec3(x.x() + 2 * (whole.upper - whole.lower).norm(), x.y(), x.z()));
+        grow(ray, Vec3(x.x() + 2 * size, x.y(), x.z()));
         int winding = 0;  // number of volumes that contain the point
         tree.for_each_overlap(ray, [&](Index found) {
             const auto other = static_cast<std::size_t>(found);
@@ -173,8 +173,10 @@ void require_shells(const SurfaceMesh& surface, const std::string& what, bool ma
             .raise();
     }
     if (may_cross) return;
-    std::string found = crossing_of(surface);
-    if (found.empty()) found = doubled_volume_of(surface);
+    const std::vector<Aabb> boxes = boxes_of(surface);
+    const BoxTree tree(boxes);
+    std::string found = crossing_of(surface, boxes, tree);
+    if (found.empty()) found = doubled_volume_of(surface, tree);
     if (!found.empty())
         Complaint{what,
                   "mesh",

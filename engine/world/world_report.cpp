@@ -113,11 +113,14 @@ std::string WorldReport::distrust() const {
         return "surfaces passed through each other at " + std::to_string(crossed) +
                " nodes or edges, so positions, forces and energies cannot be trusted; leave more room between the "
                "objects that press on a body, or shorten the step";
-    if (worst_error > largest_trusted_error)
-        return "a contact region of " + std::to_string(worst_region) +
-               " contacts was left unsolved with a relative error of " + short_text(worst_error) + ", more than " +
+    if (worst_error > largest_trusted_error) {
+        const std::string region = worst_region == 0
+                                       ? "a region of joints or cables without contacts"
+                                       : "a contact region of " + std::to_string(worst_region) + " contacts";
+        return region + " was left unsolved with a relative error of " + short_text(worst_error) + ", more than " +
                short_text(largest_trusted_error) +
                ", so forces and energies cannot be trusted; increase max_iterations, or reduce the load on the bodies";
+    }
     return {};
 }
 

@@ -19,6 +19,12 @@ namespace skerry {
 inline TimeTable time_table_of(std::span<const TimeKey> keys) {
     return std::vector<TimeKey>(keys.begin(), keys.end());
 }
+/// State of a world for a function `call` that changes it. Throws SceneError during a call of advance.
+inline WorldState& state_between_steps(World& world, const char* call) {
+    WorldState& state = WorldAccess::state_of(world);
+    state.require_between_steps(call);
+    return state;
+}
 /// Handle of the body in a row of BodyTable.
 inline BodyHandle handle_of_body(const Model& model, Index row) {
     return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(row)]);

@@ -81,12 +81,6 @@ void note_fibres(WorldState& world, Index body) {
     world.record.balance.close();
 }
 
-WorldState& state_between_steps(World& world, const char* call) {
-    WorldState& state = WorldAccess::state_of(world);
-    state.require_between_steps(call);
-    return state;
-}
-
 }  // namespace
 
 FibreHandle Fibres::add(const FibreSettings& fibres) {

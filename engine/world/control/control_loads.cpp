@@ -75,12 +75,6 @@ LoadHandle append_load(World& world, const LoadRow& row, const TimeTable& scale)
     return handle;
 }
 
-Model& model_between_steps(World& world, const char* call) {
-    WorldState& state = WorldAccess::state_of(world);
-    state.require_between_steps(call);
-    return state.model;
-}
-
 /// Row of the body of a field, or no_index for all bodies.
 Index body_of_field(const Model& model, const std::optional<BodyHandle>& body) {
     return body ? model.row(*body, "add_load") : no_index;
@@ -145,7 +139,7 @@ Vec3 force_of_load(const Model& model, std::size_t row, Real scale) {
 }  // namespace
 
 LoadHandle Loads::add(const ForceLoad& load) {
-    const Model& model = model_between_steps(*world_, "add_load");
+    const Model& model = state_between_steps(*world_, "add_load").model;
     const Index body = model.row(load.body, "add_load");
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(body)];
     const std::string object = title_of_load(model, body);
@@ -162,7 +156,7 @@ LoadHandle Loads::add(const ForceLoad& load) {
 }
 
 LoadHandle Loads::add(const TractionLoad& load) {
-    const Model& model = model_between_steps(*world_, "add_load");
+    const Model& model = state_between_steps(*world_, "add_load").model;
     const Index body = model.row(load.body, "add_load");
     require_finite(title_of_load(model, body), "traction", load.traction);
     const std::span<const Vec3> rest =
@@ -197,7 +191,7 @@ LoadHandle Loads::add(const TractionLoad& load) {
 }
 
 LoadHandle Loads::add(const AccelerationField& field) {
-    const Model& model = model_between_steps(*world_, "add_load");
+    const Model& model = state_between_steps(*world_, "add_load").model;
     const Index body = body_of_field(model, field.body);
     require_finite(title_of_load(model, body), "acceleration", field.acceleration);
     return append_load(*world_, {.kind = LoadKind::acceleration, .body = body, .vector = field.acceleration},
@@ -205,7 +199,7 @@ LoadHandle Loads::add(const AccelerationField& field) {
 }
 
 LoadHandle Loads::add(const GravityScale& factor) {
-    const Model& model = model_between_steps(*world_, "add_load");
+    const Model& model = state_between_steps(*world_, "add_load").model;
     const Index body = body_of_field(model, factor.body);
     for (std::size_t row = 0; row < model.loads.size(); ++row)
         if (model.loads.kind[row] == LoadKind::gravity && model.loads.body[row] == body)
@@ -217,7 +211,7 @@ LoadHandle Loads::add(const GravityScale& factor) {
 }
 
 LoadHandle Loads::add(const DragField& drag) {
-    const Model& model = model_between_steps(*world_, "add_load");
+    const Model& model = state_between_steps(*world_, "add_load").model;
     const Index body = body_of_field(model, drag.body);
     if (!(std::isfinite(drag.rate) && drag.rate > 0))
         refuse(title_of_load(model, body), "rate", short_text(drag.rate), "a finite number > 0 (1/s)");
@@ -267,7 +261,7 @@ AnyLoad Loads::settings(LoadHandle load) const {
 }
 
 void Loads::set_scale(LoadHandle load, const TimeTable& scale) {
-    Model& model = model_between_steps(*world_, "set_scale");
+    Model& model = state_between_steps(*world_, "set_scale").model;
     const auto row = static_cast<std::size_t>(model.row(load, "set_scale"));
     require_table(title_of_load(model, model.loads.body[row]), "scale", scale);
     if (std::ranges::equal(model.loads.keys_of(row), scale.keys)) return;
@@ -277,7 +271,7 @@ void Loads::set_scale(LoadHandle load, const TimeTable& scale) {
 }
 
 void Loads::set_vector(LoadHandle load, const Vec3& vector) {
-    Model& model = model_between_steps(*world_, "set_vector");
+    Model& model = state_between_steps(*world_, "set_vector").model;
     const auto row = static_cast<std::size_t>(model.row(load, "set_vector"));
     const std::string object = title_of_load(model, model.loads.body[row]);
     if (model.loads.kind[row] == LoadKind::gravity)

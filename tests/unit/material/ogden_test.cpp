@@ -8,13 +8,11 @@
 #include <random>
 
 #include "systems/material/material_law.h"
+#include "tests/support/stress_slope.h"
 
 namespace skerry::test::ogden_test {
 
 namespace {
-
-using Matrix9 = Eigen::Matrix<Real, 9, 9>;
-using Vector9 = Eigen::Matrix<Real, 9, 1>;
 
 /// Rubber of Treloar as Ogden (1972) fits it, with this Poisson ratio.
 MaterialConstants treloar(Real poisson_ratio) {
@@ -60,19 +58,6 @@ const std::vector<Vec3> shapes{{1, 1, 1},        {1.2, 0.9, 0.95}, {3, 0.6, 0.55
                                {2, 2, 0.25},     {1, 1, 0.15},     {1.3, 0.9, -0.6},   {4, 1, 0.01},
                                {2, 0.05, 0.04},  {1, 1, -1},       {1, 1 - 1e-6, 0.9}, {0.7, 0.7, 0.7 + 1e-9},
                                {1.1, 0.95, 0.9}, {5, 5, 0.04}};
-
-Matrix9 hessian(const MaterialConstants& material, const Mat3& F) {
-    Matrix9 H;
-    constexpr Real step = 1e-6;
-    for (Index i = 0; i < 9; ++i) {
-        Mat3 up = F, down = F;
-        up.data()[i] += step;
-        down.data()[i] -= step;
-        const Mat3 column = (stress(material, up) - stress(material, down)) / (2 * step);
-        H.col(i) = Eigen::Map<const Vector9>(column.data());
-    }
-    return H;
-}
 
 /// True if a stretch or det F is so near to a limit that differences of the stress cross it, or if R jumps nearby.
 bool near_kink(const Vec3& s) {
@@ -215,7 +200,7 @@ TEST_CASE("law of Ogden: the stress is the derivative of the energy, the tangent
                     down.data()[i] -= step;
                     slope.data()[i] = (energy_density(material, up) - energy_density(material, down)) / (2 * step);
                 }
-                const Matrix9 H = hessian(material, F);
+                const Matrix9 H = slope_of_stress(material, F);
                 CHECK((slope - P).norm() <= 1e-7 * (H.norm() + P.norm()));
                 CHECK((H - H.transpose()).norm() <= 1e-6 * H.norm());
                 // The tangent lacks negative eigenvalues. Those of H that are positive, it keeps.
@@ -260,7 +245,7 @@ TEST_CASE("law of Ogden: the bounds on the stiffness hold", "[unit]") {
                 if (shape == Vec3::Ones())
                     CHECK(rough <= bound + 1.001 * material.shear_modulus + 2 * material.shear_modulus);
                 if (near_kink(shape)) continue;
-                const Matrix9 H = hessian(material, F), symmetric = 0.5 * (H + H.transpose());
+                const Matrix9 H = slope_of_stress(material, F), symmetric = 0.5 * (H + H.transpose());
                 const Real top = Eigen::SelfAdjointEigenSolver<Matrix9>(symmetric).eigenvalues()[8];
                 CHECK(top <= bound * (1 + 1e-6));
                 CHECK(bound <= 2.5 * std::max(top, material.shear_modulus));
@@ -273,7 +258,7 @@ TEST_CASE("law of Ogden: the bounds on the stiffness hold", "[unit]") {
     const MaterialConstants material = treloar(0.4);
     DenseTerms terms;
     Ogden::add_stiffness(material, in_all_lanes(Mat3::Identity()), terms);
-    CHECK((terms.sum - hessian(material, Mat3::Identity())).norm() <= 1e-5 * terms.sum.norm());
+    CHECK((terms.sum - slope_of_stress(material, Mat3::Identity())).norm() <= 1e-5 * terms.sum.norm());
 }
 
 TEST_CASE("one term of exponent 2 is the neo-Hookean law, exponents 2 and -2 are the law of Mooney and Rivlin",

@@ -7,13 +7,11 @@
 
 #include "systems/material/material_law.h"
 #include "tests/support/jittered_box.h"
+#include "tests/support/stress_slope.h"
 
 namespace skerry::test::orthotropic_test {
 
 namespace {
-
-using Matrix9 = Eigen::Matrix<Real, 9, 9>;
-using Vector9 = Eigen::Matrix<Real, 9, 1>;
 
 /// Douglas fir at a moisture of 12 % (Wood Handbook, FPL 2010, tables 5-1 to 5-3), with the axes along the grain,
 /// across the rings and along the rings.
@@ -38,19 +36,6 @@ OrthotropicModuli turned(OrthotropicModuli moduli, const Mat3& axes) {
     moduli.first_axis = 3 * axes.col(0);                   // of any length
     moduli.second_axis = axes.col(1) + 0.4 * axes.col(0);  // not orthogonal
     return moduli;
-}
-
-Matrix9 slope_of_stress(const MaterialConstants& material, const Mat3& F) {
-    Matrix9 H;
-    constexpr Real step = 1e-6;
-    for (Index i = 0; i < 9; ++i) {
-        Mat3 up = F, down = F;
-        up.data()[i] += step;
-        down.data()[i] -= step;
-        const Mat3 column = (stress(material, up) - stress(material, down)) / (2 * step);
-        H.col(i) = Eigen::Map<const Vector9>(column.data());
-    }
-    return H;
 }
 
 Vector9 entries_of(const Mat3& m) {
