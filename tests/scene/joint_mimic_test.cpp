@@ -168,6 +168,14 @@ TEST_CASE("a mimic at rest converges although the squares of its velocities unde
     CHECK(world.report().worst_error < 1e-3);
 }
 
+TEST_CASE("an unsolved region of joints is not said to have contacts", "[scene][joints]") {
+    WorldReport report;
+    report.worst_error = 1;
+    CHECK(report.distrust().find("a region of joints or cables without contacts was left unsolved") == 0);
+    report.worst_region = 3;
+    CHECK(report.distrust().find("a contact region of 3 contacts was left unsolved") == 0);
+}
+
 TEST_CASE("mechanisms that only a mimic couples sleep and wake together", "[scene][joints]") {
     Rack rack({0, 0, -standard_gravity}, true);
     Joints(rack.world).set_motor(rack.hinge, JointMotor{.speed = 0, .strength = 10});
