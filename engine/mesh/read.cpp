@@ -22,27 +22,38 @@ std::string lower_extension(const std::string& path) {
     return extension;
 }
 
+struct Format {
+    const char* extension;
+    RawMesh (*read)(FileReader&);
+    bool surface_only;  // true if the format has triangles but no tetrahedra
+};
+constexpr std::array<Format, 6> formats{{{".msh", read_gmsh, false},
+                                         {".vtk", read_vtk, false},
+                                         {".vtu", read_vtu, false},
+                                         {".obj", read_obj, true},
+                                         {".ply", read_ply, true},
+                                         {".stl", read_stl, true}}};
+
 RawMesh read_raw(const std::string& path, bool surface) {
     const std::string extension = lower_extension(path);
     if (extension == ".node" || extension == ".ele") return read_tetgen(path);
-    const bool known = extension == ".msh" || extension == ".vtk" || extension == ".vtu" ||
-                       (surface && (extension == ".obj" || extension == ".stl"));
-    if (!known)
+    const auto* const format = std::ranges::find(formats, extension, &Format::extension);
+    const bool known = format != formats.end();
+    if (!known || (format->surface_only && !surface)) {
+        std::string expected = "the extension ";
+        for (const Format& other : formats)
+            if (surface || !other.surface_only) expected += std::string(other.extension) + ", ";
         Complaint{path,
                   {},
                   "file name",
                   extension.empty() ? "no extension" : "the extension " + extension,
-                  surface ? "the extension .msh, .vtk, .vtu, .node, .ele, .obj or .stl"
-                          : "the extension .msh, .vtk, .vtu, .node or .ele",
-                  extension == ".obj" || extension == ".stl"
-                      ? "a body that deforms needs tetrahedra; a rigid body or a collider needs only a surface"
-                      : "export the mesh in one of these formats"}
+                  expected + ".node or .ele",
+                  known ? "a body that deforms needs tetrahedra; a rigid body or a collider needs only a surface"
+                        : "export the mesh in one of these formats"}
             .raise();
+    }
     FileReader reader(path);
-    if (extension == ".msh") return read_gmsh(reader);
-    if (extension == ".vtk") return read_vtk(reader);
-    if (extension == ".vtu") return read_vtu(reader);
-    return extension == ".obj" ? read_obj(reader) : read_stl(reader);
+    return format->read(reader);
 }
 
 /// Nodes that are used, and their numbers among all nodes.

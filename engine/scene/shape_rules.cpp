@@ -99,7 +99,7 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
             .key("table", &MeshEntry::table, {.meaning = "a table"})
             .key("file", &MeshEntry::file,
                  {.meaning = "path of a Gmsh .msh, VTK .vtk or .vtu, or TetGen .node/.ele file, relative to the folder "
-                             "of the scene; rigid bodies and colliders also take .obj and .stl"})
+                             "of the scene; rigid bodies and colliders also take .obj, .ply and .stl"})
             .key("scale", &MeshEntry::scale,
                  {.meaning = "factor for all coordinates of the mesh; default: 1", .limits = positive})
             .exactly_one({"box", "ball", "cylinder", "lathe", "skittle", "table", "file"});

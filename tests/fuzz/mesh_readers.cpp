@@ -68,6 +68,10 @@ void read_obj_bytes(FileBytes bytes) {
     use_surface(folder().write("mesh.obj", text_of(bytes)).string());
 }
 
+void read_ply_bytes(FileBytes bytes) {
+    use_surface(folder().write("mesh.ply", text_of(bytes)).string());
+}
+
 void read_stl_bytes(FileBytes bytes) {
     use_surface(folder().write("mesh.stl", text_of(bytes)).string());
 }

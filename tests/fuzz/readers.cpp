@@ -5,10 +5,11 @@
 namespace skerry::test {
 
 std::span<const FileReaderCase> all_readers() {
-    static constexpr std::array<FileReaderCase, 13> readers{{{"gmsh", read_gmsh_bytes},
+    static constexpr std::array<FileReaderCase, 14> readers{{{"gmsh", read_gmsh_bytes},
                                                              {"vtk", read_vtk_bytes},
                                                              {"vtu", read_vtu_bytes},
                                                              {"obj", read_obj_bytes},
+                                                             {"ply", read_ply_bytes},
                                                              {"stl", read_stl_bytes},
                                                              {"tetgen", read_tetgen_bytes},
                                                              {"body", read_body_bytes},

@@ -135,6 +135,37 @@ void FileReader::begin_binary(std::size_t size, const char* field) {
     if (size > remaining()) complain(field, "the end of the file", std::to_string(size) + " more bytes", incomplete);
 }
 
+Real FileReader::real(const NumberType& type, const char* field) {
+    if (!binary_) return parse_real(word(field), field);
+    if (type.kind == NumberKind::float32) return static_cast<Real>(binary<float>(field));
+    if (type.kind == NumberKind::float64) return binary<double>(field);
+    return static_cast<Real>(integer(type, field));
+}
+
+std::int64_t FileReader::integer(const NumberType& type, const char* field) {
+    if (!binary_) return parse_integer(word(field), field);
+    switch (type.kind) {
+        case NumberKind::int8:
+            return binary<std::int8_t>(field);
+        case NumberKind::uint8:
+            return binary<std::uint8_t>(field);
+        case NumberKind::int16:
+            return binary<std::int16_t>(field);
+        case NumberKind::uint16:
+            return binary<std::uint16_t>(field);
+        case NumberKind::int32:
+            return binary<std::int32_t>(field);
+        case NumberKind::uint32:
+            return binary<std::uint32_t>(field);
+        case NumberKind::int64:
+            return binary<std::int64_t>(field);
+        case NumberKind::uint64:
+            return static_cast<std::int64_t>(binary<std::uint64_t>(field));
+        default:
+            complain(field, "a floating-point type", "an integer type");
+    }
+}
+
 void FileReader::skip_bytes(std::size_t count, const char* field) {
     begin_binary(count, field);
     position_ += count;

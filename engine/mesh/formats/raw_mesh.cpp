@@ -31,4 +31,13 @@ std::optional<int> as_label(Real number) {
     return static_cast<int>(number);
 }
 
+void add_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh) {
+    if (nodes.size() < 3) reader.complain("node count", std::to_string(nodes.size()), "at least 3 nodes per polygon");
+    for (std::size_t a = 1; a + 1 < nodes.size(); ++a) {
+        const std::array<Index, 3> triangle{nodes[0], nodes[a], nodes[a + 1]};
+        require_different(triangle, reader);
+        mesh.triangles.push_back(triangle);
+    }
+}
+
 }  // namespace skerry::mesh

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -57,6 +58,9 @@ void require_different(const std::array<Index, N>& nodes, const FileReader& read
                                 "remove this element or correct its nodes");
 }
 
+/// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
+void add_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
+
 // Readers of the mesh file formats. All of them throw SceneError for invalid files.
 RawMesh read_gmsh(FileReader& reader);  // reads Gmsh file versions 1, 2 and 4.1
 RawMesh read_vtk(FileReader& reader);   // reads legacy VTK files with unstructured grids or polygons
@@ -64,6 +68,7 @@ RawMesh read_vtu(FileReader& reader);   // reads VTK XML files with unstructured
 // reads TetGen files .node and .ele of the same name; `path` may name either file
 RawMesh read_tetgen(const std::string& path);
 RawMesh read_obj(FileReader& reader);
+RawMesh read_ply(FileReader& reader);
 RawMesh read_stl(FileReader& reader);
 
 }  // namespace skerry::mesh

@@ -28,15 +28,6 @@ bool is_vtk_label(std::string_view name) {
     return name == "region" || name == "gmsh:physical" || name == "medit:ref" || name == "CellEntityIds";
 }
 
-void take_vtk_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh) {
-    if (nodes.size() < 3) reader.complain("node count", std::to_string(nodes.size()), "at least 3 nodes per polygon");
-    for (std::size_t a = 1; a + 1 < nodes.size(); ++a) {
-        const std::array<Index, 3> triangle{nodes[0], nodes[a], nodes[a + 1]};
-        require_different(triangle, reader);
-        mesh.triangles.push_back(triangle);
-    }
-}
-
 void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
     for (std::size_t c = 0; c < cells.type.size(); ++c) {
         reader.set_row("cell", c + 1, cells.type.size());
@@ -56,7 +47,7 @@ void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
                 if (of_cell.size() == cells.type.size()) mesh.vectors[name].push_back(of_cell[c]);
         } else if (type == 5) {
             if (nodes.size() != 3) reader.complain("node count", std::to_string(nodes.size()), "3 for a triangle");
-            take_vtk_polygon(nodes, reader, mesh);
+            add_polygon(nodes, reader, mesh);
         } else {
             const auto* const kind = std::ranges::find(other_kinds, type, &CellKind::type);
             const bool known = kind != std::end(other_kinds);

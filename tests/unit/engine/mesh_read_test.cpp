@@ -35,7 +35,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 bool is_surface_file(const std::string& name) {
-    return name.ends_with(".obj") || name.ends_with(".stl");
+    return name.ends_with(".obj") || name.ends_with(".ply") || name.ends_with(".stl");
 }
 
 /// Folder with meshes of other programs, which this project cannot distribute: `meshes` inside the folder named by the
@@ -334,6 +334,30 @@ TEST_CASE("quadrilaterals of an .obj become two triangles, and wrong corners are
     CHECK_THROWS_WITH(mesh::read_surface(folder.write("d.obj", square)), Contains("no triangles"));
     CHECK_THROWS_WITH(mesh::read(folder.write("e.obj", square)),
                       Contains("found the extension .obj, expected the extension .msh, .vtk, .vtu, .node or .ele"));
+}
+
+TEST_CASE("polygons of a PLY file become triangles, and a bad file is refused with the place and the reason",
+          "[unit]") {
+    const std::string square =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+    const TemporaryFolder folder;
+    CHECK(mesh::read_surface(folder.write("a.ply", square)).triangles ==
+          std::vector<std::array<Index, 3>>{{0, 1, 2}, {0, 2, 3}});
+    const auto refused = [&](const std::string& from, const std::string& to, const std::string& message) {
+        CHECK_THROWS_WITH(mesh::read_surface(folder.write("b.ply", replaced(square, from, to))), Contains(message));
+    };
+    refused("4 0 1 2 3", "4 0 1 2 4",
+            "b.ply: face, row 1 of 1, line 14: node: found 4, expected the index of a vertex, 0 to 3");
+    refused("4 0 1 2 3", "2 0 1", "node count: found 2, expected at least 3");
+    refused("4 0 1 2 3", "200000000 0 1 2 3", "entries: found 200000000, expected at most");
+    refused("1 1 0", "1 nan 0", "vertex, row 3 of 4, line 12: position: found nan");
+    refused("ascii", "binary", "format: found \"binary\", expected ascii, binary_little_endian");
+    refused("vertex 4", "vertex 400000", "count: found 400000, expected at most");
+    refused("property float z\n", "", "vertex: found no property z");
+    refused("property float z\n", "property half z\n", "type: found \"half\"");
+    refused("element vertex", "element point", "found no element vertex");
+    refused("element vertex 4\n", "", "line 3: found \"property float x\", expected format NAME 1.0");
 }
 
 TEST_CASE("polygons of a VTK file become triangles, its lines are passed over", "[unit]") {

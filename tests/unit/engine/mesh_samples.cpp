@@ -374,6 +374,34 @@ std::string obj_file(const SurfaceMesh& surface) {
     return file;
 }
 
+std::string ply_file(const SurfaceMesh& surface, Bytes bytes) {
+    const bool swap = bytes == Bytes::foreign, little = (std::endian::native == std::endian::little) != swap;
+    std::string file = "ply\nformat ";
+    file += bytes == Bytes::text ? "ascii" : little ? "binary_little_endian" : "binary_big_endian";
+    file += " 1.0\ncomment made by hand\nelement vertex " + std::to_string(surface.nodes.size()) +
+            "\nproperty double x\nproperty float64 y\nproperty float nx\nproperty double z\nproperty uchar red\n"
+            "element camera 1\nproperty list ushort int16 views\nelement face " +
+            std::to_string(surface.triangles.size()) +
+            "\nproperty uchar group\nproperty list uchar int vertex_indices\nend_header\n";
+    const auto number = [&]<class T>(T value) {
+        if (bytes == Bytes::text)
+            file += std::to_string(value) + ' ';
+        else
+            put(file, value, swap);
+    };
+    const auto end_row = [&] { file += bytes == Bytes::text ? "\n" : ""; };
+    for (const Vec3& x : surface.nodes) {
+        number(x[0]), number(x[1]), number(0.5f), number(x[2]), number(std::uint8_t{200}), end_row();
+    }
+    number(std::uint16_t{2}), number(std::int16_t{7}), number(std::int16_t{-8}), end_row();
+    for (const std::array<Index, 3>& t : surface.triangles) {
+        number(std::uint8_t{1}), number(std::uint8_t{3});
+        for (const Index n : t) number(static_cast<std::int32_t>(n));
+        end_row();
+    }
+    return file;
+}
+
 std::string stl_file(const SurfaceMesh& surface, bool binary) {
     constexpr bool swap = std::endian::native == std::endian::big;
     std::string file = binary ? "solid in name only" : "solid body\n";
@@ -422,6 +450,9 @@ std::vector<SampleFile> all_sample_files(const Mesh& mesh) {
             {"one.node", node_file(mesh, 1)},
             {"one.ele", ele_file(mesh, 1)},
             {"a.obj", obj_file(surface)},
+            {"a.ply", ply_file(surface, Bytes::text)},
+            {"b.ply", ply_file(surface, Bytes::native)},
+            {"c.ply", ply_file(surface, Bytes::foreign)},
             {"a.stl", stl_file(surface, false)},
             {"b.stl", stl_file(surface, true)}};
 }
