@@ -27,14 +27,16 @@ struct Format {
     RawMesh (*read)(FileReader&);
     bool surface_only;  // true if the format has triangles but no tetrahedra
 };
-constexpr std::array<Format, 6> formats{{{".msh", read_gmsh, false},
+constexpr std::array<Format, 8> formats{{{".msh", read_gmsh, false},
+                                         {".mesh", read_medit, false},
+                                         {".meshb", read_medit, false},
                                          {".vtk", read_vtk, false},
                                          {".vtu", read_vtu, false},
                                          {".obj", read_obj, true},
                                          {".ply", read_ply, true},
                                          {".stl", read_stl, true}}};
 
-RawMesh read_raw(const std::string& path, bool surface) {
+RawMesh read_file(const std::string& path, bool surface) {
     const std::string extension = lower_extension(path);
     if (extension == ".node" || extension == ".ele") return read_tetgen(path);
     const auto* const format = std::ranges::find(formats, extension, &Format::extension);
@@ -54,6 +56,13 @@ RawMesh read_raw(const std::string& path, bool surface) {
     }
     FileReader reader(path);
     return format->read(reader);
+}
+
+/// Reads a file of any format and divides its elements of second order into linear ones.
+RawMesh read_raw(const std::string& path, bool surface, std::vector<std::string>* notes) {
+    RawMesh raw = read_file(path, surface);
+    if (const std::string note = divide_second_order(raw); !note.empty() && notes) notes->push_back(path + ": " + note);
+    return raw;
 }
 
 /// Nodes that are used, and their numbers among all nodes.
@@ -171,7 +180,7 @@ void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>
 }
 
 Mesh read(const std::string& path, std::vector<std::string>* notes) {
-    RawMesh raw = read_raw(path, false);
+    RawMesh raw = read_raw(path, false, notes);
     if (raw.tetrahedra.empty())
         Complaint{path,
                   {},
@@ -190,8 +199,8 @@ SurfaceMesh take_triangles(const std::string& path, RawMesh& raw) {
         Complaint{path,
                   {},
                   {},
-                  std::to_string(raw.curved_triangles) + " triangles of second or higher order",
-                  "linear triangles",
+                  std::to_string(raw.curved_triangles) + " triangles of third or higher order",
+                  "triangles of first or second order",
                   "export the surface with linear elements"}
             .raise();
     if (raw.triangles.empty())
@@ -211,12 +220,12 @@ SurfaceMesh take_triangles(const std::string& path, RawMesh& raw) {
 }  // namespace
 
 SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes) {
-    RawMesh raw = read_raw(path, true);
+    RawMesh raw = read_raw(path, true, notes);
     return raw.tetrahedra.empty() ? take_triangles(path, raw) : boundary(take_tetrahedra(path, raw, notes));
 }
 
 Mesh read_rigid(const std::string& path, std::vector<std::string>* notes) {
-    RawMesh raw = read_raw(path, true);
+    RawMesh raw = read_raw(path, true, notes);
     if (!raw.tetrahedra.empty()) return take_tetrahedra(path, raw, notes);
     SurfaceMesh surface = take_triangles(path, raw);
     return {.nodes = std::move(surface.nodes), .tetrahedra = {}, .triangles = std::move(surface.triangles)};
