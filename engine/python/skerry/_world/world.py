@@ -92,7 +92,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
             if not hasattr(self, "_core"):
                 raise AttributeError(f"{cls.__name__}: __init__() did not call super().__init__()")
 
-        setattr(cls, "__init__", make)
+        cls.__init__ = make  # type: ignore[method-assign]
 
     @classmethod
     def _of(cls, core: Any) -> Self:
