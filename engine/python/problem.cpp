@@ -2,7 +2,6 @@
 #include "skerry/problem.h"
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <utility>
 
@@ -72,6 +71,8 @@ nb::dict error_of(const ContactProblem& problem, const Vectors& reaction) {
     return values;
 }
 
+}  // namespace
+
 nb::dict values_of(const StepProblem& step) {
     nb::dict values;
     values["step"] = step.step;
@@ -83,28 +84,6 @@ nb::dict values_of(const StepProblem& step) {
     values["region"] = flat_array(step.region);
     return values;
 }
-
-/// Has the world call `take` with the problem of each step whose number is a multiple of `every`. None ends the calls.
-void watch_problems(WorldObject& object, const nb::object& take, std::uint64_t every) {
-    Use use(object);
-    if (take.is_none()) {
-        object.world.watch_contact_problems({});
-        return;
-    }
-    // The world copies its function without the GIL, and may release the last copy without it.
-    const std::shared_ptr<nb::object> shared(new nb::object(take), [](nb::object* last) {
-        nb::gil_scoped_acquire held;
-        delete last;
-    });
-    object.world.watch_contact_problems(
-        [shared](const StepProblem& step) {
-            nb::gil_scoped_acquire held;
-            (*shared)(values_of(step));
-        },
-        every);
-}
-
-}  // namespace
 
 void bind_problem(nb::module_& module) {
     nb::class_<ContactProblem>(module, "Problem")
@@ -131,10 +110,6 @@ void bind_problem(nb::module_& module) {
     });
     module.def("solve", &solve);
     module.def("problem_error", &error_of);
-}
-
-void bind_problem_watch(WorldClass& type) {
-    type.def("watch_problems", &watch_problems, nb::arg("take").none(), nb::arg("every"));
 }
 
 }  // namespace skerry::python

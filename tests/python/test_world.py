@@ -274,7 +274,7 @@ def test_a_report_has_all_values_of_the_engine() -> None:
 
 def test_a_report_of_a_call_has_all_values_of_the_engine() -> None:
     world, _, _ = ball_world()
-    values = world._core.advance(0.06, None, None)
+    values = world._core.advance(0.06, None, None, None, 1)
     report = world.copy().try_advance(0.01)
     assert set(values) == {field.name for field in dataclasses.fields(report)}
     assert (values["status"], values["body"], values["node"]) == ("ok", None, None) and values["steps"] > 0

@@ -174,7 +174,7 @@ def name_text(value: object, name: str) -> str:
 
 def seconds(value: SupportsFloat, object: str, name: str, *, zero: bool = True) -> float:
     """A finite time, >= 0 or > 0 [s]."""
-    number = real(value, f"{object}: {name}")
+    number = float(value) if isinstance(value, float) else real(value, f"{object}: {name}")
     if not (math.isfinite(number) and (number > 0 or (zero and number == 0))):
         raise scene_error(object, name, str(number), f"a finite time {'>=' if zero else '>'} 0 [s]")
     return number

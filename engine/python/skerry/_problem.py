@@ -311,20 +311,20 @@ def problem_error(problem: Problem, reaction: ArrayLike) -> ProblemError:
 def contact_problems(world: Any, every: int) -> Iterator[list[StepProblem]]:
     """Collects the problems of the steps of a world."""
     world._core.require_between_steps()
-    if world._collecting:
+    if every == 0:
+        raise scene_error("contact_problems", "every", "0", "a number of steps >= 1")
+    if world._take is not None:
         raise scene_error("contact_problems", "", "a block that is already active", "one block at a time")
     problems: list[StepProblem] = []
 
     def take(values: dict[str, Any]) -> None:
         problems.append(StepProblem(**{**values, "problem": Problem._of(values["problem"])}))
 
-    world._core.watch_problems(take, every)
-    world._collecting = True
+    world._take, world._take_every = take, every
     try:
         yield problems
     finally:
-        world._collecting = False
-        world._core.watch_problems(None, 1)
+        world._take = None
 
 
 def _same_problem(row_offset: Any, column: Any, block: Any, q: Any, mu: Any, name: str, description: str) -> Problem:

@@ -1,5 +1,6 @@
 // Advancing a world in time, with callbacks and Ctrl-C.
 #include <chrono>
+#include <optional>
 #include <sstream>
 
 #include "engine/python/world/parts.h"
@@ -27,36 +28,46 @@ private:
     Clock::time_point checked_ = Clock::now();
 };
 
-/// Has World::watch_steps call a Python function until the end of the scope.
-class StepWatchScope {
+/// Has a world call Python functions with the report and the contact problem of each step until the end of the scope.
+/// The world must not hold them longer: Python's garbage collector would not see the references.
+class WatchScope {
 public:
-    StepWatchScope(World& world, const nb::object& watch) : world_(world), on_(!watch.is_none()) {
-        if (!on_) return;
-        world.watch_steps([&watch](const StepReport& report) {
-            nb::gil_scoped_acquire held;
-            watch(values_of(report));
-        });
+    WatchScope(World& world, const nb::object& watch, const nb::object& take, std::uint64_t every) : world_(world) {
+        if (!watch.is_none())
+            world.watch_steps([&watch](const StepReport& report) {
+                nb::gil_scoped_acquire held;
+                watch(values_of(report));
+            });
+        if (!take.is_none())
+            world.watch_contact_problems(
+                [&take](const StepProblem& step) {
+                    nb::gil_scoped_acquire held;
+                    take(values_of(step));
+                },
+                every);
     }
-    ~StepWatchScope() {
-        if (on_) world_.watch_steps({});
+    ~WatchScope() {
+        world_.watch_steps({});
+        world_.watch_contact_problems({});
     }
-    StepWatchScope(const StepWatchScope&) = delete;
-    StepWatchScope& operator=(const StepWatchScope&) = delete;
+    WatchScope(const WatchScope&) = delete;
+    WatchScope& operator=(const WatchScope&) = delete;
 
 private:
     World& world_;
-    bool on_;
 };
 
 /// Advances without the GIL. `check` is None or is called before each attempt at a step, and ends the call if it
-/// returns False. `watch` is None or is called after each committed step.
-nb::dict advance(WorldObject& object, Real dt, const nb::object& check, const nb::object& watch) {
+/// returns False. `watch` is None or is called after each committed step. `take` is None or is called with the problem
+/// of each step whose number is a multiple of `every`.
+nb::dict advance(WorldObject& object, Real dt, const nb::object& check, const nb::object& watch, const nb::object& take,
+                 std::uint64_t every) {
     Use use(object);
     World& world = object.world;
     const Settings& settings = world.settings();
     if (settings.backend != Backend::serial && settings.threads != 1) Use::note_threads();
-    const nb::object look = object.depth > 1 ? nb::none() : watch;  // advance() refuses a nested call
-    const StepWatchScope scope(world, look);
+    std::optional<WatchScope> scope;
+    if (object.depth == 1) scope.emplace(world, watch, take, every);  // advance() refuses a nested call
     const StepReport report = without_gil([&] {
         SignalWatch signals;
         return world.advance(dt, [&](const StepReport& so_far) {
@@ -96,9 +107,10 @@ nb::dict relax_world(WorldObject& object, Real tolerance, int max_steps, int loa
 }  // namespace
 
 void bind_advance(WorldClass& type) {
-    type.def("advance", &advance, nb::arg("dt"), nb::arg("check").none(), nb::arg("watch").none())
+    type.def("advance", &advance, nb::arg("dt"), nb::arg("check").none(), nb::arg("watch").none(),
+             nb::arg("take").none(), nb::arg("every"))
         .def("relax", &relax_world)
-        // World::watch_steps refuses calls of callbacks. It has no other effect, because StepWatchScope has removed its
+        // World::watch_steps refuses calls of callbacks. It has no other effect, because WatchScope has removed its
         // function.
         .def("require_between_steps", guarded([](World& world) { world.watch_steps({}); }))
         .def("set_tracing", guarded([](World& world, bool on) { world.set_tracing(on); }))

@@ -29,7 +29,6 @@ void bind_springs(WorldClass& type);
 void bind_anchors(nb::module_& module);
 void bind_views(WorldClass& type);
 void bind_results(WorldClass& type);
-void bind_problem_watch(WorldClass& type);
 
 /// Binds the functions that all views have in common. `list`: name of the function that lists all objects.
 template <class HandleType>
@@ -46,6 +45,7 @@ void bind_view(WorldClass& type, const char* list) {
 
 /// The members of a report by name.
 nb::dict values_of(const StepReport& report);
+nb::dict values_of(const StepProblem& step);
 nb::dict values_of(const WorldReport& report);
 nb::dict values_of(const Energy& energy);
 nb::dict values_of(const DynamicsEstimate& estimate);

@@ -235,18 +235,24 @@ nb::dict values_of(const DynamicsEstimate& estimate) {
 
 nb::dict values_of(const StepReport& report) {
     // Most values of most reports are those of an empty report, and copying its dictionary is faster than making
-    // another one. It is not freed, as the interpreter may end before.
+    // another one. The dictionary and its keys are not freed, as the interpreter may end before.
     static const StepReport empty;
+    static std::vector<PyObject*> names;  // key of each member
     static PyObject* const empty_values = [] {
         nb::dict values;
         values["message"] = "";
         values["warning"] = "";
-        for_each_member([&](const char* name, auto member) { values[name] = value_of(empty.*member); });
+        for_each_member([&](const char* name, auto member) {
+            names.push_back(PyUnicode_InternFromString(name));
+            values[nb::handle(names.back())] = value_of(empty.*member);
+        });
         return values.release().ptr();
     }();
     auto values = nb::steal<nb::dict>(PyDict_Copy(empty_values));
-    for_each_member([&](const char* name, auto member) {
-        if (report.*member != empty.*member) values[name] = value_of(report.*member);
+    auto name = names.begin();
+    for_each_member([&](const char*, auto member) {
+        if (report.*member != empty.*member) values[nb::handle(*name)] = value_of(report.*member);
+        ++name;
     });
     if (!report.ok()) values["message"] = report.message();
     if (const std::string warning = report.warning(); !warning.empty()) values["warning"] = warning;

@@ -110,7 +110,6 @@ void bind_world(nb::module_& module) {
     bind_springs(type);
     bind_views(type);
     bind_results(type);
-    bind_problem_watch(type);
 }
 
 }  // namespace skerry::python

@@ -58,7 +58,6 @@ from .joint import Joint, joint_label
 from .load import Load
 from .material import MaterialHandle
 from .objects import NamedObject, ObjectList, Objects, PosedObject
-from .reports import StepReport
 from .spring import Spring
 from .tie import Tie
 
@@ -80,12 +79,13 @@ class Building(CavityBuilding):
     __slots__ = (
         "__weakref__",
         "_advancing",
-        "_collecting",
         "_core",
         "_doubts",
         "_followers",
         "_materials",
         "_mesh_arrays",
+        "_take",
+        "_take_every",
         "_watch",
     )
 
@@ -94,18 +94,12 @@ class Building(CavityBuilding):
         """The world, which is the only subclass."""
         return cast("World", self)
 
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            """Called for an attribute that does not exist."""
-            reason = ", because __init__() did not call super().__init__()" if name in Building.__slots__ else ""
-            raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'{reason}")
-
     def _hold(self, core: Any) -> None:
         self._core: Any = core
         self._advancing = False
-        self._collecting = False  # True within contact_problems()
-        self._watch: Callable[[StepReport], object] | None = None
+        self._watch: Callable[[dict[str, Any]], bool] | None = None  # from _told()
+        self._take: Callable[[dict[str, Any]], None] | None = None  # of contact_problems()
+        self._take_every = 1
         self._followers: list[Follower] = []
         self._doubts: set[tuple[str, ...]] = set()
         self._materials: dict[Material, Any] = {}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import dataclasses
+import functools
 import math
 import os
 import sys
@@ -77,6 +78,21 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
     def __init__(self, settings: Settings | None = None, /, **changes: Unpack[SettingsChanges]) -> None:
         given = checked(settings or Settings(), "settings", Settings)
         self._hold(_core.World(dataclasses.replace(given, **changes)))
+
+    def __init_subclass__(cls) -> None:
+        """Has the __init__() of a subclass raise an error if it does not call that of World."""
+        super().__init_subclass__()
+        made: Callable[..., None] | None = cls.__dict__.get("__init__")
+        if made is None:
+            return
+
+        @functools.wraps(made)
+        def make(self: World, *given: Any, **named: Any) -> None:
+            made(self, *given, **named)
+            if not hasattr(self, "_core"):
+                raise AttributeError(f"{cls.__name__}: __init__() did not call super().__init__()")
+
+        cls.__init__ = make  # type: ignore[method-assign]
 
     @classmethod
     def _of(cls, core: Any) -> Self:
@@ -187,7 +203,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
             follower.require_ready()
         nested, self._advancing = self._advancing, True
         try:
-            values = self._core.advance(dt, self._told(check), self._told(self._watch))
+            values = self._core.advance(dt, self._told(check), self._watch, self._take, self._take_every)
         finally:
             self._advancing = nested
             for follower in followers:
@@ -247,7 +263,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
         self._core.require_between_steps()
         if look is not None and not callable(look):
             raise TypeError(f"look: found {look!r}, expected a function")
-        self._watch = look
+        self._watch = self._told(look)
 
     @contextmanager
     def trace(self, path: str | os.PathLike[str]) -> Iterator[None]:
