@@ -1,4 +1,4 @@
-// Accelerated projected gradients (Nesterov; Mazhar et al. 2015; docs/methods/region_solver.md 5.3). All contacts step
+// Accelerated projected gradients (Nesterov; Mazhar et al. 2015; docs/methods/region_solver.md 5.2). All contacts step
 // at once. An iteration is one product with W whatever the couplings are, and nothing depends on the order of the
 // contacts.
 #pragma once

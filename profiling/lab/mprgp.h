@@ -1,5 +1,5 @@
 // Modified proportioning with reduced gradient projections (Dostal and Schoeberl 2005; docs/methods/region_solver.md
-// 5.4): conjugate gradients with a consistent treatment of the active set, for contacts without friction. It works in
+// 5.2): conjugate gradients with a consistent treatment of the active set, for contacts without friction. It works in
 // the norm of the diagonal, since bounds keep their form when rows are scaled.
 #pragma once
 
