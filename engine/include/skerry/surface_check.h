@@ -12,7 +12,7 @@ namespace skerry {
 
 /// Faults of a triangle surface. `mesh::check_surface` repairs the first five kinds in SurfaceReport::cleaned.
 enum class SurfaceFaultKind {
-    flat_triangles,       // two corners are the same node, or lie closer together than the tolerance
+    flat_triangles,       // two corners are one node after merging
     duplicate_triangles,  // the same three nodes as an earlier triangle
     turned_triangles,     // orientation opposite to that of most triangles connected with it
     inside_out_shells,    // closed shells that enclose a negative volume and lie in no other shell
@@ -23,15 +23,16 @@ enum class SurfaceFaultKind {
     one_sided_shells,     // shells without an orientation, such as a Moebius strip
     crossings,            // pairs of triangles of one shell that pass through each other
     shell_crossings,      // pairs of triangles of different shells that pass through each other
-    overlaps,             // pairs of triangles that lie in one plane and overlap
-    doubled_volumes,      // closed shells inside another shell that encloses their volume, too
+    overlaps,             // pairs of triangles that overlap in a common plane
     flat_shells,          // closed shells without volume
-    thin_shells,          // shells thinner than their mean edge, measured at a few hundred points
-    unlikely_size,        // larger than 100 m: probably millimetres
+    doubled_volumes,      // triangles behind which closed shells enclose the same volume twice
+    slivers,              // triangles of three nodes with an altitude within the tolerance
+    thin_walls,           // sampled places at which the wall is thinner than the mean edge
+    unlikely_size,        // a size above 100 m or below 1e-6 m, probably a wrong unit of length
 };
 template <>
 struct EnumNames<SurfaceFaultKind> {
-    static constexpr std::array<std::pair<SurfaceFaultKind, std::string_view>, 16> table{{
+    static constexpr std::array<std::pair<SurfaceFaultKind, std::string_view>, 17> table{{
         {SurfaceFaultKind::flat_triangles, "flat_triangles"},
         {SurfaceFaultKind::duplicate_triangles, "duplicate_triangles"},
         {SurfaceFaultKind::turned_triangles, "turned_triangles"},
@@ -44,9 +45,10 @@ struct EnumNames<SurfaceFaultKind> {
         {SurfaceFaultKind::crossings, "crossings"},
         {SurfaceFaultKind::shell_crossings, "shell_crossings"},
         {SurfaceFaultKind::overlaps, "overlaps"},
-        {SurfaceFaultKind::doubled_volumes, "doubled_volumes"},
         {SurfaceFaultKind::flat_shells, "flat_shells"},
-        {SurfaceFaultKind::thin_shells, "thin_shells"},
+        {SurfaceFaultKind::doubled_volumes, "doubled_volumes"},
+        {SurfaceFaultKind::slivers, "slivers"},
+        {SurfaceFaultKind::thin_walls, "thin_walls"},
         {SurfaceFaultKind::unlikely_size, "unlikely_size"},
     }};
 };
@@ -54,11 +56,11 @@ struct EnumNames<SurfaceFaultKind> {
 /// All faults of one kind. Triangles have their number in the given surface, counted from 0.
 struct SurfaceFault {
     SurfaceFaultKind kind{};
-    std::size_t count = 0;      // number of triangles, edges, nodes, pairs of triangles, holes or shells
+    std::size_t count = 0;      // number of triangles, edges, nodes, pairs of triangles, holes, shells or places
     Index triangle = no_index;  // first triangle with the fault; for holes: a triangle at the longest hole
     Index other = no_index;     // second triangle of the first pair, or first triangle of the other shell
     Vec3 place = Vec3::Zero();  // place of the first fault; for holes: centre of the longest hole [m]
-    Real length = 0;            // holes: length of the edges around the longest hole; thin_shells: thickness [m]
+    Real length = 0;  // holes: length of the edges around the longest hole; thin_walls: smallest thickness [m]
 };
 
 /// Part of a surface that common edges connect. At an edge of several closed shells, the triangles around the volume of
