@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -30,6 +31,7 @@ struct BodyFrame {
     std::vector<Mat3> node_stress, node_strain;  // values by node: Cauchy stress [Pa] and Green strain
     // Material number of each cell. Materials are numbered in the order in which they were added.
     std::vector<Index> material{};
+    std::optional<MotionKey> rigid_pose{};  // pose of the mesh of a rigid body; empty for a deformable body
 
     std::size_t count_cells() const { return tetrahedra.empty() ? surface.size() : tetrahedra.size(); }
     std::size_t corners_of_cell() const { return tetrahedra.empty() ? 3 : 4; }
