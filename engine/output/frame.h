@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "components/options.h"
+#include "engine/mesh/visual/bound_visual.h"
 #include "skerry/report.h"
 #include "skerry/settings.h"
 
@@ -31,6 +32,8 @@ struct BodyFrame {
     std::vector<Mat3> node_stress, node_strain;  // values by node: Cauchy stress [Pa] and Green strain
     // Material number of each cell. Materials are numbered in the order in which they were added.
     std::vector<Index> material{};
+    // Surface that is drawn in place of `surface`; nullptr if there is none. See visual_positions and visual_values.
+    const BoundVisual* visual = nullptr;
     std::optional<MotionKey> rigid_pose{};  // pose of the mesh of a rigid body; empty for a deformable body
 
     std::size_t count_cells() const { return tetrahedra.empty() ? surface.size() : tetrahedra.size(); }

@@ -11,6 +11,7 @@
 
 #include "engine/mesh/formats/file_reader.h"
 #include "skerry/mesh.h"
+#include "skerry/visual.h"
 
 namespace skerry::mesh {
 
@@ -23,6 +24,8 @@ struct RawMesh {
     std::size_t curved_triangles = 0;  // number of triangles of second or higher order
     std::map<std::string, MeshSet> sets;
     std::map<std::string, std::vector<Vec3>> vectors;  // of the tetrahedra
+    VisualSurface visual;  // of an .obj file: texture coordinates, names of materials, and both by triangle
+    std::vector<std::string> material_files;  // of an .obj file: names of its .mtl files
     // number of ignored elements of each kind, for example "hexahedra"
     std::map<std::string, std::size_t> others;
 };
@@ -64,6 +67,8 @@ RawMesh read_vtu(FileReader& reader);   // reads VTK XML files with unstructured
 // reads TetGen files .node and .ele of the same name; `path` may name either file
 RawMesh read_tetgen(const std::string& path);
 RawMesh read_obj(FileReader& reader);
+/// Reads a Wavefront .mtl file. Paths of textures are relative to the folder of the file.
+std::vector<VisualMaterial> read_mtl(FileReader& reader);
 RawMesh read_stl(FileReader& reader);
 
 }  // namespace skerry::mesh
