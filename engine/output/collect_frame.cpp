@@ -65,6 +65,7 @@ Frame collect_frame(const World& world) {
                                                                  .node_strain = std::move(fields[b].strain),
                                                                  .material = materials_of(world, body)});
         of_body.visual = visual_of(world, body);
+        if (world.dynamics(body) == BodyDynamics::rigid) of_body.rigid_pose = world.pose(body);
         of_body.stress = values_of_cells<Mat3>(world.stress(body), of_body, Mat3::Zero());
         of_body.strain = values_of_cells<Mat3>(world.strain(body), of_body, Mat3::Zero());
         if (yields) of_body.plastic_strain = values_of_cells<Real>(world.plastic_strain(body), of_body, 0);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -33,6 +34,7 @@ struct BodyFrame {
     std::vector<Index> material{};
     // Surface that is drawn in place of `surface`; nullptr if there is none. See visual_positions and visual_values.
     const BoundVisual* visual = nullptr;
+    std::optional<MotionKey> rigid_pose{};  // pose of the mesh of a rigid body; empty for a deformable body
 
     std::size_t count_cells() const { return tetrahedra.empty() ? surface.size() : tetrahedra.size(); }
     std::size_t corners_of_cell() const { return tetrahedra.empty() ? 3 : 4; }

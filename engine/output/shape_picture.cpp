@@ -1,9 +1,11 @@
 #include "engine/output/shape_picture.h"
 
-#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <span>
+
+#include "systems/geometry/rotation.h"
 
 namespace skerry {
 namespace {
@@ -15,12 +17,6 @@ constexpr int plane_cells = 10;  // number of grid cells per edge of the display
 
 // points (radius, z), ordered so that the outside of the shape lies on the right
 using Profile = std::vector<std::array<Real, 2>>;
-
-Mat3 rotation_of(const Vec3& axis_angle) {
-    const Real angle = axis_angle.norm();
-    if (angle == 0) return Mat3::Identity();
-    return Eigen::AngleAxis<Real>(angle, axis_angle / angle).toRotationMatrix();
-}
 
 /// Adds a circular arc with centre (0, z) to a profile. The angles `from` and `to` are measured from the horizontal,
 /// upwards [rad].
@@ -129,16 +125,28 @@ struct Picture {
 
 }  // namespace
 
+std::optional<PlanePatch> patch_around(std::span<const BodyFrame> bodies) {
+    Vec3 lower = Vec3::Constant(infinity), upper = -lower;
+    for (const BodyFrame& body : bodies)
+        for (const Vec3& point : body.position) {
+            lower = lower.cwiseMin(point);
+            upper = upper.cwiseMax(point);
+        }
+    if ((lower.array() > upper.array()).any()) return std::nullopt;
+    // The minimum size is needed if the bounding box of all bodies is a single point.
+    return PlanePatch{(lower + upper) / 2, std::max((upper - lower).norm(), 1e-6)};
+}
+
 SurfaceMesh shape_picture(const Shape& shape, const PlanePatch& patch) {
     return std::visit(Picture{patch}, shape);
 }
 
 Vec3 to_world(const MotionKey& pose, const Vec3& point) {
-    return pose.position + rotation_of(pose.rotation) * point;
+    return pose.position + rotation_matrix(pose.rotation) * point;
 }
 
 Vec3 to_shape(const MotionKey& pose, const Vec3& point) {
-    return rotation_of(pose.rotation).transpose() * (point - pose.position);
+    return rotation_matrix(pose.rotation).transpose() * (point - pose.position);
 }
 
 }  // namespace skerry

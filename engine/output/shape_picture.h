@@ -1,16 +1,22 @@
 // Triangle meshes for displaying colliders.
 #pragma once
 
+#include <optional>
+
+#include "engine/output/frame.h"
 #include "skerry/settings.h"
 
 namespace skerry {
 
-/// The displayed part of an infinite plane: a square around the projection of `center` onto the plane. `center` is
-/// given in the frame of the plane.
+/// The displayed part of an infinite plane: a square around the projection of `center` onto the plane.
 struct PlanePatch {
     Vec3 center = Vec3::Zero();  // [m]
     Real half_size = 1;          // [m]
 };
+
+/// Returns the part of all planes to display, with its centre in world coordinates: a square around the bodies. Its edge
+/// is twice the diagonal of the bounding box of all bodies. Returns nothing if there are no bodies.
+std::optional<PlanePatch> patch_around(std::span<const BodyFrame> bodies);
 
 /// Returns a triangle mesh of a shape in the frame of the shape. Triangles are counter-clockwise as seen from outside.
 /// Curved shapes have 48 facets around their axis. Vertices are duplicated along sharp edges, so that averaged normals

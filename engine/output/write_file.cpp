@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <fstream>
 #include <system_error>
 
 #include "skerry/error.h"
@@ -26,16 +25,6 @@ std::string failure(const std::string& message) {
     return "the error \"" + message + "\"";
 }
 
-/// Removes the unfinished file at the end of its scope, also if an exception is thrown.
-struct Temporary {
-    std::filesystem::path path;
-
-    ~Temporary() {
-        std::error_code ignored;
-        std::filesystem::remove(path, ignored);
-    }
-};
-
 const char* name_of(std::filesystem::file_type type) {
     switch (type) {
         case std::filesystem::file_type::directory:
@@ -49,14 +38,7 @@ const char* name_of(std::filesystem::file_type type) {
     }
 }
 
-/// File or stream to which the bytes are written. Symbolic links are resolved.
-struct Target {
-    std::filesystem::path path;
-    bool takes_bytes = false;  // true for a pipe or a terminal, which is written directly
-    std::filesystem::perms permissions = std::filesystem::perms::unknown;  // permissions of the file to be replaced
-};
-
-Target target_of(const std::filesystem::path& file) {
+FileReplacement::Target target_of(const std::filesystem::path& file) {
     namespace fs = std::filesystem;
     std::error_code error;
     const fs::file_status found = fs::status(file, error);
@@ -65,7 +47,7 @@ Target target_of(const std::filesystem::path& file) {
         complain(file, name_of(found.type()), "a file that can be written", "choose another path");
     if (found.type() == fs::file_type::none)
         complain(file, failure(error.message()), "a file that can be written", "check the path and its permissions");
-    Target target{file};
+    FileReplacement::Target target{file};
     constexpr int most_links = 40;
     for (int links = 0; links < most_links && fs::is_symlink(fs::symlink_status(target.path, error)); ++links) {
         const fs::path to = fs::read_symlink(target.path, error);
@@ -95,27 +77,57 @@ void make_folder(const std::filesystem::path& folder) {
              "a folder that exists or can be created", "choose another path or check the permissions");
 }
 
-void write_file(const std::filesystem::path& file, FunctionRef<void(std::ostream&)> write) {
-    const Target target = target_of(file);
-    if (target.path.has_parent_path()) make_folder(target.path.parent_path());
-    const std::filesystem::path part = std::filesystem::path(target.path) += ".part";
+FileReplacement::FileReplacement(const std::filesystem::path& file) : file_(file), target_(target_of(file)) {
+    if (target_.path.has_parent_path()) make_folder(target_.path.parent_path());
+    part_ = target_.path;
+    std::ios::openmode mode = std::ios::binary | std::ios::trunc | std::ios::out;
+    if (!target_.takes_bytes) {
+        part_ += ".part";
+        mode |= std::ios::in;
+    }
     errno = 0;
-    std::ofstream out(target.takes_bytes ? target.path : part, std::ios::binary | std::ios::trunc);
-    if (!out) complain(file, failure(what(errno)), "a file that can be written", "check the path and its permissions");
-    const Temporary temporary{target.takes_bytes ? std::filesystem::path() : part};
-    write(out);
-    out.close();
-    if (!out)
-        complain(file, failure(what(errno)) + " while writing", "enough space for the whole file",
+    stream_.open(part_, mode);
+    if (!stream_)
+        complain(file, failure(what(errno)), "a file that can be written", "check the path and its permissions");
+}
+
+FileReplacement::~FileReplacement() {
+    if (target_.takes_bytes) return;
+    std::error_code ignored;
+    std::filesystem::remove(part_, ignored);
+}
+
+std::fstream& FileReplacement::seekable_stream() {
+    if (target_.takes_bytes)
+        complain(file_, "a pipe or a terminal", "a regular file", "choose another path");
+    return stream_;
+}
+
+void FileReplacement::require_written() {
+    stream_.flush();
+    if (!stream_)
+        complain(file_, failure(what(errno)) + " while writing", "enough space for the whole file",
                  "free disk space or choose another path");
-    if (target.takes_bytes) return;
+}
+
+void FileReplacement::commit() {
+    require_written();
+    stream_.close();
+    require_written();
+    if (target_.takes_bytes) return;
     std::error_code error;
-    if (target.permissions != std::filesystem::perms::unknown)
-        std::filesystem::permissions(temporary.path, target.permissions, error);
-    if (!error) std::filesystem::rename(temporary.path, target.path, error);
+    if (target_.permissions != std::filesystem::perms::unknown)
+        std::filesystem::permissions(part_, target_.permissions, error);
+    if (!error) std::filesystem::rename(part_, target_.path, error);
     if (error)
-        complain(file, failure(error.message()), "a file that can be replaced",
+        complain(file_, failure(error.message()), "a file that can be replaced",
                  "check the permissions of the file and its folder");
+}
+
+void write_file(const std::filesystem::path& file, FunctionRef<void(std::ostream&)> write) {
+    FileReplacement replacement(file);
+    write(replacement.stream());
+    replacement.commit();
 }
 
 }  // namespace skerry

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <iosfwd>
+#include <fstream>
 
 #include "jobs/function_ref.h"
 
@@ -15,10 +15,40 @@ void make_folder(const std::filesystem::path& folder);
 /// streams such as pipes and terminals are accepted. Symbolic links are followed.
 void require_replaceable(const std::filesystem::path& file);
 
-/// Writes a temporary file beside `file`, then renames the temporary file. Other programs never see an incomplete file,
-/// and a failure leaves the old file unchanged. The new file gets the permissions of the old one. If `file` is a
-/// symbolic link, its target is replaced. Pipes and terminals are written directly. Creates the folder if needed.
-/// Throws SceneError that names the file and the cause.
+/// A temporary file beside `file`, which commit() renames. Other programs never see an incomplete file, and a failure
+/// leaves the old file unchanged. The new file gets the permissions of the old one. If `file` is a symbolic link, its
+/// target is replaced. Pipes and terminals are written directly. Creates the folder if needed. All functions throw
+/// SceneError that names the file and the cause.
+class FileReplacement {
+public:
+    explicit FileReplacement(const std::filesystem::path& file);
+    /// Removes the temporary file, unless commit() has renamed it.
+    ~FileReplacement();
+    FileReplacement(const FileReplacement&) = delete;
+    FileReplacement& operator=(const FileReplacement&) = delete;
+
+    std::fstream& stream() { return stream_; }
+    /// Throws if `file` is a pipe or a terminal. The stream can otherwise also seek and read.
+    std::fstream& seekable_stream();
+    /// Throws if the bytes so far could not be written.
+    void require_written();
+    void commit();
+
+    /// File or stream to which the bytes are written. Symbolic links are resolved.
+    struct Target {
+        std::filesystem::path path;
+        bool takes_bytes = false;  // true for a pipe or a terminal, which is written directly
+        std::filesystem::perms permissions = std::filesystem::perms::unknown;  // permissions of the file to be replaced
+    };
+
+private:
+    std::filesystem::path file_;
+    Target target_;
+    std::filesystem::path part_;
+    std::fstream stream_;
+};
+
+/// Writes a file by FileReplacement.
 void write_file(const std::filesystem::path& file, FunctionRef<void(std::ostream&)> write);
 
 }  // namespace skerry

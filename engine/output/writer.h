@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "skerry/output.h"
 #include "skerry/scene.h"
 
 namespace skerry {
@@ -51,6 +53,11 @@ std::unique_ptr<Writer> html_page(const std::filesystem::path& file, const Scene
 /// row, or HDF5, written at the end. Throws SceneError for any other extension, and if no probe of the scene has a
 /// series.
 std::unique_ptr<Writer> probe_series(const std::filesystem::path& file, const Scene& scene);
+/// Output of a film. For a resumed run the film begins at the checkpoint. Throws SceneError unless the extension of the
+/// file is .usd or .usdc.
+std::unique_ptr<Writer> usd_film(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max);
+/// Output of the state at the end of the run as glTF. Throws SceneError unless the extension of the file is .glb.
+std::unique_ptr<Writer> gltf_state(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max);
 /// Output of a trace of the activities of all threads, for Perfetto.
 std::unique_ptr<Writer> thread_trace(const std::filesystem::path& file);
 

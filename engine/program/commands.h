@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "skerry/output.h"
 #include "skerry/problem.h"
 #include "skerry/scene.h"
 
@@ -44,6 +45,8 @@ struct RunOptions {
     // not written.
     std::map<std::string, std::filesystem::path> outputs;
     ProblemsOf problems_of = ProblemsOf::step;
+    FilmColor film_color = FilmColor::none;
+    std::optional<Real> film_max;       // value at the upper end of the colours of films and glTF files
     std::optional<int> problems_every;  // number of steps between two exported steps
     bool quiet = false;
     bool profile = false;              // also print step limits, solver statistics, energies and stage times

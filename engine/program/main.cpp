@@ -39,6 +39,7 @@ passed through each other or contacts stayed unsolved, 128 + n stopped by signal
 const char* const run_examples = R"(Examples:
   skerry run scenes/skittles.json --seconds 2 --threads 2
   skerry run scenes/table.json --page table.html --frames-per-second 30
+  skerry run scenes/skittles.json --film skittles.usd --film-color stress        open the film in Blender
   skerry run scenes/table.json --profile                                         also print the times of all stages
   skerry run scenes/bucket.json --contact-regions global --stats global.json     one contact region instead of many
   skerry run scenes/bucket.json --export-problems problems --export-every 100    then: skerry solve problems/FILE
@@ -53,7 +54,7 @@ the times of all stages and the hash of the final state. --stats writes all of t
 --restart reads the scene file, the settings, the simulated time of the run and the times of the frames from the
 checkpoint. Give SCENE only if the scene file has moved. --seconds may be larger and --threads may differ. --stats then
 covers the whole run, but the times of the stages begin at the checkpoint. --probes and --out continue the earlier
-files; use the same file and folder. --page and --trace begin at the checkpoint.)";
+files; use the same file and folder. --page, --film and --trace begin at the checkpoint.)";
 
 const char* const inspect_examples = R"(Examples:
   skerry inspect bunny.msh                                 sizes, quality, problems, tetrahedra that limit the step
@@ -171,6 +172,12 @@ void add_count(CLI::App& app, const std::string& flag, std::optional<int>& targe
 void add_outputs(CLI::App& command, RunOptions& options) {
     for (const OutputFormat& format : output_formats())
         command.add_option(format.option, options.outputs[format.option], format.meaning);
+    add_choice<FilmColor>(command, "--film-color", options.film_color,
+                          "quantity that the colours of --film and --gltf show: von Mises stress, speed or contact "
+                          "pressure; default: none, each body has its own colour");
+    add_number(command, "--film-max", options.film_max,
+               "value at the upper end of these colours, which begin at zero [Pa, m/s]; default: 99 % of the values are "
+               "below it");
     add_number(command, "--frames-per-second", options.frames_per_second,
                "number of frames of output per simulated second");
     add_count(command, "--export-every", options.problems_every, 1,

@@ -11,6 +11,10 @@ std::span<const OutputFormat> output_formats() {
          [](Request of) { return paraview_frames(of.place, of.scene); }},
         {"--page", "HTML file that plays the run in a browser, without a network connection", false,
          [](Request of) { return html_page(of.place, of.scene); }},
+        {"--film", "USD file (.usd, .usdc) that plays the run in Blender and other programs", false,
+         [](Request of) { return usd_film(of.place, of.options.film_color, of.options.film_max); }},
+        {"--gltf", "glTF file (.glb) of the state at the end of the run", false,
+         [](Request of) { return gltf_state(of.place, of.options.film_color, of.options.film_max); }},
         {"--probes",
          "file for the time series of the scene's probes: .csv is written row by row, .h5 and .hdf5 at the end of the "
          "run",

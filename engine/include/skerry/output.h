@@ -1,9 +1,13 @@
-// Output of a run: a time series for ParaView, and an HTML page that plays the run in a browser.
+// Output of a run: a time series for ParaView, an HTML page that plays the run in a browser, a film, and a state as glTF.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "skerry/scene.h"
 
@@ -58,6 +62,52 @@ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// Quantity that the colours of a film show.
+enum class FilmColor { none, stress, speed, contact };
+template <>
+struct EnumNames<FilmColor> {
+    static constexpr std::array<std::pair<FilmColor, std::string_view>, 4> table{{
+        {FilmColor::none, "none"},
+        {FilmColor::stress, "stress"},
+        {FilmColor::speed, "speed"},
+        {FilmColor::contact, "contact"},
+    }};
+};
+
+struct FilmSettings {
+    Real frame_step = 1.0 / 60;  // time between two frames, which have consecutive numbers in the film [s]
+    FilmColor color = FilmColor::none;
+    // Value at the upper end of the colours, which begin at zero, in the unit of the quantity. If empty, 99 % of the
+    // values above zero are below it.
+    std::optional<Real> color_max{};
+};
+
+/// Writes a film in the binary format of USD (Universal Scene Description), which Blender, Houdini and other programs
+/// open without plug-ins (docs/outputs.md). The file has a mesh for each body and each collider, with velocities for
+/// motion blur. The quantity of FilmColor is a colour and a number at each vertex: von Mises stress [Pa], speed [m/s],
+/// or contact pressure [Pa]. Frames are written at once to a temporary file. The film is complete or does not exist.
+class FilmWriter {
+public:
+    /// Throws SceneError if the file cannot be written, if its extension is not .usd or .usdc, or if a setting is wrong.
+    FilmWriter(const std::filesystem::path& file, const FilmSettings& settings);
+    ~FilmWriter();
+    /// Throws SceneError if the time is not later than that of the previous frame, or if the frame cannot be written.
+    /// After an error the film is lost.
+    void add_frame(const World& world);
+    /// Completes the film. Returns the value at the upper end of the colours.
+    Real close();
+
+private:
+    struct Impl;
+    void require_open() const;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Writes the present state as a binary glTF file (.glb). The file has a mesh for each body and each collider, with
+/// normals. Colours are as in a film. glTF has the y axis up, so the meshes are rotated by -90 degrees about x.
+void write_gltf(const World& world, const std::filesystem::path& file, FilmColor color = FilmColor::none,
+                std::optional<Real> color_max = {});
 
 }  // namespace skerry
 #pragma GCC visibility pop

@@ -213,7 +213,7 @@ void VtkSeries::write_files(const Frame& frame) {
     write_bodies(frame, bodies);
     write_contacts(frame, contacts);
     if (colliders_changed(frame)) {
-        measure_patch(frame);
+        if (!patch_) patch_ = patch_around(frame.bodies);
         const std::string colliders = frame_file("colliders", ".vtp");
         write_colliders(frame, colliders);
         colliders_file_ = colliders;
@@ -370,28 +370,13 @@ bool VtkSeries::colliders_changed(const Frame& frame) {
     return true;
 }
 
-/// Chooses the displayed part of the infinite planes, once: a square around the bodies. Its edge is twice the diagonal
-/// of the bounding box of all bodies. Does nothing as long as there are no bodies.
-void VtkSeries::measure_patch(const Frame& frame) {
-    if (patch_half_size_ > 0) return;
-    Vec3 lower = Vec3::Constant(1e300), upper = -lower;
-    for (const BodyFrame& body : frame.bodies)
-        for (const Vec3& point : body.position) {
-            lower = lower.cwiseMin(point);
-            upper = upper.cwiseMax(point);
-        }
-    if ((lower.array() > upper.array()).any()) return;
-    patch_center_ = (lower + upper) / 2;
-    // The minimum size is needed if the bounding box of all bodies is a single point.
-    patch_half_size_ = std::max((upper - lower).norm(), 1e-6);
-}
-
 void VtkSeries::write_colliders(const Frame& frame, const std::string& name) const {
     std::vector<Vec3> nodes;
     std::vector<std::array<Index, 3>> triangles;
     std::vector<Index> numbers;
     for (const ColliderFrame& collider : frame.colliders) {
-        const PlanePatch patch{to_shape(collider.pose, patch_center_), patch_half_size_ > 0 ? patch_half_size_ : 1};
+        PlanePatch patch = patch_.value_or(PlanePatch{});
+        patch.center = to_shape(collider.pose, patch.center);
         const SurfaceMesh picture = shape_picture(*collider.shape, patch);
         const Index first = static_cast<Index>(nodes.size());
         for (const Vec3& node : picture.nodes) nodes.push_back(to_world(collider.pose, node));

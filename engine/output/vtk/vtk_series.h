@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/output/frame.h"
+#include "engine/output/shape_picture.h"
 
 namespace skerry {
 
@@ -48,7 +50,6 @@ private:
     void write_colliders(const Frame& frame, const std::string& file) const;
     void write_lines(const Frame& frame, const std::string& file) const;
     bool colliders_changed(const Frame& frame);
-    void measure_patch(const Frame& frame);
     std::string frame_file(const char* what, const char* extension) const;
 
     // Files of an earlier series with the same name, the index file first.
@@ -66,9 +67,7 @@ private:
     // Colliders in the last file of colliders, and their poses in this file.
     std::vector<std::pair<ColliderHandle, MotionKey>> colliders_prev_;
     std::string colliders_file_;        // name of the last file of colliders
-    Vec3 patch_center_ = Vec3::Zero();  // centre of the displayed square of planes [m]
-    // half the edge length of the displayed square of planes; 0 until the square is chosen [m]
-    Real patch_half_size_ = 0;
+    std::optional<PlanePatch> patch_;  // displayed part of planes, from the first frame with bodies
     std::vector<Entry> entries_;
 };
 
