@@ -5,6 +5,7 @@
 
 #include "engine/program/mesh_text.h"
 #include "engine/program/number_text.h"
+#include "engine/world/step/step.h"
 #include "engine/world/world_state.h"
 
 namespace skerry {
@@ -57,10 +58,26 @@ std::size_t count_bad(std::vector<Real> step) {
         std::ranges::count_if(step, [usual](Real each) { return much_longer * each < usual; }));
 }
 
+/// Note about a body that needs much shorter steps because of the forces on it than its elements need. Returns an empty
+/// text if there is none.
+std::string note_of_forces(const World& world, double steps) {
+    const Model& model = WorldAccess::state_of(world).model;
+    Index body = no_index;
+    const Real step = stable_step(model, &body);
+    if (body == no_index) return {};
+    const Real others = std::min(model.bodies.stable_step[body], world.settings().step_size.value_or(usual_step));
+    if (!(others > much_longer * step)) return {};
+    return "body \"" + model.body_records[static_cast<std::size_t>(body)].name +
+           "\": the springs, cables, cavities, fibres or loads that act on it need steps of " + with_unit(step, "s") +
+           ": about " + count_text(steps) + " steps, " + short_number(others / step) +
+           " times as many as otherwise; reduce their stiffness, tension, pressure or drag";
+}
+
 }  // namespace
 
 std::string stiff_note(const ScenePlan& plan, const World& world, double steps, double sample) {
     if (steps < few_steps || plan.bodies.empty()) return {};
+    if (std::string text = note_of_forces(world, steps); !text.empty()) return text;
     const ShortSteps stiff = short_steps(plan, world);
     const Real others = std::min({stiff.others, sample, world.settings().step_size.value_or(usual_step)});
     if (stiff.count == 0 || !(others > much_longer * stiff.step)) return {};

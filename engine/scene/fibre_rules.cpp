@@ -1,4 +1,6 @@
 // Keys of fibres in a scene file, and the body, set and directions that they name.
+#include <algorithm>
+
 #include "engine/mesh/sets.h"
 #include "engine/scene/scene_plan.h"
 #include "engine/scene/scene_rules.h"
@@ -25,7 +27,13 @@ const Rule<FibreEntry>& rule_of<FibreEntry>() {
                              "tension] between which it changes linearly; default: 0",
                   .unit = "Pa",
                   .limits = at_least(0)})
-            .exactly_one({"direction", "direction_array"});
+            .exactly_one({"direction", "direction_array"})
+            .check([](const Place& place, const Entry& entry) {
+                const auto pulls = [](const TimeKey& key) { return key.value != 0; };
+                if (entry.stiffness == 0 && std::ranges::none_of(entry.tension.keys, pulls))
+                    place.refuse("no \"stiffness\" and no \"tension\" above 0",
+                                 "at least one of the two, because other fibres exert no force");
+            });
     return rule;
 }
 

@@ -153,6 +153,11 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         }
     for (const PairPlan& pair : plan.pairs)
         called_at(pair.place, [&] { pairs.set(materials[pair.first], materials[pair.second], pair.surface); });
+    for (const NoCollisionPlan& pair : plan.no_collision)
+        if (pair.to_body)
+            world.set_collision(bodies[pair.body], bodies[*pair.to_body], false);
+        else
+            world.set_collision(bodies[pair.body], colliders[*pair.to_collider], false);
     std::vector<JointHandle> joints;
     for (const JointPlan& joint : plan.joints) {
         JointSettings settings = joint.settings;
@@ -164,7 +169,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         const JointPlan& joint = plan.joints[j];
         if (!joint.mimic) continue;
         const std::size_t leader = find_joint(plan, joint.mimic->joint, joint.place.key("mimic").key("joint"));
-        called_at(joint.place, [&] {
+        called_at(joint.place.key("mimic"), [&] {
             Joints(world).set_mimic(joints[j], JointMimic{joints[leader], joint.mimic->ratio, joint.mimic->offset});
         });
     }

@@ -32,6 +32,11 @@ public:
         number(scene.springs, "spring_");
         for (BodyEntry& body : scene.bodies) place(body);
         for (ColliderEntry& collider : scene.colliders) place(collider);
+        for (NoCollisionEntry& pair : scene.no_collision) {
+            rename(pair.body);
+            rename(pair.to_body);
+            rename(pair.to_collider);
+        }
         for (JointEntry& joint : scene.joints) {
             rename(joint.first);
             rename(joint.second);
@@ -153,6 +158,7 @@ void add_placed(const IncludeEntry& include, SceneFile& included, SceneFile& sce
     append(scene.pairs, included.pairs);
     append(scene.bodies, included.bodies);
     append(scene.colliders, included.colliders);
+    append(scene.no_collision, included.no_collision);
     append(scene.joints, included.joints);
     append(scene.ties, included.ties);
     append(scene.cables, included.cables);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -289,6 +290,14 @@ void plan_pair_once(const PairEntry& entry, ScenePlan& plan) {
     plan.pairs.push_back(pair);
 }
 
+NoCollisionPlan plan_no_collision(const NoCollisionEntry& entry, const ScenePlan& plan) {
+    NoCollisionPlan pair{
+        .body = find_body(plan, entry.body, entry.place.key("body")), .to_body = {}, .to_collider = {}};
+    if (entry.to_body) pair.to_body = find_body(plan, *entry.to_body, entry.place.key("to_body"));
+    if (entry.to_collider) pair.to_collider = find_collider(plan, *entry.to_collider, entry.place.key("to_collider"));
+    return pair;
+}
+
 JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePlan& plan) {
     JointPlan joint;
     joint.name = entry.name.empty() ? "joint_" + std::to_string(number) : entry.name;
@@ -315,6 +324,19 @@ JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePla
     joint.mimic = entry.mimic;
     joint.place = entry.place;
     return joint;
+}
+
+/// Adds a note if a joint does not start where its mimic wants it.
+void note_start_of_mimic(const JointPlan& joint, ScenePlan& plan) {
+    const JointPlan& leader =
+        plan.joints[find_joint(plan, joint.mimic->joint, joint.place.key("mimic").key("joint"))];
+    const Real found = joint.settings.coordinate,
+               wanted = joint.mimic->ratio * leader.settings.coordinate + joint.mimic->offset;
+    constexpr Real rounding = 1e-6;
+    if (!(std::abs(found - wanted) > rounding * std::max(Real(1), std::abs(wanted)))) return;
+    plan.notes.push_back("joint " + in_quotes(joint.name) + " starts at the coordinate " + Json(found).dump() +
+                         ", and by its mimic of " + in_quotes(leader.name) + " it should start at " +
+                         Json(wanted).dump() + "; the run moves both there at a limited speed");
 }
 
 void apply(const SceneOverrides& overrides, Settings& settings) {
@@ -353,7 +375,10 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
         for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
         plan.colliders.push_back(plan_collider(scene.colliders[i], i, plan));
+    for (const NoCollisionEntry& pair : scene.no_collision) plan.no_collision.push_back(plan_no_collision(pair, plan));
     for (std::size_t i = 0; i < scene.joints.size(); ++i) plan.joints.push_back(plan_joint(scene.joints[i], i, plan));
+    for (const JointPlan& joint : plan.joints)
+        if (joint.mimic) note_start_of_mimic(joint, plan);
     for (std::size_t i = 0; i < scene.ties.size(); ++i) plan.ties.push_back(plan_tie(scene.ties[i], i, plan));
     for (std::size_t i = 0; i < scene.cables.size(); ++i) plan.cables.push_back(plan_cable(scene.cables[i], i, plan));
     plan_cavities(scene, plan);

@@ -193,6 +193,12 @@ struct PairEntry {
     std::optional<Real> friction, static_friction, dynamic_friction, restitution;
     Place place;
 };
+/// Two objects that do not collide: a body, and another body or a collider.
+struct NoCollisionEntry {
+    std::string body;
+    std::optional<std::string> to_body, to_collider;
+    Place place;
+};
 struct SpringEntry {
     std::string name;
     AnchorEntry first, second;
@@ -341,6 +347,7 @@ struct SceneFile {
     std::vector<PairEntry> pairs;
     std::vector<BodyEntry> bodies;
     std::vector<ColliderEntry> colliders;
+    std::vector<NoCollisionEntry> no_collision;
     std::vector<JointEntry> joints;
     std::vector<TieEntry> ties;
     std::vector<CableEntry> cables;

@@ -115,6 +115,10 @@ struct SpringPlan {
     SpringSettings settings;  // settings without anchors, because handles exist only in a built world
     Place place;
 };
+struct NoCollisionPlan {
+    std::size_t body = 0;                             // index in ScenePlan::bodies
+    std::optional<std::size_t> to_body, to_collider;  // indices in ScenePlan::bodies and ScenePlan::colliders
+};
 struct ProbePlan {
     std::string name;
     std::size_t body = 0;      // index in ScenePlan::bodies
@@ -151,6 +155,7 @@ struct ScenePlan {
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
     std::vector<PairPlan> pairs;
+    std::vector<NoCollisionPlan> no_collision;
     std::vector<JointPlan> joints;
     std::vector<TiePlan> ties;
     std::vector<CablePlan> cables;

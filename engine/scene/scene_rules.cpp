@@ -494,6 +494,7 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("bodies", &SceneFile::bodies, {.meaning = "deformable and rigid bodies"})
             .key("colliders", &SceneFile::colliders,
                  {.meaning = "rigid shapes that are fixed or follow a prescribed motion"})
+            .key("no_collision", &SceneFile::no_collision, {.meaning = "pairs of objects that do not collide"})
             .key("joints", &SceneFile::joints, {.meaning = "joints of rigid bodies"})
             .key("ties", &SceneFile::ties, {.meaning = "ties of deformable bodies to other objects"})
             .key("cables", &SceneFile::cables, {.meaning = "cables that run through points of bodies"})
@@ -506,8 +507,7 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("probes", &SceneFile::probes,
                  {.meaning = "recorded quantities: contacts for the report, and time series for --probes"})
             .key("probe_step", &SceneFile::probe_step,
-                 {.meaning =
-                      "time between samples of the probes; each sample is one row of a series; default: frame_step",
+                 {.meaning = "time between rows of the time series; default: frame_step",
                   .unit = "s",
                   .limits = above(0)});
     return rule;

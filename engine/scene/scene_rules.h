@@ -64,6 +64,8 @@ const Rule<SurfaceEntry>& rule_of<SurfaceEntry>();
 template <>
 const Rule<PairEntry>& rule_of<PairEntry>();
 template <>
+const Rule<NoCollisionEntry>& rule_of<NoCollisionEntry>();
+template <>
 const Rule<AnchorEntry>& rule_of<AnchorEntry>();
 template <>
 const Rule<CableEntry>& rule_of<CableEntry>();

@@ -1,4 +1,4 @@
-// Keys of friction by pair of materials and by place in a scene file.
+// Keys of contacts in a scene file: friction by pair of materials and by place, and objects that do not collide.
 #include "engine/scene/scene_rules.h"
 
 namespace skerry {
@@ -72,6 +72,23 @@ const Rule<PairEntry>& rule_of<PairEntry>() {
                           .limits = within(0, 1)});
         return made;
     }();
+    return rule;
+}
+
+template <>
+const Rule<NoCollisionEntry>& rule_of<NoCollisionEntry>() {
+    using Entry = NoCollisionEntry;
+    static const auto rule =
+        Rule<Entry>("no_collision", "Two objects that do not collide with each other.")
+            .key("body", &Entry::body, {.meaning = "name of a body", .required = true})
+            .key("to_body", &Entry::to_body, {.meaning = "name of another body"})
+            .key("to_collider", &Entry::to_collider, {.meaning = "name of a collider"})
+            .exactly_one({"to_body", "to_collider"})
+            .check([](const Place& place, const Entry& entry) {
+                if (entry.to_body == entry.body)
+                    place.key("to_body").refuse(in_quotes(entry.body) + ", the name under \"body\"",
+                                                "another body; \"self_contact\" of a body is for the body itself");
+            });
     return rule;
 }
 

@@ -54,7 +54,7 @@ void require_orthotropic(const OrthotropicModuli& moduli, const std::string& obj
     if (!first.allFinite() || !second.allFinite() ||
         !(first.cross(second).norm() > 1e-6 * first.norm() * second.norm()))
         refuse(object, "orthotropic.first_axis, second_axis", shown(first) + " and " + shown(second),
-               "two directions that are not parallel");
+               "two directions that are not parallel; the default of second_axis is (0, 1, 0)");
 }
 
 void require_plasticity(const MaterialSettings& material, const Plasticity& plasticity, const std::string& object) {

@@ -135,6 +135,14 @@ TEST_CASE("a joint moves to the offset of its mimic at a bounded speed", "[scene
     CHECK(rack == Approx(0.01 / (1 + share * Rack::mass)).epsilon(1e-3));
 }
 
+TEST_CASE("a mimic forgets its impulse when a body of its leader is reset", "[scene][joints]") {
+    Rack fall;
+    REQUIRE(fall.world.advance(0.1).ok());
+    REQUIRE(Joints(fall.world).state(fall.slider).mimic > 1);
+    fall.world.reset(fall.wheel);
+    CHECK(Joints(fall.world).state(fall.slider).mimic == 0);
+}
+
 TEST_CASE("a joint mimics a leader whose bodies impulses cannot move", "[scene][joints]") {
     Rack held(Vec3::Zero());
     held.world.attach(held.wheel, std::array<Index, 4>{0, 1, 2, 4}, Motion{.angular_velocity = {2, 0, 0}}, {0, 0.5, 0});
@@ -234,6 +242,30 @@ TEST_CASE("a mimic names what is wrong with it", "[scene][joints]") {
     refused(gripper.leader, {.leader = gripper.follower}, "a joint that mimics this joint");
     refused(gripper.follower, {.leader = gripper.leader, .ratio = 0}, "mimic.ratio");
     refused(gripper.follower, {.leader = gripper.leader, .offset = infinity}, "mimic.offset");
+    const std::uint64_t before = gripper.world.state_hash();
+    CHECK_THROWS_WITH(joints.set_mimic(gripper.leader, JointMimic{.leader = gripper.follower}),
+                      !Contains("mimic.leader"));  // scenes have no such key
+    CHECK(gripper.world.state_hash() == before);
+}
+
+TEST_CASE("joints that mimic each other need limits with a common position", "[scene][joints]") {
+    Gripper gripper;
+    Joints joints(gripper.world);
+    const JointHandle third =
+        joints.add({.kind = JointKind::slider, .first = gripper.palm, .axis = {1, 0, 0}, .lower = 0.1});
+    joints.set_limits(gripper.leader, 0.0, 0.2);
+    // third = 0.5 follower - 0.05 = 0.5 leader - 0.05, from -0.05 to 0.05
+    const JointMimic mimic{.leader = gripper.follower, .ratio = 0.5, .offset = -0.05};
+    CHECK_THROWS_WITH(joints.set_mimic(third, mimic),
+                      Contains("joint: mimic: found limits") && Contains("at least 0.1 and at most 0.05"));
+    CHECK_FALSE(joints.mimic(third));
+    joints.set_limits(third, 0.05, {});
+    joints.set_mimic(third, mimic);
+    CHECK_THROWS_WITH(joints.set_limits(gripper.leader, -1.0, 0.1),
+                      Contains("joint: lower, upper: found limits") && Contains("at least 0.2 and at most 0.1"));
+    CHECK(joints.limits(gripper.leader).upper == 0.2);
+    joints.set_mimic(third, {});
+    joints.set_limits(gripper.leader, -1.0, 0.1);
 }
 
 TEST_CASE("a joint starts at the coordinate that it is given", "[scene][joints]") {

@@ -92,13 +92,19 @@ RawMesh read_stl(FileReader& reader) {
     // The header of a binary file may begin with "solid", like a text file. Therefore the file size decides: the size
     // of a binary file follows exactly from its number of triangles.
     const std::string_view bytes = reader.rest();
+    if (bytes.empty()) reader.complain({}, "an empty file", "an STL file", "export the surface again");
     bool binary = false;
     if (bytes.size() >= header_bytes + 4) {
         std::uint64_t count = 0;
         for (std::size_t i = 4; i-- > 0;) count = 256 * count + static_cast<unsigned char>(bytes[header_bytes + i]);
         binary = bytes.size() == header_bytes + 4 + triangle_bytes * count;
     }
-    if (binary || reader.peek_word() != "solid")
+    const bool text = !binary && reader.peek_word() == "solid";
+    if (!text && bytes.size() < header_bytes + 4)
+        reader.complain({}, std::to_string(bytes.size()) + " bytes that do not begin with \"solid\"",
+                        "an STL file: text that begins with \"solid\", or at least 84 bytes",
+                        "check that the file is an STL file and complete");
+    if (!text)
         read_binary(reader, welder);
     else
         read_ascii(reader, welder);

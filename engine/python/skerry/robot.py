@@ -7,14 +7,13 @@ import json
 import math
 import os
 import sys
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ._errors import Doubt, SceneError
+from ._errors import SceneError
 from ._robot import Frame, PlannedBody, PlannedJoint, Robot, load_robot, plan_robot
 from ._settings import Motor, SurfaceMesh
 
@@ -28,16 +27,12 @@ def write_scene(
     coordinates: Mapping[str, float] | None = None,
     fixed: bool | None = None,
     motors: bool = True,
+    self_collision: bool = True,
 ) -> None:
     """Writes a robot as a scene file, which other scenes can include, and its surfaces into the folder NAME_meshes
-    beside it. The arguments are those of World.add_robot(). Doubt: a pair of links that the robot excludes from
-    collision collides in a scene."""
+    beside it. The arguments are those of World.add_robot()."""
     plan = plan_robot(robot, Frame(), coordinates, fixed=fixed, motors=motors)
     file = Path(path)
-    for first, second in robot.apart:
-        warnings.warn(
-            f"links '{first}' and '{second}': scenes cannot exclude pairs from collision", Doubt, stacklevel=2
-        )
     meshes = file.with_name(f"{file.stem}_meshes")
     meshes.mkdir(parents=True, exist_ok=True)
     surfaces = {of.link.name: f"{meshes.name}/{of.link.name.replace('/', '_')}.obj" for of in plan.bodies}
@@ -47,6 +42,10 @@ def write_scene(
         "name": robot.name,
         "materials": {_MATERIAL: {}},
         "bodies": [_body(of, surfaces[of.link.name]) for of in plan.bodies],
+        "no_collision": [
+            {"body": first, "to_body": second}
+            for first, second in plan.pairs_apart(robot, self_collision=self_collision)
+        ],
         "joints": [_joint(of) for of in plan.joints],
         "probes": [{"name": of.joint.name, "quantity": "joint", "joint": of.joint.name} for of in plan.joints],
     }

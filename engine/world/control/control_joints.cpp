@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "engine/world/complaint.h"
@@ -177,6 +178,45 @@ bool parted_elsewhere(const JointTable& table, std::size_t joint) {
     return false;
 }
 
+/// Coordinate of a joint as a function of that of its head, the joint at the end of its chain of leaders:
+/// ratio * coordinate of the head + offset.
+struct OfHead {
+    Index head;
+    Real ratio = 1, offset = 0;
+};
+OfHead of_head(const JointTable& table, Index joint) {
+    OfHead of{joint};
+    for (Index leader; (leader = table.leader[static_cast<std::size_t>(of.head)]) != no_index; of.head = leader) {
+        const MimicRow& mimic = table.mimic[static_cast<std::size_t>(of.head)];
+        of.offset += of.ratio * mimic.offset;
+        of.ratio *= mimic.ratio;
+    }
+    return of;
+}
+
+/// Checks that the joints which mimic each other, directly or through others, have a common position within their
+/// limits. `joint`: one of them, whose `field` is to be changed. `table`: the joints after the change.
+void require_common_position(const JointTable& table, std::size_t joint, const char* field) {
+    const OfHead own = of_head(table, static_cast<Index>(joint));
+    Real lower = -infinity, upper = infinity;  // of the coordinate of `joint`
+    for (std::size_t j = 0; j < table.size(); ++j) {
+        const OfHead other = of_head(table, static_cast<Index>(j));
+        if (other.head != own.head) continue;
+        const auto in_own = [&](Real limit) {
+            return own.ratio * ((limit - other.offset) / other.ratio) + own.offset;
+        };
+        const auto [least, most] = std::minmax({in_own(table.lower[j]), in_own(table.upper[j])});
+        lower = std::max(lower, least);
+        upper = std::min(upper, most);
+    }
+    constexpr Real rounding = 1e-9;
+    if (lower - upper > rounding * std::max({Real(1), std::abs(lower), std::abs(upper)}))
+        refuse_joint(field,
+                     "limits of this joint and of those that it mimics or that mimic it, by which its coordinate is at "
+                     "least " + short_text(lower) + " and at most " + short_text(upper),
+                     "limits that a common position of these joints satisfies");
+}
+
 }  // namespace
 
 JointHandle Joints::add(const JointSettings& joint) {
@@ -307,8 +347,11 @@ void Joints::set_limits(JointHandle joint, std::optional<Real> lower, std::optio
     validate_limits(lower, upper);
     const Real least = lower.value_or(-infinity), most = upper.value_or(infinity);
     if (model.joints.lower[row] == least && model.joints.upper[row] == most) return;
-    model.joints.lower[row] = least;
-    model.joints.upper[row] = most;
+    JointTable changed = model.joints;
+    changed.lower[row] = least;
+    changed.upper[row] = most;
+    require_common_position(changed, row, "lower, upper");
+    model.joints = std::move(changed);
     wake_both(model, row);
 }
 
@@ -345,14 +388,17 @@ void Joints::set_mimic(JointHandle joint, const std::optional<JointMimic>& mimic
             refuse_joint("mimic.offset", short_text(mimic->offset), "a finite coordinate (rad or m)");
         for (Index at = leader; at != no_index; at = table.leader[static_cast<std::size_t>(at)])
             if (at == static_cast<Index>(row))
-                refuse_joint("mimic.leader", "a joint that mimics this joint, directly or through others",
+                refuse_joint("mimic", "a joint that mimics this joint, directly or through others",
                              "a joint that does not");
     }
+    JointTable changed = table;
+    changed.leader[row] = leader;
+    changed.mimic[row] = mimic ? MimicRow{mimic->ratio, mimic->offset} : MimicRow{};
+    changed.mimic_impulse[row] = 0;
+    require_common_position(changed, row, "mimic");
+    table = std::move(changed);
     wake_both(model, row);
     if (leader != no_index) wake_both(model, static_cast<std::size_t>(leader));
-    table.leader[row] = leader;
-    table.mimic[row] = mimic ? MimicRow{mimic->ratio, mimic->offset} : MimicRow{};
-    table.mimic_impulse[row] = 0;
     model.links_open = true;
 }
 

@@ -32,9 +32,15 @@ void forget_impulses(WorldState& world, std::size_t body) {
     forget(world.cache.resting.contact.key, world.cache.resting.contact.impulse);
     JointTable& joints = model.joints;
     for (std::size_t j = 0; j < joints.size(); ++j) {
-        if (joints.first[j] != static_cast<Index>(body) && joints.second[j] != static_cast<Index>(body)) continue;
+        const auto joins = [&](Index joint) {
+            const auto row = static_cast<std::size_t>(joint);
+            return joints.first[row] == static_cast<Index>(body) || joints.second[row] == static_cast<Index>(body);
+        };
+        const bool own = joins(static_cast<Index>(j));
+        if (own || (joints.leader[j] != no_index && joins(joints.leader[j]))) joints.mimic_impulse[j] = 0;
+        if (!own) continue;
         joints.impulse[j] = joints.moment[j] = Vec3::Zero();
-        joints.coordinate[j] = joints.mimic_impulse[j] = joints.step[j] = 0;
+        joints.coordinate[j] = joints.step[j] = 0;
         joints.axis_impulse[j] = {};
     }
     TieTable& ties = model.ties;

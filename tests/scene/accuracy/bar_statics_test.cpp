@@ -1,5 +1,5 @@
-// Bars at rest under their weight and in rotation, and their vibrations (docs/methods/accuracy.md 12, 13, 16, 20, and
-// the orders in h of 31).
+// Bars at rest under their weight and in rotation, their vibrations, and a bar that yields (docs/methods/accuracy.md 12,
+// 13, 16, 20, 65, and the orders in h of 31).
 #include <catch2/catch.hpp>
 #include <optional>
 
@@ -253,6 +253,71 @@ TEST_CASE("damping takes nothing of the stretch of a spinning bar", "[scene]") {
         // The mesh is not symmetric, and its slow bending has progressed further in one of the two runs.
         CHECK(std::abs(strong - weak) <= 5e-4 * weak);
         CHECK(std::abs(strong - fine) <= 2e-5 * strong);  // second order: (omega h)^2 is 6e-7
+    }
+}
+
+TEST_CASE("a bar that is loaded, unloaded and loaded again follows the curve of linear hardening", "[scene][accuracy]") {
+    constexpr Real size = 0.1, area = 0.025 * 0.025, yield = 5e3, hardening = 2e4;  // [m], [m^2], [Pa], [Pa]
+    // States with the Kirchhoff stress s [Pa] and the plastic strain p, reached one after the other.
+    struct State {
+        const char* name;
+        Real s, p;
+        Real stretch() const { return std::exp(s / modulus + p); }
+    };
+    constexpr Real hardened = yield + hardening * 0.05;
+    const std::array<State, 6> states{{{"below the yield stress", 0.8 * yield, 0},
+                                       {"at the plastic strain 5 %", hardened, 0.05},
+                                       {"unloaded", 0, 0.05},
+                                       {"under pressure", -0.9 * hardened, 0.05},
+                                       {"loaded again, below the hardened stress", 0.9 * hardened, 0.05},
+                                       {"at the plastic strain 10 %", yield + hardening * 0.1, 0.1}}};
+    constexpr Real phase = 0.4, rest = 0.1;  // duration of a change, and of the rest at its end [s]
+    const Mesh mesh = mesh::box({size, 0.025, 0.025}, {4, 1, 1});
+    World world(weightless());
+    const auto bar = world.add_body(
+        mesh, {.material = world.add_material({.young_modulus = modulus,
+                                               .poisson_ratio = 0.3,
+                                               .density = density,
+                                               .damping = 300,
+                                               .model = MaterialModel::hencky,
+                                               .plasticity = Plasticity{yield, hardening}})});
+    std::array<std::vector<Index>, 2> end;
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+        if (std::abs(mesh.nodes[n].x()) > 0.49 * size) end[mesh.nodes[n].x() > 0].push_back(static_cast<Index>(n));
+    Motion pull{.keys = {{.time = 0}}};
+    for (const State& state : states) {
+        const MotionKey start = pull.keys.back();
+        const Vec3 way = Vec3(size * (state.stretch() - 1), 0, 0) - start.position;
+        constexpr int parts = 20;
+        for (int k = 1; k <= parts; ++k) {  // starts and ends slowly, because vibrations would cause more flow
+            const Real t = static_cast<Real>(k) / parts;
+            pull.keys.push_back({.time = start.time + t * phase, .position = start.position + t * t * (3 - 2 * t) * way});
+        }
+        pull.keys.push_back({.time = start.time + phase + rest, .position = start.position + way});
+    }
+    const std::vector<Vec3> along{Vec3::UnitX()};
+    world.attach(bar, end[0], Motion{}, Vec3::Zero(), along);
+    const auto pulled = world.attach(bar, end[1], pull, Vec3::Zero(), along);
+    world.measure_forces(true);
+    constexpr Real last = 0.01;  // time over which the mean force is taken [s]
+    for (const State& state : states) {
+        REQUIRE(world.advance(phase + rest - last).ok());
+        REQUIRE(world.advance(last).ok());
+        const Real expected = area * state.s / state.stretch();
+        accuracy::check({.item = 65,
+                         .name = std::string("bar of linear hardening, tension (N), ") + state.name,
+                         .formula = "A s / exp(s / E + p)",
+                         .expected = expected,
+                         .found = world.forces().by(pulled).force().x(),
+                         .tolerance = 0.005 * area * hardened,
+                         .kind = Tolerance::absolute});
+        accuracy::check({.item = 65,
+                         .name = std::string("bar of linear hardening, largest plastic strain, ") + state.name,
+                         .formula = "p",
+                         .expected = state.p,
+                         .found = std::ranges::max(world.plastic_strain(bar)),
+                         .tolerance = 1e-3,
+                         .kind = Tolerance::absolute});
     }
 }
 

@@ -162,4 +162,30 @@ TEST_CASE("a scene has groups and masks, and refuses what has no 32 bits", "[sce
     CHECK_THROWS_WITH(collides("1.5"), Catch::Contains("collision_group"));
 }
 
+TEST_CASE("a scene lists pairs that do not collide, also without their joint, and names mistakes", "[scene]") {
+    const TemporaryFolder folder;
+    const auto scene = [&](const std::string& pair) {
+        const std::string block = R"("mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}}, "material": "rubber",
+            "dynamics": "rigid")";
+        return load_scene(folder.write("pairs.json", R"({"materials": {"rubber": {}},
+            "bodies": [{"name": "a", "position": [0, 0, 1], )" + block + R"(},
+                       {"name": "b", "position": [0, 0, 1.5], )" + block + R"(}],
+            "colliders": [{"name": "floor", "shape": {"plane": {}}}], "joints": [{"kind": "ball", "first": "a",
+            "second": "b"}], "no_collision": [{"body": "a", "to_body": "b"}, )" + pair + "]}"));
+    };
+    Scene loaded = scene(R"({"body": "b", "to_collider": "floor"})");
+    World& world = loaded.world;
+    const BodyHandle a = world.bodies()[0], b = world.bodies()[1];
+    CHECK(world.may_collide(a, world.colliders()[0]));
+    CHECK_FALSE(world.may_collide(b, world.colliders()[0]));
+    Joints(world).remove(Joints(world).all()[0]);
+    CHECK_FALSE(world.may_collide(a, b));
+    CHECK(world.report().start_overlaps.empty());
+    CHECK_THROWS_WITH(scene(R"({"body": "a"})"), Catch::Contains("no_collision[1]"));
+    CHECK_THROWS_WITH(scene(R"({"body": "a", "to_body": "c"})"),
+                      Catch::Contains("no_collision[1].to_body: found \"c\", expected the name of a body"));
+    CHECK_THROWS_WITH(scene(R"({"body": "a", "to_body": "a"})"),
+                      Catch::Contains("no_collision[1].to_body: found \"a\", the name under \"body\""));
+}
+
 }  // namespace skerry::test::collisions_test

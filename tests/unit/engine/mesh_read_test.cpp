@@ -381,6 +381,19 @@ TEST_CASE("equal corners of an STL are one node, and triangles without three are
     CHECK(surface.triangles.size() == 1);
 }
 
+TEST_CASE("an STL that is empty, flat or something else is refused for what it is", "[unit]") {
+    const TemporaryFolder folder;
+    CHECK_THROWS_WITH(mesh::read_surface(folder.write("a.stl", "")), Contains("found an empty file"));
+    CHECK_THROWS_WITH(mesh::read_surface(folder.write("b.stl", "garbage")),
+                      Contains("found 7 bytes that do not begin with \"solid\", expected an STL file"));
+    CHECK_THROWS_WITH(mesh::read_surface(folder.write("c.stl", "solid s\nendsolid s\n")),
+                      Contains("found no triangles, expected at least one triangle"));
+    const std::string flat =
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 0 0\nendloop\nendfacet\n";
+    CHECK_THROWS_WITH(mesh::read_surface(folder.write("d.stl", "solid s\n" + flat + "endsolid s\n")),
+                      Contains("found no triangles") && Contains("1 flat triangles"));
+}
+
 TEST_CASE("a file that is not there, or is a folder, is refused", "[unit]") {
     CHECK_THROWS_WITH(mesh::read("/nowhere/at/all.msh"), Contains("/nowhere/at/all.msh: found no such file"));
     const TemporaryFolder folder;

@@ -24,6 +24,7 @@ const char* const machine = R"({"seconds": 9, "materials": {"steel": {"density":
          "repeat": {"count": [2, 1, 1], "spacing": [0.3, 0, 0], "jitter": 0.01}, "position": [0, -0.5, 0],
          "velocity": [0, 0, 1], "dynamics": "rigid"}],
     "colliders": [{"name": "wall", "shape": {"sphere": {"radius": 0.5}}, "position": [0, 0, -2], "material": "steel"}],
+    "no_collision": [{"body": "arm", "to_body": "drum"}, {"body": "drum", "to_collider": "wall"}],
     "joints": [
         {"name": "hinge", "kind": "hinge", "first": "arm", "point": [0, 0, 0], "axis": [0, 1, 0], "coordinate": 0.1,
          "mimic": {"joint": "turn", "ratio": 0.5, "offset": 0.1}},
@@ -68,6 +69,13 @@ TEST_CASE("a scene that is included with a pose moves as the scene itself", "[un
     const JointHandle left = Joints(world).all()[0], right = Joints(world).all()[2];
     CHECK(Joints(world).state(left).coordinate == Approx(0.3).epsilon(1e-3));
     CHECK(Joints(world).mimic(right)->leader == Joints(world).all()[3]);
+    for (const std::size_t copy : {0U, 1U}) {
+        const BodyHandle arm = bodies[4 * copy], drum = bodies[4 * copy + 1];
+        CHECK_FALSE(world.may_collide(arm, drum));
+        CHECK(world.may_collide(arm, bodies[5 - 4 * copy]));
+        CHECK_FALSE(world.may_collide(drum, world.colliders()[copy]));
+        CHECK(world.may_collide(arm, world.colliders()[copy]));
+    }
 }
 
 TEST_CASE("mistakes of scenes that are included with a name are refused", "[unit]") {
@@ -79,6 +87,7 @@ TEST_CASE("mistakes of scenes that are included with a name are refused", "[unit
     };
     const std::string left = R"({"scene": "machine.json", "name": "left"})";
     refused(left + "," + left, "include[1].name: found \"left\", which another included scene has");
+    refused(R"({"scene": "machine.json", "name": "a/b"})", "include[0].name: found \"a/b\", expected a name without /");
     refused(R"({"scene": "machine.json"})", "include[0]: found no key \"name\"");
     refused(R"({"scene": "nothing.json", "name": "left"})", "include[0].scene");
     folder.write("blow.json", scene_with(R"("loads": [{"kind": "acceleration", "acceleration": [1, 0, 0]}])"));

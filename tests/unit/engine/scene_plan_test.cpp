@@ -182,6 +182,30 @@ TEST_CASE("probes find their body and nodes", "[unit]") {
                       Catch::Contains("probe \"south\": probes[0].body: found \"bal\"") && Catch::Contains("\"ball\""));
 }
 
+TEST_CASE("probes of stress and volume are refused on rigid bodies", "[unit]") {
+    const TemporaryFolder folder;
+    for (const char* const quantity : {"stress", "volume"}) {
+        const std::string scene = body_with(R"("dynamics": "rigid")");
+        const std::string probes = R"(, "probes": [{"name": "p", "quantity": ")" + std::string(quantity) +
+                                   R"(", "body": "block"}]})";
+        CHECK_THROWS_WITH(plan_scene(folder.write("rigid.json", scene.substr(0, scene.size() - 1) + probes)),
+                          Catch::Contains("probes[0].body: found the rigid body \"block\", expected a body that deforms, "
+                                          "for the quantity \"" + std::string(quantity) + "\""));
+    }
+}
+
+TEST_CASE("fibres that exert no force are refused", "[unit]") {
+    const TemporaryFolder folder;
+    const auto file = [&](const std::string& keys) {
+        return folder.write("fibres.json", scene_with(R"("fibres": [{"body": "ball", "direction": [0, 0, 1])" + keys +
+                                                      "}]"));
+    };
+    CHECK_THROWS_WITH(plan_scene(file(R"(, "exponent": 2, "tension": [[0, 0], [1, 0]])")),
+                      Catch::Contains("fibres[0]: found no \"stiffness\" and no \"tension\" above 0"));
+    CHECK(plan_scene(file(R"(, "tension": [[0, 0], [1, 5]])")).fibres.size() == 1);
+    CHECK(plan_scene(file(R"(, "stiffness": 5)")).fibres.size() == 1);
+}
+
 TEST_CASE("a scale stretches the mesh, overrides replace settings", "[unit]") {
     const TemporaryFolder folder;
     const std::string text =
@@ -265,6 +289,23 @@ TEST_CASE("joints of what is not there, or cannot be, are refused where they sta
             "motor.keys[1].time: found 0 s, expected a time after that of the key before, 1 s");
     refused(R"("kind": "hinge", "first": "door", "name": "a"}, {"kind": "hinge", "first": "frame", "name": "a")",
             "joints[1].name: found \"a\", which is already the name of a joint");
+}
+
+TEST_CASE("a start and limits that contradict a mimic are named", "[unit]") {
+    const TemporaryFolder folder;
+    const auto file = [&](const std::string& keys) {
+        return folder.write("mimic.json", jointed_scene(R"("name": "leader", "kind": "hinge", "first": "door",
+            "upper": 0.2}, {"name": "follower", "kind": "slider", "first": "frame", )" + keys));
+    };
+    const std::string mimic = R"("mimic": {"joint": "leader", "ratio": -2, "offset": 1})";
+    CHECK(plan_scene(file(mimic + R"(, "coordinate": 1)")).notes.empty());
+    const std::vector<std::string> notes = plan_scene(file(mimic + R"(, "coordinate": 0.5)")).notes;
+    REQUIRE(notes.size() == 1);
+    CHECK_THAT(notes[0], Catch::Contains("joint \"follower\" starts at the coordinate 0.5, and by its mimic of "
+                                         "\"leader\" it should start at 1.0"));
+    CHECK_THROWS_WITH(load_scene(file(mimic + R"(, "coordinate": 1, "upper": 0.5)")),
+                      Catch::Contains("joint \"follower\": joints[1].mimic: joint: mimic: found limits") &&
+                          Catch::Contains("at least 0.6 and at most 0.5"));
 }
 
 TEST_CASE("motors of a scene have keys, and probes name joints", "[unit]") {

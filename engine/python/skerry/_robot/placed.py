@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
@@ -136,10 +135,8 @@ def add_robot(
             if joint.joint.mimic is not None:
                 leader, ratio, offset = joint.joint.mimic
                 joints[joint.joint.name].set_mimic(joints[leader], ratio=ratio, offset=offset)
-        pairs = robot.apart if self_collision else itertools.combinations(bodies, 2)
-        for first, second in pairs:
-            if first in bodies and second in bodies and first != second:
-                world.set_collision(bodies[first], bodies[second], False)
+        for first, second in plan.pairs_apart(robot, self_collision=self_collision):
+            world.set_collision(bodies[first], bodies[second], False)
     except BaseException:
         for body in bodies.values():
             world.remove(body)

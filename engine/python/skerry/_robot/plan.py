@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -68,6 +69,12 @@ class RobotPlan:
 
     bodies: list[PlannedBody]
     joints: list[PlannedJoint]
+
+    def pairs_apart(self, robot: Robot, *, self_collision: bool) -> list[tuple[str, str]]:
+        """Names of the links of bodies that do not collide with each other, see World.add_robot()."""
+        names = [of.link.name for of in self.bodies]
+        pairs = robot.apart if self_collision else itertools.combinations(names, 2)
+        return [(first, second) for first, second in pairs if first in names and second in names and first != second]
 
 
 def plan_robot(
