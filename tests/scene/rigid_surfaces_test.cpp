@@ -10,6 +10,7 @@
 #include "skerry/scene.h"
 #include "skerry/spring.h"
 #include "tests/support/same_bits.h"
+#include "tests/support/surface_corpus.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
@@ -21,23 +22,6 @@ using Catch::Matchers::Contains;
 
 const Vec3 brick_size{0.1, 0.2, 0.3};
 const SurfaceMesh brick = mesh::boundary(mesh::box(brick_size, {1, 1, 1}));
-
-SurfaceMesh moved(SurfaceMesh surface, const Vec3& by) {
-    for (Vec3& x : surface.nodes) x += by;
-    return surface;
-}
-
-SurfaceMesh turned_inside_out(SurfaceMesh surface) {
-    for (std::array<Index, 3>& triangle : surface.triangles) std::swap(triangle[1], triangle[2]);
-    return surface;
-}
-
-SurfaceMesh both(SurfaceMesh first, const SurfaceMesh& second) {
-    const auto count = static_cast<Index>(first.nodes.size());
-    first.nodes.insert(first.nodes.end(), second.nodes.begin(), second.nodes.end());
-    for (const auto& [a, b, c] : second.triangles) first.triangles.push_back({a + count, b + count, c + count});
-    return first;
-}
 
 Settings weightless(Real h = 1.0 / 60) {
     Settings settings;

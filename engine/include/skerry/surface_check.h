@@ -1,0 +1,130 @@
+// Checks of triangle surfaces: connections, shells and intersections.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "components/options.h"
+#include "skerry/mesh.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+/// Faults of a triangle surface. `mesh::check_surface` repairs the first five kinds in SurfaceReport::cleaned.
+enum class SurfaceFaultKind {
+    flat_triangles,       // two corners are one node after merging
+    duplicate_triangles,  // the same three nodes as an earlier triangle
+    turned_triangles,     // orientation opposite to that of most triangles connected with it
+    inside_out_shells,    // closed shells that enclose a negative volume and lie in no other shell
+    duplicate_shells,     // the same surface as an earlier shell
+    holes,                // connected edges with only one triangle
+    branching_edges,      // edges with more than two triangles
+    pinched_nodes,        // nodes at which parts of the surface meet without a common edge
+    one_sided_shells,     // shells without an orientation, such as a Moebius strip
+    crossings,            // pairs of triangles of one shell that pass through each other
+    shell_crossings,      // pairs of triangles of different shells that pass through each other
+    overlaps,             // pairs of triangles that overlap in a common plane
+    flat_shells,          // closed shells without volume
+    doubled_volumes,      // triangles behind which closed shells enclose the same volume twice
+    slivers,              // triangles of three nodes with an altitude within the tolerance
+    thin_walls,           // sampled places at which the wall is thinner than the mean edge
+    unlikely_size,        // a size above 100 m or below 1e-6 m, probably a wrong unit of length
+};
+template <>
+struct EnumNames<SurfaceFaultKind> {
+    static constexpr std::array<std::pair<SurfaceFaultKind, std::string_view>, 17> table{{
+        {SurfaceFaultKind::flat_triangles, "flat_triangles"},
+        {SurfaceFaultKind::duplicate_triangles, "duplicate_triangles"},
+        {SurfaceFaultKind::turned_triangles, "turned_triangles"},
+        {SurfaceFaultKind::inside_out_shells, "inside_out_shells"},
+        {SurfaceFaultKind::duplicate_shells, "duplicate_shells"},
+        {SurfaceFaultKind::holes, "holes"},
+        {SurfaceFaultKind::branching_edges, "branching_edges"},
+        {SurfaceFaultKind::pinched_nodes, "pinched_nodes"},
+        {SurfaceFaultKind::one_sided_shells, "one_sided_shells"},
+        {SurfaceFaultKind::crossings, "crossings"},
+        {SurfaceFaultKind::shell_crossings, "shell_crossings"},
+        {SurfaceFaultKind::overlaps, "overlaps"},
+        {SurfaceFaultKind::flat_shells, "flat_shells"},
+        {SurfaceFaultKind::doubled_volumes, "doubled_volumes"},
+        {SurfaceFaultKind::slivers, "slivers"},
+        {SurfaceFaultKind::thin_walls, "thin_walls"},
+        {SurfaceFaultKind::unlikely_size, "unlikely_size"},
+    }};
+};
+
+/// All faults of one kind. Triangles have their number in the given surface, counted from 0.
+struct SurfaceFault {
+    SurfaceFaultKind kind{};
+    std::size_t count = 0;      // number of triangles, edges, nodes, pairs of triangles, holes, shells or places
+    Index triangle = no_index;  // first triangle with the fault; for holes: a triangle at the longest hole
+    Index other = no_index;     // second triangle of the first pair, or first triangle of the other shell
+    Vec3 place = Vec3::Zero();  // place of the first fault; for holes: centre of the longest hole [m]
+    Real length = 0;  // holes: length of the edges around the longest hole; thin_walls: smallest thickness [m]
+};
+
+/// Part of a surface that common edges connect. At an edge of several closed shells, the triangles around the volume of
+/// one shell are connected.
+struct SurfaceShell {
+    std::size_t triangles = 0;  // number of triangles
+    Index triangle = no_index;  // first triangle, by its number in the given surface
+    bool closed = false;
+    Real volume = 0;  // enclosed volume after turning; negative for a void in another shell; 0 if not closed [m^3]
+    // Row in SurfaceReport::shells of the smallest shell around this one; no_index: none. A shell inside another one
+    // bounds a void if its volume is negative, else a region of its own.
+    Index around = no_index;
+};
+
+struct SurfaceReport {
+    std::size_t nodes = 0, triangles = 0;             // of the given surface
+    Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // bounding box [m]
+    Real tolerance = 0;                               // nodes up to this distance apart were merged [m]
+    std::size_t merged = 0;                           // number of nodes that were merged into another node
+    Real min_edge = 0, mean_edge = 0, max_edge = 0;   // edge lengths of the cleaned surface [m]
+    Real area = 0, volume = 0;                        // of the cleaned surface; volume of the closed shells [m^2, m^3]
+    std::vector<SurfaceFault> faults{};               // at most one entry of each kind, in the order of the kinds
+    // Welded surface without flat and duplicate triangles and duplicate shells. Connected triangles have the same
+    // orientation, and closed shells that lie in no other shell enclose a positive volume. Holes and crossings remain.
+    SurfaceMesh cleaned{};
+    std::vector<Index> number{};         // number in the given surface of each triangle of `cleaned`
+    std::vector<Index> shell{};          // row in `shells` of each triangle of `cleaned`
+    std::vector<SurfaceShell> shells{};  // in the order of their first triangles
+
+    /// The faults of a kind; nullptr if there are none.
+    const SurfaceFault* find(SurfaceFaultKind kind) const {
+        for (const SurfaceFault& fault : faults)
+            if (fault.kind == kind) return &fault;
+        return nullptr;
+    }
+    /// True if `cleaned` bounds volumes and can be filled with tetrahedra without moving it: every edge has two
+    /// triangles, and no triangles cross or overlap.
+    bool can_be_filled() const;
+};
+
+namespace mesh {
+
+/// Tolerance of a check, as a fraction of the diagonal of the bounding box. It is larger than rounding errors of
+/// positions with seven digits, as in STL files.
+inline constexpr Real default_weld = 1e-6;
+/// A tolerance with which no nodes are merged, not even equal ones.
+inline constexpr Real no_weld = -1;
+
+/// Checks a surface. Nodes up to `tolerance` * (diagonal of the bounding box) apart are first merged, also in chains; 0
+/// merges equal nodes only. Triangles cross if they overlap by more than this distance in every direction (at least
+/// default_weld times their longest edge). The order of the nodes and triangles does not change. Throws SceneError
+/// if a node is not finite or a triangle has a node that does not exist; `name` stands for the surface in the error.
+SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance = default_weld,
+                            const std::string& name = "surface");
+
+/// Merges nodes as `check_surface` does, and drops triangles left with fewer than three different nodes. `number`, if
+/// given, gets the number in the given surface of each remaining triangle. `distance`: largest distance of merged
+/// nodes [m].
+SurfaceMesh weld(const SurfaceMesh& surface, Real distance, std::vector<Index>* number = nullptr);
+
+/// Describes the faults of a kind with their number and the first place, for example "2 holes, the longest 0.3 m around
+/// at (0, 0, 1) m beside triangle 17".
+std::string fault_text(const SurfaceFault& fault);
+
+}  // namespace mesh
+}  // namespace skerry
+#pragma GCC visibility pop
