@@ -6,9 +6,9 @@
 #include <iostream>
 #include <optional>
 
+#include "engine/mesh/repair/surface_measures.h"
 #include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
-#include "engine/program/repair.h"
 #include "engine/program/start_text.h"
 #include "engine/program/thin_part_text.h"
 #include "skerry/error.h"
@@ -133,7 +133,7 @@ int report_mesh(const InspectOptions& options, const Mesh& mesh, const std::vect
 /// Reports a surface of triangles, from which a collider or a rigid body can be made.
 int report_surface(const InspectOptions& options, const SurfaceMesh& surface) {
     const MeshReport report = inspect({.nodes = surface.nodes, .tetrahedra = {}, .triangles = surface.triangles});
-    const Real area = area_of(surface);
+    const Real area = mesh::area_of(surface);
     Problems problems;
     if (!report.closed_manifold)
         problems.push_back("the surface is not a closed manifold: " + report.boundary_fault +

@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "engine/mesh/repair/surface_distance.h"
 #include "engine/program/step_bound.h"
+#include "skerry/fill.h"
 
 namespace skerry {
 
@@ -16,9 +16,6 @@ struct MeshFigures {
     Real surface_area = 0;  // [m^2]
     Real step = 0;          // stable step [s]
 };
-
-/// Area of a surface [m^2].
-Real area_of(const SurfaceMesh& surface);
 
 struct RepairedMesh {
     Mesh mesh;

@@ -18,29 +18,6 @@ namespace {
 constexpr std::size_t listed_count = 3;
 constexpr Real shares[] = {0.001, 0.01};
 
-struct Body {
-    World world;
-    BodyHandle handle;
-};
-
-Body body_of(const Mesh& mesh, const StepCase& of) {
-    Settings settings = of.settings;
-    settings.step_size.reset();
-    // Clusters are switched off, so that the stable step is the step of the elements alone.
-    settings.clusters = false;
-    settings.backend = Backend::serial;
-    World world(settings);
-    BodySettings body = of.body;
-    body.dynamics = BodyDynamics::explicit_elastic;
-    body.material = world.add_material(of.material);
-    body.materials.clear();
-    for (const auto& [label, material] : of.labelled)
-        if (std::ranges::find(mesh.label, label) != mesh.label.end())
-            body.materials.emplace(label, world.add_material(material));
-    const BodyHandle handle = world.add_body(mesh, body);
-    return {std::move(world), handle};
-}
-
 Real altitude_of(const Mesh& mesh, Index tetrahedron) {
     const std::array<Index, 4>& corners = mesh.tetrahedra[static_cast<std::size_t>(tetrahedron)];
     return mesh::six_volumes(mesh, corners) / std::sqrt(mesh::largest_face_squared(mesh, corners));
@@ -134,7 +111,7 @@ void find_steps_without(const Mesh& mesh, const StepCase& of, std::span<const Re
             const std::size_t taken = std::min(at_once, count - gone);
             rest = taken_out(rest, std::span(order).first(taken));
             gone += taken;
-            const Body body = body_of(rest, of);
+            const ExplicitBody body = explicit_body(rest, of);
             longer = body.world.stable_step();
             order = worst_first(rest, body.world.tetrahedron_steps(body.handle));
         }
@@ -165,7 +142,7 @@ StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
 }
 
 StepBound step_bound(const Mesh& mesh, const StepCase& of, bool details) {
-    const Body body = body_of(mesh, of);
+    const ExplicitBody body = explicit_body(mesh, of);
     StepBound bound{
         .step = body.world.stable_step(), .element = body.world.element(body.handle), .worst = {}, .without = {}};
     if (details) add_details(mesh, of, body.world.tetrahedron_steps(body.handle), bound);

@@ -1,24 +1,15 @@
 // Stable step of a mesh, and the tetrahedra that limit it.
 #pragma once
 
-#include <map>
 #include <vector>
 
+#include "engine/fill/explicit_body.h"
 #include "skerry/scene.h"
 
 namespace skerry {
 
 struct BodyPlan;
 struct ScenePlan;
-
-/// All data on which the stable step of a single body depends, apart from the mesh. The initial values stand for the
-/// default material and elements. The dynamics of the body are ignored; it is explicit.
-struct StepCase {
-    Settings settings;
-    MaterialSettings material;
-    BodySettings body;
-    std::map<int, MaterialSettings> labelled;  // material of the tetrahedra with each label
-};
 
 /// Returns the StepCase of a body. The body is treated as explicit and elastic, so that its mesh has a stable step even
 /// if its dynamics are rigid or implicit.

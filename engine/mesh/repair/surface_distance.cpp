@@ -1,48 +1,52 @@
 #include "engine/mesh/repair/surface_distance.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "engine/mesh/repair/surface_measures.h"
 #include "engine/mesh/repair/triangle_tree.h"
 
 namespace skerry::mesh {
 
 namespace {
 
-std::array<Vec3, 3> corners(const SurfaceMesh& surface, const std::array<Index, 3>& t) {
-    return {surface.nodes[static_cast<std::size_t>(t[0])], surface.nodes[static_cast<std::size_t>(t[1])],
-            surface.nodes[static_cast<std::size_t>(t[2])]};
-}
-
 Real longest_edge(const std::array<Vec3, 3>& x) {
     return std::max({(x[1] - x[0]).norm(), (x[2] - x[1]).norm(), (x[0] - x[2]).norm()});
 }
 
-Real mean_edge(const SurfaceMesh& surface) {
-    Real sum = 0;
-    for (const std::array<Index, 3>& t : surface.triangles) {
-        const std::array<Vec3, 3> x = corners(surface, t);
-        for (std::size_t a = 0; a < 3; ++a) sum += (x[(a + 1) % 3] - x[a]).norm();
-    }
-    return sum / static_cast<Real>(3 * surface.triangles.size());
-}
+/// Largest and mean distance of the points of one surface to the nearest point of the other surface [m].
+struct OneWay {
+    Real largest = 0, mean = 0;
+};
 
-Real greatest_distance(const SurfaceMesh& from, const SurfaceMesh& to) {
+OneWay distance_of(const SurfaceMesh& from, const SurfaceMesh& to) {
     constexpr Real parts_of_mean_edge = 8;
     // largest number of intervals per edge; it gives at most 2,145 sample points per triangle
     constexpr int most_parts = 64;
+    // A surface with more triangles has fewer points per triangle, about this number of points in total.
+    constexpr Real most_points = 3e6;
     const TriangleTree tree(to);
-    const Real mean = mean_edge(from);
+    const Real mean = mean_edge(from), area = area_of(from);
+    const Real parts_of_all = std::sqrt(2 * most_points / static_cast<Real>(from.triangles.size()));
     std::vector<Vec3> points;
-    Real greatest = 0;
+    OneWay found;
     for (const std::array<Index, 3>& t : from.triangles) {
         const std::array<Vec3, 3> x = corners(from, t);
         points.clear();
-        const Real parts = mean > 0 ? std::ceil(parts_of_mean_edge * longest_edge(x) / mean) : 1;
+        const Real share = mean > 0 ? longest_edge(x) / mean : 0;
+        const Real parts = std::ceil(std::min(parts_of_mean_edge, parts_of_all) * share);
         sample_triangle(x, static_cast<int>(std::clamp<Real>(parts, 1, most_parts)), points);
-        for (const Vec3& point : points) greatest = std::max(greatest, tree.distance_squared(point));
+        Real sum = 0;
+        for (const Vec3& point : points) {
+            const Real distance = std::sqrt(tree.distance_squared(point));
+            found.largest = std::max(found.largest, distance);
+            sum += distance;
+        }
+        const Real area_of_triangle = (x[1] - x[0]).cross(x[2] - x[0]).norm() / 2;
+        if (area > 0) found.mean += sum / static_cast<Real>(points.size()) * area_of_triangle / area;
     }
-    return std::sqrt(greatest);
+    return found;
 }
 
 }  // namespace
@@ -54,7 +58,8 @@ void sample_triangle(const std::array<Vec3, 3>& corner, int parts, std::vector<V
 }
 
 SurfaceDistance surface_distance(const SurfaceMesh& first, const SurfaceMesh& second) {
-    return {greatest_distance(first, second), greatest_distance(second, first)};
+    const OneWay from_first = distance_of(first, second), from_second = distance_of(second, first);
+    return {from_first.largest, from_second.largest, from_first.mean, from_second.mean};
 }
 
 }  // namespace skerry::mesh

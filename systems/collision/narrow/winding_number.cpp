@@ -6,16 +6,10 @@
 
 namespace skerry {
 
-namespace {
-
-/// Half of the solid angle of a triangle as seen from the origin (Van Oosterom, Strackee 1983, The solid angle of a
-/// plane triangle).
 Real half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Real la = a.norm(), lb = b.norm(), lc = c.norm();
     return std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
-
-}  // namespace
 
 Real winding_number(const CollisionInputs& inputs, Index body, const Vec3& point) {
     const Range triangles = inputs.body.triangles[body];

@@ -5,6 +5,10 @@
 
 namespace skerry {
 
+/// Half of the solid angle of a triangle as seen from the origin (Van Oosterom, Strackee 1983, The solid angle of a
+/// plane triangle).
+Real half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c);
+
 /// Winding number of the surface of a body around a point: 1 inside, 0 outside, 2 in regions where the body overlaps
 /// itself. The winding number is the sum of the solid angles of all triangles divided by 4 pi (Jacobson, Kavan,
 /// Sorkine-Hornung 2013, Robust inside-outside segmentation using generalized winding numbers, equation 5).

@@ -1,0 +1,112 @@
+#include "engine/fill/best_mesh.h"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "engine/mesh/repair/surface_distance.h"
+#include "engine/mesh/repair/surface_measures.h"
+#include "engine/mesh/repair/thin_knots.h"
+
+namespace skerry::mesh {
+
+namespace {
+
+// Largest altitude of a knot, which is a nearly flat surface triangle, as a fraction of the mean edge of the surface
+// (measured: docs/decisions/0012).
+constexpr Real knot_altitude = 0.4;
+// Edge lengths of tetrahedra to be tried, as multiples of the wanted edge. A finer surface leads to smaller tetrahedra.
+constexpr Real largest_edges[] = {1.5, 1, 0.7};
+// Largest accepted difference between the volume inside a surface and the volume of its tetrahedra, as a fraction of
+// the volume inside the surface.
+constexpr Real volume_rounding = 1e-6;
+
+/// Appends a region to a mesh. `node_of`: index in the mesh of each of the first nodes of the region.
+void append_region(const Mesh& region, std::vector<Index> node_of, int label, Mesh& mesh) {
+    for (std::size_t n = node_of.size(); n < region.nodes.size(); ++n) {
+        node_of.push_back(static_cast<Index>(mesh.nodes.size()));
+        mesh.nodes.push_back(region.nodes[n]);
+    }
+    for (const auto& [a, b, c, d] : region.tetrahedra) {
+        mesh.tetrahedra.push_back({node_of[static_cast<std::size_t>(a)], node_of[static_cast<std::size_t>(b)],
+                                   node_of[static_cast<std::size_t>(c)], node_of[static_cast<std::size_t>(d)]});
+        mesh.label.push_back(label);
+    }
+}
+
+/// Fills each region of the surface. The regions share the nodes of the shells between them.
+MesherResult fill_regions(const Shells& shells, Real largest_edge, const MesherSetup& setup,
+                          const std::string& which) {
+    MesherResult all{.mesh = Mesh{.nodes = shells.nodes, .tetrahedra = {}}};
+    for (std::size_t s = 0; s < shells.shell.size(); ++s) {
+        if (shells.shell[s].cavity) continue;
+        std::vector<Index> kept;
+        const SurfaceMesh boundary = without_unused_nodes(boundary_of_region(shells, s), &kept);
+        MesherResult region = fill_by_netgen(boundary, largest_edge, setup, "filling " + which + " by Netgen");
+        if (!region.mesh) return region;
+        const Real volume = volume_inside(boundary), filled = inspect(*region.mesh).volume;
+        if (std::abs(filled - volume) > volume_rounding * volume)
+            return {.failure = "filled a different volume than the surface contains"};
+        append_region(*region.mesh, std::move(kept), shells.shell[s].label, *all.mesh);
+    }
+    if (!shells.has_regions()) all.mesh->label.clear();
+    return all;
+}
+
+/// Fills the surface with tetrahedra of several sizes, and replaces `best` by an acceptable mesh with a longer step.
+/// The finest size is tried only if no coarser mesh was acceptable.
+void try_fill(const SurfaceMesh& surface, const std::string& which, const BestMeshTask& task, BestMesh& best) {
+    const Shells shells = shells_of(check_surface(surface, no_weld), task.all_cavities);
+    for (const Real size : largest_edges) {
+        if (size < 1 && best.step > 0) return;
+        MesherResult filled = fill_regions(shells, size * task.edge, task.setup, which);
+        if (!filled.mesh) {
+            best.failure = "Netgen " + filled.failure;
+            best.missing = filled.missing;
+            if (filled.missing || filled.stopped) return;
+            continue;
+        }
+        if (static_cast<Real>(filled.mesh->tetrahedra.size()) < task.least_count) {
+            best.failure = "every new mesh was too coarse";
+            continue;
+        }
+        const Real step = task.stable_step(*filled.mesh);
+        if (step > best.step) {
+            best.mesh = *std::move(filled.mesh);
+            best.step = step;
+        }
+    }
+}
+
+/// Removes knots from the surface within the tolerance. thin_knots checks the distance to the old surface at few points
+/// only. If a full check then finds a larger distance, the thinning is repeated with a smaller tolerance.
+ThinnedSurface thinned_within_tolerance(const SurfaceMesh& surface, Real tolerance) {
+    constexpr int tries = 4;
+    constexpr Real less = 0.75;
+    Real smaller = tolerance;
+    for (int i = 0; i < tries; ++i, smaller *= less) {
+        ThinnedSurface thinned =
+            thin_knots(surface, {.tolerance = smaller, .altitude = knot_altitude * mean_edge(surface)});
+        if (surface_distance(surface, thinned.surface).greatest() <= tolerance) return thinned;
+    }
+    return {};
+}
+
+}  // namespace
+
+BestMesh best_mesh(const BestMeshTask& task) {
+    BestMesh best;
+    try_fill(task.surface, "the unchanged surface", task, best);
+    if (best.missing || !(task.tolerance > 0)) return best;
+    if (task.setup.progress) task.setup.progress("removing very flat triangles from the surface");
+    const ThinnedSurface thinned = thinned_within_tolerance(task.surface, task.tolerance);
+    if (thinned.collapsed + thinned.flipped == 0) return best;
+    BestMesh other;
+    try_fill(thinned.surface, "the surface without very flat triangles", task, other);
+    if (!(other.step > least_gain * best.step)) return best;
+    other.collapsed = thinned.collapsed;
+    other.flipped = thinned.flipped;
+    return other;
+}
+
+}  // namespace skerry::mesh

@@ -1,0 +1,25 @@
+#include "engine/fill/explicit_body.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace skerry {
+
+ExplicitBody explicit_body(const Mesh& mesh, const StepCase& of) {
+    Settings settings = of.settings;
+    settings.step_size.reset();
+    settings.clusters = false;
+    settings.backend = Backend::serial;
+    World world(settings);
+    BodySettings body = of.body;
+    body.dynamics = BodyDynamics::explicit_elastic;
+    body.material = world.add_material(of.material);
+    body.materials.clear();
+    for (const auto& [label, material] : of.labelled)
+        if (std::ranges::find(mesh.label, label) != mesh.label.end())
+            body.materials.emplace(label, world.add_material(material));
+    const BodyHandle handle = world.add_body(mesh, body);
+    return {std::move(world), handle};
+}
+
+}  // namespace skerry

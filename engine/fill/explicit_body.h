@@ -1,0 +1,28 @@
+// A world with a single explicit body, from which the stable step of a mesh is computed.
+#pragma once
+
+#include <map>
+
+#include "skerry/world.h"
+
+namespace skerry {
+
+/// All data on which the stable step of a single body depends, apart from the mesh. The initial values stand for the
+/// default material and elements. The dynamics of the body are ignored; it is explicit.
+struct StepCase {
+    Settings settings{};
+    MaterialSettings material{};
+    BodySettings body{};
+    std::map<int, MaterialSettings> labelled{};  // material of the tetrahedra with each label
+};
+
+struct ExplicitBody {
+    World world;
+    BodyHandle handle;
+};
+
+/// Adds a body to a new world without clusters, so that its stable step is the step of the elements alone. Throws
+/// SceneError if the mesh cannot be a body.
+ExplicitBody explicit_body(const Mesh& mesh, const StepCase& of);
+
+}  // namespace skerry

@@ -1,0 +1,262 @@
+#include "skerry/fill.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/fill/best_mesh.h"
+#include "engine/fill/explicit_body.h"
+#include "engine/mesh/repair/surface_distance.h"
+#include "engine/mesh/repair/surface_measures.h"
+#include "skerry/error.h"
+
+namespace skerry::mesh {
+
+namespace {
+
+// Edge length of surfaces that are not clean, if none is given, as a fraction of the diagonal of the bounding box. It is
+// the default of fTetWild.
+constexpr Real default_edge = 0.05;
+// A clean surface is kept if the ratio of the wanted edge to its mean edge is between these values.
+constexpr Real least_ratio = 2.0 / 3, most_ratio = 1.5;
+// fTetWild may use this share of the tolerance. The rest is left for the removal of needles and caps.
+constexpr Real envelope_share = 0.5;
+// Netgen's mesh of a surface of fTetWild must have this share of the number of tetrahedra of fTetWild.
+constexpr Real least_count = 0.7;
+
+const char* const install_netgen = "install Netgen's library (apt-get install libnglib-dev) and build Skerry again";
+const char* const install_ftetwild = "install the Python package of fTetWild: pip install wildmeshing==0.4.1";
+
+/// A surface to fill. `first_triangle`: number of the first triangle of each file.
+struct GivenSurface {
+    SurfaceMesh surface;
+    std::vector<std::string> names;
+    std::vector<Index> first_triangle;
+
+    void add(const SurfaceMesh& part, std::string name) {
+        const auto first = static_cast<Index>(surface.nodes.size());
+        names.push_back(std::move(name));
+        first_triangle.push_back(static_cast<Index>(surface.triangles.size()));
+        surface.nodes.insert(surface.nodes.end(), part.nodes.begin(), part.nodes.end());
+        for (const auto& [a, b, c] : part.triangles) surface.triangles.push_back({first + a, first + b, first + c});
+    }
+    std::size_t file_of(Index triangle) const {
+        return static_cast<std::size_t>(std::ranges::upper_bound(first_triangle, triangle) - first_triangle.begin()) -
+               1;
+    }
+};
+
+std::string number(Real value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
+class Filling {
+public:
+    Filling(const GivenSurface& given, const FillSettings& settings, const FillProgress& progress)
+        : given_(given),
+          settings_(settings),
+          setup_{.limits = settings.limits, .python = settings.python, .progress = progress} {
+        check_settings();
+        say("checking the surface");
+        result_.surface = check_surface(given.surface, default_weld, given.names.front());
+        if (surface().triangles.empty()) refuse("no triangles", "a surface with triangles");
+        result_.tolerance = settings.tolerance * box_diagonal(surface());
+        shells_ = shells_of(result_.surface, settings.cavities);
+    }
+
+    FilledMesh run() {
+        for (const SurfaceFault& fault : result_.surface.faults) result_.notes.push_back(fault_text(fault));
+        const bool clean = result_.surface.can_be_filled();
+        if (!clean || !keeps_triangles() || !fill_exactly()) fill_within_tolerance(clean);
+        name_shells();
+        measure();
+        return std::move(result_);
+    }
+
+private:
+    const SurfaceMesh& surface() const { return result_.surface.cleaned; }
+
+    void say(const std::string& doing) const {
+        if (setup_.progress) setup_.progress(doing);
+    }
+
+    [[noreturn]] void refuse(std::string found, std::string expected, std::string hint = {},
+                             std::string object = "surface") const {
+        Complaint{given_.names.front(), std::move(object), {}, std::move(found), std::move(expected), std::move(hint)}
+            .raise();
+    }
+
+    void check_settings() const {
+        const auto require = [&](bool valid, const char* name, Real value, const char* expected) {
+            if (!valid) refuse(number(value), expected, {}, name);
+        };
+        if (settings_.edge) require(*settings_.edge > 0, "edge", *settings_.edge, "a length above 0 m");
+        require(settings_.tolerance >= 0 && settings_.tolerance < 1, "tolerance", settings_.tolerance,
+                "a fraction of the diagonal of at least 0 and below 1");
+        require(settings_.limits.seconds > 0, "time limit", settings_.limits.seconds, "a time above 0 s");
+        require(settings_.limits.bytes > 0, "memory limit", settings_.limits.bytes, "a number of bytes above 0");
+    }
+
+    /// True if the wanted tetrahedra have about the size of the triangles of the surface.
+    bool keeps_triangles() const {
+        if (!settings_.edge || settings_.tolerance == 0) return true;
+        const Real ratio = *settings_.edge / mean_edge(surface());
+        return ratio >= least_ratio && ratio <= most_ratio;
+    }
+
+    BestMesh best_mesh_of(const SurfaceMesh& clean, Real edge, Real tolerance, Real count) const {
+        return best_mesh({.surface = clean,
+                          .edge = edge,
+                          .tolerance = tolerance,
+                          .least_count = count,
+                          .all_cavities = settings_.cavities,
+                          .setup = setup_,
+                          .stable_step = [this](const Mesh& mesh) { return stable_step(mesh); }});
+    }
+
+    Real stable_step(const Mesh& mesh) const {
+        return explicit_body(mesh, {.material = settings_.material}).world.stable_step();
+    }
+
+    /// Fills the surface as it is, or without needles and caps. Returns false if Netgen fails.
+    bool fill_exactly() {
+        BestMesh best = best_mesh_of(whole_surface(shells_), settings_.edge.value_or(mean_edge(surface())),
+                                     result_.tolerance, 0);
+        if (best.step > 0) {
+            take(std::move(best), "Netgen");
+            return true;
+        }
+        netgen_failure_ = best.missing ? netgen_program() + " is not installed" : best.failure;
+        netgen_missing_ = best.missing;
+        result_.notes.push_back(netgen_failure_ + ": the surface was filled by fTetWild");
+        return false;
+    }
+
+    void take(BestMesh best, std::string mesher) {
+        result_.exact = mesher == "Netgen" && best.collapsed + best.flipped == 0;
+        result_.mesh = std::move(best.mesh);
+        result_.stable_step = best.step;
+        result_.mesher = std::move(mesher);
+        if (best.collapsed + best.flipped > 0)
+            result_.notes.push_back("very flat triangles of the surface were removed: " +
+                                    std::to_string(best.collapsed) + " edges collapsed, " +
+                                    std::to_string(best.flipped) + " flipped");
+    }
+
+    void fill_within_tolerance(bool clean) {
+        if (settings_.tolerance == 0)
+            refuse(clean ? netgen_failure_ : "a surface with holes, crossings or other faults, and a tolerance of 0",
+                   clean ? "tetrahedra from Netgen" : "a clean surface, or a tolerance above 0",
+                   netgen_missing_ ? install_netgen : "");
+        const Real diagonal = box_diagonal(surface());
+        const Real edge = settings_.edge.value_or(clean ? mean_edge(surface()) : default_edge * diagonal);
+        MesherResult filled =
+            fill_by_ftetwild(whole_surface(shells_), edge, envelope_share * result_.tolerance, setup_);
+        if (!filled.mesh) refuse_ftetwild(filled, edge);
+        if (shells_.has_regions() && !crossing()) label_regions(*filled.mesh, shells_);
+        const Real step = stable_step(*filled.mesh);
+        if (filled.mesh->label.empty() && !netgen_missing_) {
+            const MeshReport report = inspect(*filled.mesh);
+            BestMesh best =
+                report.closed_manifold
+                    ? best_mesh_of(boundary(*filled.mesh), report.mean_edge, (1 - envelope_share) * result_.tolerance,
+                                   least_count * static_cast<Real>(report.tetrahedra))
+                    : BestMesh{};
+            if (best.step > step) {
+                take(std::move(best), "fTetWild and Netgen");
+                return;
+            }
+        }
+        take({.mesh = *std::move(filled.mesh), .step = step}, "fTetWild");
+    }
+
+    [[noreturn]] void refuse_ftetwild(const MesherResult& filled, Real edge) const {
+        const std::string python = python_program(settings_.python);
+        std::string found = netgen_failure_.empty() ? "" : netgen_failure_ + "; ";
+        found += "fTetWild, started by " + python + ", " + filled.failure;
+        std::string hint;
+        if (filled.missing)
+            hint = std::string(netgen_missing_ ? install_netgen : "") + (netgen_missing_ ? "; or " : "") +
+                   install_ftetwild + ", and name its interpreter in SKERRY_PYTHON if it is not " + python;
+        else if (filled.stopped)
+            hint = "a larger edge than " + number(edge) +
+                   " m or a larger tolerance takes less time and memory; or raise the limit";
+        refuse(std::move(found), "tetrahedra inside the surface", std::move(hint));
+    }
+
+    bool crossing() const { return result_.surface.find(SurfaceFaultKind::shell_crossings) != nullptr; }
+
+    /// Makes a set of the faces of each shell if there are regions, cavities or several files.
+    void name_shells() {
+        const std::size_t shells = shells_.shell.size(), files = given_.names.size();
+        if (crossing()) {
+            result_.notes.emplace_back("crossing shells were united to one body");
+            return;
+        }
+        if (shells < 2 || (files < 2 && !shells_.has_regions() && shells_.cavity_count() == 0)) return;
+        const auto faces = faces_of_shells(result_.mesh, shells_);
+        for (std::size_t s = 0; s < shells; ++s) {
+            const Shell& shell = shells_.shell[s];
+            const std::string name = files == shells
+                                         ? std::filesystem::path(given_.names[given_.file_of(shell.first_triangle)])
+                                               .stem()
+                                               .string()
+                                         : "shell_" + std::to_string(s + 1);
+            result_.mesh.sets[name].faces = faces[s];
+            result_.notes.push_back("set \"" + name + "\": a shell around " + number(shell.volume) + " m^3, " +
+                                    (shell.cavity ? std::string("an empty cavity")
+                                     : result_.mesh.label.empty()
+                                         ? std::string("filled")
+                                         : "the region with the label " + std::to_string(shell.label)));
+        }
+        turn_inverted(result_.mesh, given_.names.front());
+    }
+
+    void measure() {
+        say("measuring the distance of the surfaces");
+        const SurfaceMesh filled = without_unused_nodes({result_.mesh.nodes, faces_of_regions(result_.mesh)});
+        result_.distance = surface_distance(surface(), filled);
+        if (result_.distance.greatest() > result_.tolerance && !result_.exact)
+            result_.notes.push_back("the new surface is up to " + number(result_.distance.greatest()) +
+                                    " m from the given one, more than the tolerance of " + number(result_.tolerance) +
+                                    " m: a hole was closed, or a part inside the body was removed");
+        if (!result_.surface.can_be_filled()) return;
+        Real volume = 0;
+        for (const Shell& shell : shells_.shell) {
+            const bool within = shell.parent != no_index;
+            if (shell.cavity)
+                volume -= shell.volume;
+            else if (!within || shells_.shell[static_cast<std::size_t>(shell.parent)].cavity)
+                volume += shell.volume;
+        }
+        result_.surface_volume = volume;
+    }
+
+    const GivenSurface& given_;
+    const FillSettings& settings_;
+    MesherSetup setup_;
+    Shells shells_;
+    FilledMesh result_;
+    std::string netgen_failure_;
+    bool netgen_missing_ = false;
+};
+
+}  // namespace
+
+FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillSettings& settings,
+                const FillProgress& progress) {
+    GivenSurface given;
+    given.add(surface, name);
+    return Filling(given, settings, progress).run();
+}
+
+FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSettings& settings,
+                const FillProgress& progress) {
+    GivenSurface given;
+    for (const std::filesystem::path& file : files) given.add(read_surface(file.string()), file.string());
+    return Filling(given, settings, progress).run();
+}
+
+}  // namespace skerry::mesh

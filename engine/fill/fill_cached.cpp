@@ -1,0 +1,56 @@
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "components/hash.h"
+#include "skerry/error.h"
+#include "skerry/fill.h"
+
+namespace skerry::mesh {
+
+namespace {
+
+// A change of this number makes earlier cache files unused. Raise it when fill() returns other meshes than before.
+constexpr std::uint64_t cache_version = 1;
+
+/// Name of the cache file: that of the surface file, a hash, and .msh.
+std::filesystem::path cache_file(const std::filesystem::path& file, const FillSettings& settings) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    Hash hash;
+    hash.add(cache_version);
+    hash.add(std::span<const char>(bytes));
+    const Real numbers[] = {settings.edge.value_or(0), settings.tolerance, settings.cavities ? 1.0 : 0.0};
+    hash.add(std::span<const Real>(numbers));
+    char text[32];
+    std::snprintf(text, sizeof text, ".%016llx.msh", static_cast<unsigned long long>(hash.value()));
+    return file.string() + text;
+}
+
+}  // namespace
+
+Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings, const FillProgress& progress,
+                 std::vector<std::string>* notes) {
+    const std::filesystem::path cache = cache_file(file, settings);
+    if (std::filesystem::exists(cache)) try {
+            return read(cache.string());
+        } catch (const SceneError&) {
+            // A damaged file is replaced below.
+        }
+    FillSettings of_cache = settings;
+    of_cache.material = {};
+    FilledMesh filled = fill(std::vector{file}, of_cache, progress);
+    if (notes)
+        for (const std::string& note : filled.notes) notes->push_back(file.string() + ": " + note);
+    try {
+        write(cache.string(), filled.mesh);
+    } catch (const SceneError&) {
+        // The folder may be read-only.
+    }
+    return std::move(filled.mesh);
+}
+
+}  // namespace skerry::mesh

@@ -1,0 +1,39 @@
+// Runs a mesher, a separate program that fills a surface with tetrahedra. If the mesher crashes, hangs or needs too much
+// memory, only its process ends.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skerry/fill.h"
+
+namespace skerry::mesh {
+
+struct MesherCall {
+    std::vector<std::string> command;  // the program, with a path or to be found in PATH, and its arguments
+    FillLimits limits{};
+    // Called about 50 times a second while the mesher runs. An exception ends the mesher.
+    std::function<void()> wait{};
+};
+
+/// The tetrahedra that a mesher made, or the reason why there are none.
+struct MesherResult {
+    std::optional<Mesh> mesh{};
+    std::string failure{};  // clause with a verb in the past tense; empty if there is a mesh
+    bool missing = false;   // true if the program or the package of the mesher is not installed
+    bool stopped = false;   // true if a limit ended the mesher
+};
+
+/// Exit code of a mesher whose package is not installed.
+inline constexpr int exit_missing = 3;
+
+/// Runs a mesher. Its standard input is a text: "NODES TRIANGLES LARGEST_EDGE", then lines "x y z" of the nodes and
+/// lines "a b c" of the triangles, with nodes counted from 0. The mesher writes to file descriptor 3: "NODES
+/// TETRAHEDRA", then lines "x y z" of the nodes and lines "a b c d" of the tetrahedra. All tetrahedra of the result are
+/// positive. A text that is not a valid mesh counts as a failure. Throws std::system_error if no process or temporary
+/// file can be created.
+MesherResult run_mesher(const SurfaceMesh& surface, Real largest_edge, const MesherCall& call);
+
+}  // namespace skerry::mesh

@@ -1,0 +1,91 @@
+#include "engine/fill/meshers.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include "engine/mesh/repair/surface_measures.h"
+
+namespace skerry::mesh {
+
+namespace {
+
+/// Program for the Python interpreter: fills the surface of standard input (see run_mesher). Its argument is the
+/// envelope as a fraction of the diagonal of the bounding box. One thread makes the result reproducible.
+constexpr const char* ftetwild_script = R"(
+import os, sys
+try:
+    import numpy, wildmeshing
+except ImportError as error:
+    sys.exit(print(error, file=sys.stderr) or 3)
+nodes, triangles, edge = sys.stdin.readline().split()
+nodes, triangles = int(nodes), int(triangles)
+numbers = numpy.array(sys.stdin.read().split())
+points = numbers[:3 * nodes].astype(float).reshape(-1, 3)
+faces = numbers[3 * nodes:].astype(numpy.int32).reshape(-1, 3)
+diagonal = numpy.linalg.norm(points.max(axis=0) - points.min(axis=0))
+mesher = wildmeshing.Tetrahedralizer(
+    epsilon=float(sys.argv[1]), edge_length_r=float(edge) / diagonal, coarsen=False, max_threads=1)
+mesher.set_log_level(6)
+mesher.set_mesh(points, faces)
+mesher.tetrahedralize()
+points, tetrahedra = mesher.get_tet_mesh(manifold_surface=True, correct_surface_orientation=True)[:2]
+used, tetrahedra = numpy.unique(tetrahedra, return_inverse=True)
+points, tetrahedra = points[used], tetrahedra.reshape(-1, 4)
+with os.fdopen(3, "w") as out:
+    out.write(f"{len(points)} {len(tetrahedra)}\n")
+    numpy.savetxt(out, points, "%.17g")
+    numpy.savetxt(out, tetrahedra, "%d")
+os._exit(0)
+)";
+
+std::string value_of(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value ? value : "";
+}
+
+std::string exact_text(Real value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return text;
+}
+
+std::function<void()> waiting(const MesherSetup& setup, const std::string& doing) {
+    if (!setup.progress) return {};
+    return [&setup, doing] { setup.progress(doing); };
+}
+
+}  // namespace
+
+std::string netgen_program() {
+    if (std::string named = value_of("SKERRY_FILL"); !named.empty()) return named;
+    std::error_code ignored;
+    const std::filesystem::path beside =
+        std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / "skerry-fill";
+    return access(beside.c_str(), X_OK) == 0 ? beside.string() : "skerry-fill";
+}
+
+std::string python_program(const std::string& given) {
+    if (!given.empty()) return given;
+    const std::string named = value_of("SKERRY_PYTHON");
+    return named.empty() ? "python3" : named;
+}
+
+MesherResult fill_by_netgen(const SurfaceMesh& surface, Real largest_edge, const MesherSetup& setup,
+                            const std::string& doing) {
+    return run_mesher(surface, largest_edge,
+                      {.command = {netgen_program()}, .limits = setup.limits, .wait = waiting(setup, doing)});
+}
+
+MesherResult fill_by_ftetwild(const SurfaceMesh& surface, Real edge, Real envelope, const MesherSetup& setup) {
+    return run_mesher(surface, edge,
+                      {.command = {python_program(setup.python), "-c", ftetwild_script,
+                                   exact_text(envelope / box_diagonal(surface))},
+                       .limits = setup.limits,
+                       .wait = waiting(setup, "filling the surface by fTetWild")});
+}
+
+}  // namespace skerry::mesh

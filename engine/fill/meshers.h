@@ -1,0 +1,33 @@
+// The meshers that fill surfaces: Netgen and fTetWild.
+#pragma once
+
+#include <string>
+
+#include "engine/fill/mesher_process.h"
+
+namespace skerry::mesh {
+
+/// How meshers are started.
+struct MesherSetup {
+    FillLimits limits{};
+    std::string python{};  // see FillSettings::python
+    FillProgress progress{};
+};
+
+/// Path of skerry-fill: the value of the environment variable SKERRY_FILL, or the program in the folder of this
+/// program, or else the name alone, which is searched in PATH.
+std::string netgen_program();
+
+/// Command that starts the Python interpreter with the package wildmeshing (see FillSettings::python).
+std::string python_program(const std::string& given);
+
+/// Fills closed manifold surfaces that do not cross with tetrahedra of edge length up to about `largest_edge` [m]. The
+/// surface is unchanged bitwise: its nodes are the first nodes of the mesh. `doing` describes the activity.
+MesherResult fill_by_netgen(const SurfaceMesh& surface, Real largest_edge, const MesherSetup& setup,
+                            const std::string& doing);
+
+/// Fills any surface. The edges of the surface and of the tetrahedra have about the length `edge` [m]. Points of the
+/// surface move by up to `envelope` [m].
+MesherResult fill_by_ftetwild(const SurfaceMesh& surface, Real edge, Real envelope, const MesherSetup& setup);
+
+}  // namespace skerry::mesh

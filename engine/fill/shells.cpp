@@ -1,0 +1,155 @@
+#include "engine/fill/shells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "engine/mesh/repair/surface_measures.h"
+#include "engine/mesh/repair/triangle_tree.h"
+#include "systems/collision/build_surface.h"
+#include "systems/collision/narrow/winding_number.h"
+
+namespace skerry::mesh {
+
+namespace {
+
+using Triangle = std::array<Index, 3>;
+
+void turn(std::vector<Triangle>& triangles) {
+    for (Triangle& t : triangles) std::swap(t[1], t[2]);
+}
+
+/// True if a shell contains a point. Holes of the shell count as closed.
+bool surrounds(const Shell& shell, const std::vector<Vec3>& nodes, const Vec3& point) {
+    const auto seen = [&](Index n) -> Vec3 { return nodes[static_cast<std::size_t>(n)] - point; };
+    Real sum = 0;
+    for (const auto& [a, b, c] : shell.triangles) sum += half_solid_angle(seen(a), seen(b), seen(c));
+    return sum / (2 * std::numbers::pi) > 0.5;
+}
+
+void append(std::vector<Triangle>& to, std::vector<Triangle> triangles, bool turned) {
+    if (turned) turn(triangles);
+    to.insert(to.end(), triangles.begin(), triangles.end());
+}
+
+}  // namespace
+
+bool Shells::has_regions() const {
+    return std::ranges::any_of(shell, [](const Shell& s) { return s.parent != no_index && !s.cavity; });
+}
+
+std::size_t Shells::cavity_count() const {
+    return static_cast<std::size_t>(std::ranges::count_if(shell, &Shell::cavity));
+}
+
+Shells shells_of(const SurfaceReport& report, bool all_cavities) {
+    std::vector<std::size_t> order(report.shells.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::ranges::greater(),
+                             [&](std::size_t s) { return std::abs(report.shells[s].volume); });
+    std::vector<std::size_t> place(order.size());
+    for (std::size_t s = 0; s < order.size(); ++s) place[order[s]] = s;
+    Shells shells{report.cleaned.nodes, std::vector<Shell>(order.size())};
+    for (std::size_t t = 0; t < report.shell.size(); ++t)
+        shells.shell[place[static_cast<std::size_t>(report.shell[t])]].triangles.push_back(report.cleaned.triangles[t]);
+    std::vector<std::size_t> depth(order.size(), 0);
+    int label = 0;
+    for (std::size_t s = 0; s < order.size(); ++s) {
+        const SurfaceShell& given = report.shells[order[s]];
+        Shell& shell = shells.shell[s];
+        if (given.volume < 0) turn(shell.triangles);
+        shell.volume = std::abs(given.volume);
+        shell.first_triangle = given.triangle;
+        if (given.around != no_index) {
+            const std::size_t around = place[static_cast<std::size_t>(given.around)];
+            shell.parent = static_cast<Index>(around);
+            depth[s] = depth[around] + 1;
+        }
+        shell.cavity = depth[s] % 2 == 1 && (all_cavities || given.volume < 0);
+        if (!shell.cavity) shell.label = ++label;
+    }
+    return shells;
+}
+
+SurfaceMesh whole_surface(const Shells& shells) {
+    SurfaceMesh surface{shells.nodes, {}};
+    for (const Shell& shell : shells.shell) append(surface.triangles, shell.triangles, shell.cavity);
+    return surface;
+}
+
+SurfaceMesh boundary_of_region(const Shells& shells, std::size_t shell) {
+    SurfaceMesh surface{shells.nodes, shells.shell[shell].triangles};
+    for (const Shell& within : shells.shell)
+        if (within.parent == static_cast<Index>(shell)) append(surface.triangles, within.triangles, true);
+    return surface;
+}
+
+SurfaceMesh without_unused_nodes(const SurfaceMesh& surface, std::vector<Index>* kept) {
+    std::vector<Index> place(surface.nodes.size(), no_index);
+    for (const Triangle& t : surface.triangles)
+        for (const Index n : t) place[static_cast<std::size_t>(n)] = 0;
+    SurfaceMesh compact;
+    for (std::size_t n = 0; n < place.size(); ++n) {
+        if (place[n] == no_index) continue;
+        place[n] = static_cast<Index>(compact.nodes.size());
+        compact.nodes.push_back(surface.nodes[n]);
+        if (kept) kept->push_back(static_cast<Index>(n));
+    }
+    for (const auto& [a, b, c] : surface.triangles)
+        compact.triangles.push_back({place[static_cast<std::size_t>(a)], place[static_cast<std::size_t>(b)],
+                                     place[static_cast<std::size_t>(c)]});
+    return compact;
+}
+
+void label_regions(Mesh& mesh, const Shells& shells) {
+    mesh.label.assign(mesh.tetrahedra.size(), shells.shell.front().label);
+    for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+        Vec3 centroid = Vec3::Zero();
+        for (const Index n : mesh.tetrahedra[e]) centroid += mesh.nodes[static_cast<std::size_t>(n)] / 4;
+        for (std::size_t s = shells.shell.size(); --s > 0;) {
+            const Shell& shell = shells.shell[s];
+            if (shell.cavity || !surrounds(shell, shells.nodes, centroid)) continue;
+            mesh.label[e] = shell.label;
+            break;
+        }
+    }
+}
+
+std::vector<Triangle> faces_of_regions(const Mesh& mesh) {
+    std::vector<Triangle> faces;
+    if (!mesh.label.empty()) {
+        const std::vector<TetrahedronFace> all = sorted_faces(mesh.tetrahedra);
+        const auto label = [&](const TetrahedronFace& face) {
+            return mesh.label[static_cast<std::size_t>(face.tetrahedron)];
+        };
+        for (std::size_t i = 1; i < all.size(); ++i)
+            if (all[i].node == all[i - 1].node && label(all[i]) != label(all[i - 1])) faces.push_back(all[i].node);
+    }
+    for (const BoundaryTriangle& triangle : boundary_triangles(mesh.tetrahedra)) faces.push_back(triangle.node);
+    return faces;
+}
+
+std::vector<std::vector<Triangle>> faces_of_shells(const Mesh& mesh, const Shells& shells) {
+    std::vector<TriangleTree> trees;
+    for (const Shell& shell : shells.shell) trees.emplace_back(without_unused_nodes({shells.nodes, shell.triangles}));
+    std::vector<std::vector<Triangle>> faces(trees.size());
+    const SurfaceMesh of_regions{mesh.nodes, faces_of_regions(mesh)};
+    for (const Triangle& face : of_regions.triangles) {
+        const std::array<Vec3, 3> x = corners(of_regions, face);
+        const Vec3 centroid = (x[0] + x[1] + x[2]) / 3;
+        std::size_t nearest = 0;
+        Real least = infinity;
+        for (std::size_t s = 0; s < trees.size(); ++s) {
+            const Real squared = trees[s].distance_squared(centroid, least);
+            if (squared < least) nearest = s;
+            least = std::min(least, squared);
+        }
+        faces[nearest].push_back(face);
+    }
+    return faces;
+}
+
+}  // namespace skerry::mesh

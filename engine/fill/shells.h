@@ -1,0 +1,56 @@
+// Shells, the connected parts of a surface, and the regions that they bound.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "skerry/surface_check.h"
+
+namespace skerry::mesh {
+
+/// A connected part of a surface.
+struct Shell {
+    // Indices of nodes, counter-clockwise as seen from outside the shell, also for a cavity.
+    std::vector<std::array<Index, 3>> triangles;
+    Real volume = 0;                 // inside the shell, including shells within [m^3]
+    Index parent = no_index;         // smallest shell around this shell; no_index: none
+    bool cavity = false;             // true: the inside is empty, except for shells within
+    int label = 0;                   // label of the region inside the shell; 0 for a cavity
+    Index first_triangle = no_index;  // number of its first triangle in the given surface
+};
+
+/// A surface that is divided into shells, the largest volume first.
+struct Shells {
+    std::vector<Vec3> nodes;
+    std::vector<Shell> shell;
+
+    /// True if the regions need labels, because a region lies inside another shell.
+    bool has_regions() const;
+    std::size_t cavity_count() const;
+};
+
+/// Divides the cleaned surface of a report into shells. A shell within an odd number of others is a cavity if
+/// `all_cavities` is true or if its triangles are clockwise. The other shells bound regions, which get the labels 1, 2,
+/// ...
+Shells shells_of(const SurfaceReport& report, bool all_cavities);
+
+/// All shells. Cavities are turned inside out, so that the winding number is 0 in them.
+SurfaceMesh whole_surface(const Shells& shells);
+
+/// Boundary of the region inside a shell: the shell, and the shells directly within turned inside out.
+SurfaceMesh boundary_of_region(const Shells& shells, std::size_t shell);
+
+/// The surface without the nodes that no triangle uses. `kept`, if given, gets the old index of each node.
+SurfaceMesh without_unused_nodes(const SurfaceMesh& surface, std::vector<Index>* kept = nullptr);
+
+/// Labels each tetrahedron by the smallest shell of a region around its centroid.
+void label_regions(Mesh& mesh, const Shells& shells);
+
+/// Boundary triangles, and faces between tetrahedra with different labels.
+std::vector<std::array<Index, 3>> faces_of_regions(const Mesh& mesh);
+
+/// Divides the faces of regions among the shells: each face belongs to the shell that is nearest to its centroid.
+std::vector<std::vector<std::array<Index, 3>>> faces_of_shells(const Mesh& mesh, const Shells& shells);
+
+}  // namespace skerry::mesh

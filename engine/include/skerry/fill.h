@@ -1,0 +1,91 @@
+// Fills triangle surfaces with tetrahedra.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skerry/mesh.h"
+#include "skerry/settings.h"
+#include "skerry/surface_check.h"
+
+#pragma GCC visibility push(default)
+namespace skerry::mesh {
+
+/// Limits of one run of a mesher.
+struct FillLimits {
+    Real seconds = 300;  // [s]
+    Real bytes = 8e9;    // memory of the process of the mesher [bytes]
+};
+
+struct FillSettings {
+    // Edge length of the new tetrahedra and of their surface, > 0 [m]. If it is not given, the triangles of a clean
+    // surface are kept, and other surfaces get a twentieth of the diagonal of their bounding box.
+    std::optional<Real> edge{};
+    // Largest distance between the given and the new surface, as a fraction of the diagonal of the bounding box, from 0
+    // to below 1. With 0 the triangles of the surface are kept; surfaces that are not clean are then refused.
+    Real tolerance = 1e-3;
+    // A shell inside another shell is the boundary of an empty cavity if this is true, or if the triangles of the inner
+    // shell are clockwise as seen from its outside. Otherwise it is the boundary of a region with a label of its own.
+    bool cavities = false;
+    MaterialSettings material{};  // material for which the stable steps of meshes are compared
+    FillLimits limits{};
+    // Python interpreter with the package wildmeshing. If it is empty: the value of the environment variable
+    // SKERRY_PYTHON, or else python3 in PATH.
+    std::string python{};
+};
+
+/// Largest and mean distance of the points of two surfaces to the nearest point of the other surface [m].
+struct SurfaceDistance {
+    Real from_first = 0, from_second = 0;
+    Real mean_from_first = 0, mean_from_second = 0;
+
+    Real greatest() const { return from_first > from_second ? from_first : from_second; }
+};
+
+struct FilledMesh {
+    Mesh mesh;
+    std::string mesher;          // "Netgen", "fTetWild", or "fTetWild and Netgen"
+    bool exact = false;          // true if the new surface is the given surface, bitwise
+    SurfaceReport surface;       // check of the given surface
+    SurfaceDistance distance{};  // from the given (first) to the new surface (second)
+    Real tolerance = 0;          // largest distance that was allowed [m]
+    // Volume inside the given surface; empty if it is not closed or if its shells cross each other [m^3].
+    std::optional<Real> surface_volume{};
+    Real stable_step = 0;            // stable step of an explicit body of this mesh [s]
+    std::vector<std::string> notes;  // corrections of the surface, regions, and failures of meshers
+};
+
+/// Receives a description of the current activity many times a second. An exception ends the filling.
+using FillProgress = std::function<void(const std::string&)>;
+
+/// Fills surfaces with tetrahedra. Nodes at equal positions are merged. Clean surfaces (closed manifolds that do not
+/// cross) are filled by Netgen, which keeps them bitwise, unless `edge` asks for other triangles. Other surfaces are
+/// filled by fTetWild (Hu et al., Fast tetrahedral meshing in the wild, 2020) within the tolerance: holes are closed,
+/// and crossing shells are united. Each mesher runs in its own process. Of several meshes the one with the longest
+/// stable step is returned (docs/decisions/0026-filling-surfaces.md).
+///
+/// If shells are nested, regions have the labels 1, 2, ..., beginning with the region of the largest shell. The faces
+/// of each shell are a set: with the name of the file if each file has one shell, otherwise shell_1, shell_2, ...
+///
+/// Shells that repeat another shell are dropped, with a note. Another note says so if the new surface is farther from the
+/// given one than the tolerance, as where a hole was closed. Throws SceneError that names the file if a file cannot be
+/// read, a mesher is not installed, or no mesher fills the surface within the limits.
+FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSettings& settings = {},
+                const FillProgress& progress = {});
+
+/// Fills a surface from memory. `name` stands for the file in messages.
+FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillSettings& settings = {},
+                const FillProgress& progress = {});
+
+/// Reads the mesh that fills a surface file from the cache file beside it, or else fills the surface and writes the
+/// cache file. The name of the cache file contains a hash of the surface file, `edge`, `tolerance` and `cavities`; the
+/// stable steps of meshes are compared for the default material. If the file cannot be written, the mesh is returned all
+/// the same. `notes`: gets the notes of the filling.
+Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings = {}, const FillProgress& progress = {},
+                 std::vector<std::string>* notes = nullptr);
+
+}  // namespace skerry::mesh
+#pragma GCC visibility pop

@@ -1,0 +1,26 @@
+// Sizes of triangle surfaces.
+#pragma once
+
+#include <array>
+
+#include "skerry/mesh.h"
+
+namespace skerry::mesh {
+
+std::array<Vec3, 3> corners(const SurfaceMesh& surface, const std::array<Index, 3>& triangle);
+
+/// Mean length of the edges of all triangles [m]. The surface needs at least one triangle.
+Real mean_edge(const SurfaceMesh& surface);
+
+/// Area [m^2].
+Real area_of(const SurfaceMesh& surface);
+
+/// Volume inside a closed surface by the divergence theorem, negative if its triangles are clockwise as seen from
+/// outside [m^3]. Positions are measured from a point of the surface, so that the rounding error depends on the size of
+/// the surface and not on its position.
+Real volume_inside(const SurfaceMesh& surface);
+
+/// Length of the diagonal of the bounding box of the nodes [m].
+Real box_diagonal(const SurfaceMesh& surface);
+
+}  // namespace skerry::mesh
