@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -16,19 +15,13 @@
 namespace skerry::mesh {
 namespace {
 
-std::string lower_extension(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
 struct Format {
     const char* extension;
     RawMesh (*read)(FileReader&);
     bool surface_only;  // true if the format has triangles but no tetrahedra
 };
-constexpr std::array<Format, 8> formats{{{".msh", read_gmsh, false},
+constexpr std::array<Format, 9> formats{{{".msh", read_gmsh, false},
+                                         {".inp", read_abaqus, false},
                                          {".mesh", read_medit, false},
                                          {".meshb", read_medit, false},
                                          {".vtk", read_vtk, false},
@@ -38,7 +31,7 @@ constexpr std::array<Format, 8> formats{{{".msh", read_gmsh, false},
                                          {".stl", read_stl, true}}};
 
 RawMesh read_file(const std::string& path, bool surface) {
-    const std::string extension = lower_extension(path);
+    const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
     if (extension == ".node" || extension == ".ele") return read_tetgen(path);
     const auto* const format = std::ranges::find(formats, extension, &Format::extension);
     const bool known = format != formats.end();
@@ -59,10 +52,24 @@ RawMesh read_file(const std::string& path, bool surface) {
     return format->read(reader);
 }
 
+/// Notes the elements with a volume that are not tetrahedra and therefore no part of the mesh.
+void note_left_out(RawMesh& mesh) {
+    static constexpr std::array<std::string_view, 6> flat{"points",         "lines",           "quadrilaterals",
+                                                          "flat triangles", "triangle strips", "polygons"};
+    std::string text;
+    for (const auto& [kind, count] : mesh.others)
+        if (std::ranges::find(flat, kind) == flat.end() && !kind.starts_with("triangles"))
+            text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
+    if (!text.empty()) mesh.notes.push_back(text + " were left out; only tetrahedra are used");
+}
+
 /// Reads a file of any format and divides its elements of second order into linear ones.
 RawMesh read_raw(const std::string& path, bool surface, std::vector<std::string>* notes) {
     RawMesh raw = read_file(path, surface);
-    if (const std::string note = divide_second_order(raw); !note.empty() && notes) notes->push_back(path + ": " + note);
+    divide_second_order(raw);
+    if (!raw.tetrahedra.empty()) note_left_out(raw);
+    for (const std::string& note : raw.notes)
+        if (notes) notes->push_back(path + ": " + note);
     return raw;
 }
 

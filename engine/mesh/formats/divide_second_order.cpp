@@ -115,7 +115,7 @@ void divide_triangles(RawMesh& mesh) {
 
 }  // namespace
 
-std::string divide_second_order(RawMesh& mesh) {
+void divide_second_order(RawMesh& mesh) {
     const std::size_t tetrahedra =
         mesh.middle.size() - static_cast<std::size_t>(std::ranges::count(mesh.middle, linear_tetrahedron));
     const std::size_t triangles = mesh.triangle_middle.size() -
@@ -123,10 +123,11 @@ std::string divide_second_order(RawMesh& mesh) {
     if (tetrahedra > 0) divide_tetrahedra(mesh);
     if (triangles > 0) divide_triangles(mesh);
     if (tetrahedra > 0)
-        return std::to_string(tetrahedra) + " tetrahedra of second order were divided into eight linear ones each";
-    if (triangles > 0 && mesh.tetrahedra.empty())
-        return std::to_string(triangles) + " triangles of second order were divided into four linear ones each";
-    return {};
+        mesh.notes.push_back(std::to_string(tetrahedra) +
+                             " tetrahedra of second order were divided into eight linear ones each");
+    else if (triangles > 0 && mesh.tetrahedra.empty())
+        mesh.notes.push_back(std::to_string(triangles) +
+                             " triangles of second order were divided into four linear ones each");
 }
 
 }  // namespace skerry::mesh

@@ -130,4 +130,10 @@ private:
 /// Converts a word of the file for use in an error message: in quotes, shortened, and with printable characters only.
 std::string in_quotes(std::string_view text);
 
+/// The text without white space at both ends.
+std::string_view trimmed(std::string_view text);
+
+std::string in_lower_case(std::string_view text);
+std::string in_upper_case(std::string_view text);
+
 }  // namespace skerry::mesh

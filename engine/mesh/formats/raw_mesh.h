@@ -41,6 +41,7 @@ struct RawMesh {
     std::vector<std::string> material_files;  // of an .obj file: names of its .mtl files
     // number of ignored elements of each kind, for example "hexahedra"
     std::map<std::string, std::size_t> others;
+    std::vector<std::string> notes;  // sentences for the user, without the name of the file
 };
 
 /// Describes the triangles and the ignored elements of a mesh, for example "12 triangles, 603 hexahedra".
@@ -73,9 +74,8 @@ void take_tetrahedron(std::span<const Index> nodes, const FileReader& reader, Ra
 void take_triangle(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
 
 /// Divides each tetrahedron of second order into eight linear ones and each triangle of second order into four, which
-/// together use all nodes. Parts have the labels, vectors and sets of the whole. Returns a note, empty if there is
-/// nothing to divide.
-std::string divide_second_order(RawMesh& mesh);
+/// together use all nodes. Parts have the labels, vectors and sets of the whole. Adds a note.
+void divide_second_order(RawMesh& mesh);
 
 /// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
 void add_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
@@ -86,6 +86,7 @@ RawMesh read_vtk(FileReader& reader);   // reads legacy VTK files with unstructu
 RawMesh read_vtu(FileReader& reader);   // reads VTK XML files with unstructured grids
 // reads TetGen files .node and .ele of the same name; `path` may name either file
 RawMesh read_tetgen(const std::string& path);
+RawMesh read_abaqus(FileReader& reader);
 RawMesh read_medit(FileReader& reader);  // reads Medit files .mesh and .meshb
 RawMesh read_obj(FileReader& reader);
 RawMesh read_ply(FileReader& reader);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <string>
 #include <utility>
@@ -94,9 +93,8 @@ private:
         return *type;
     }
 
-    static std::optional<NumberType> type_of(std::string name) {
-        std::transform(name.begin(), name.end(), name.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    static std::optional<NumberType> type_of(std::string_view name) {
+        const std::string lower = in_lower_case(name);
         struct Name {
             const char* name;
             NumberType type;
@@ -115,7 +113,7 @@ private:
                                                      {"short", {NumberKind::int16, 2}},
                                                      {"unsigned_short", {NumberKind::uint16, 2}},
                                                      {"vtktypeint32", {NumberKind::int32, 4}}}};
-        const auto found = std::find_if(names.begin(), names.end(), [&](const Name& n) { return name == n.name; });
+        const auto found = std::find_if(names.begin(), names.end(), [&](const Name& n) { return lower == n.name; });
         if (found == names.end()) return {};
         return found->type;
     }
@@ -284,7 +282,7 @@ private:
                               {NumberKind::uint8, 1});
         }
         const std::size_t coordinates = keyword == "TEXTURE_COORDINATES" ? read_count("dimension", 1) : 0;
-        const std::optional<NumberType> type = type_of(std::string(reader_.word("type")));
+        const std::optional<NumberType> type = type_of(reader_.word("type"));
         if (!type) return false;
         if (keyword == "SCALARS") return read_scalars(name, rows, of_cells, *type);
         if (keyword == "TEXTURE_COORDINATES") return skip_array(rows, coordinates, *type);
@@ -324,7 +322,7 @@ private:
                 continue;
             }
             const std::size_t components = read_count("components", 1), rows = read_count("rows", 1);
-            const std::optional<NumberType> type = type_of(std::string(reader_.word("type")));
+            const std::optional<NumberType> type = type_of(reader_.word("type"));
             if (!type) return false;
             begin_rows();
             if (rows == data_rows)
