@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "engine/mesh/require_positive.h"
+#include "engine/mesh/surface/check_shells.h"
 #include "engine/scene/scene_plan.h"
 #include "engine/world/tuning.h"
 #include "skerry/scene.h"

@@ -198,7 +198,7 @@ inline std::vector<CorpusSurface> surface_corpus() {
     add("almost_doubled", both(ball, moved(scaled(renumbered(ball), 1.0001), {1e-5, 0, 0})), {duplicate_shells},
         inside);
     add("overlapping_balls", both(ball, moved(ball, {0.41, 0.13, 0.07})), {shell_crossings, doubled_volumes});
-    add("overlapping_boxes", both(box, moved(box, {0.5, 0, 0})), {overlaps, doubled_volumes}, 1.5);
+    add("overlapping_boxes", both(box, moved(box, {0.5, 0, 0})), {branching_edges, overlaps, doubled_volumes}, 1.5);
     add("touching_boxes", both(box, moved(box, {1, 0, 0})), {branching_edges, overlaps}, 2);
     const SurfaceMesh core = ball_surface(0.2, 6);
     add("cavity", both(ball, turned_inside_out(core)), {}, inside - volume_inside(core));

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/mesh/require_positive.h"
+#include "engine/mesh/surface/check_shells.h"
 #include "engine/world/save/checks.h"
 #include "systems/collision/inputs/contact_key.h"
 

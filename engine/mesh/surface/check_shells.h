@@ -1,0 +1,24 @@
+// Checks of the connections and shells of a surface.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "skerry/surface_check.h"
+
+namespace skerry::mesh {
+
+/// As check_surface, without the search for crossings, slivers and thin walls.
+SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std::string& name);
+
+/// Distance that counts as rounding error in a surface [m].
+inline Real rounding_distance(const SurfaceReport& report) {
+    return std::max(report.tolerance, default_weld * (report.upper - report.lower).norm());
+}
+
+/// Throws SceneError unless the surface is closed and all of its shells enclose volume. A shell that is inside out must
+/// lie in another shell, in which it bounds a void. Shells may cross each other only if `may_cross`. `what`: name of
+/// the file or body for the error.
+void require_shells(const SurfaceMesh& surface, const std::string& what, bool may_cross);
+
+}  // namespace skerry::mesh

@@ -1,0 +1,246 @@
+#include "engine/mesh/surface/shells.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "engine/mesh/repair/triangle_tree.h"
+#include "engine/mesh/surface/add_fault.h"
+#include "engine/mesh/surface/connect.h"
+#include "engine/mesh/surface/triangle_boxes.h"
+#include "systems/collision/tree/box.h"
+#include "systems/collision/tree/box_tree.h"
+
+namespace skerry::mesh {
+namespace {
+
+struct ShellSize {
+    Aabb box = empty_box();  // [m]
+    Real area = 0;           // [m^2]
+    Real volume = 0;         // [m^3]
+    Vec3 origin = Vec3::Zero();
+
+    Real diagonal() const { return (box.upper - box.lower).norm(); }
+};
+
+std::vector<ShellSize> sizes_of(const SurfaceReport& report) {
+    std::vector<ShellSize> sizes(report.shells.size());
+    for (std::size_t t = 0; t < report.shell.size(); ++t) {
+        ShellSize& size = sizes[static_cast<std::size_t>(report.shell[t])];
+        std::array<Vec3, 3> x = corners_of(report.cleaned, static_cast<Index>(t));
+        if (size.area == 0 && size.box.lower.x() > size.box.upper.x()) size.origin = x[0];
+        for (Vec3& corner : x) {
+            grow(size.box, corner);
+            corner -= size.origin;
+        }
+        size.area += (x[1] - x[0]).cross(x[2] - x[0]).norm() / 2;
+        size.volume += x[0].dot(x[1].cross(x[2])) / 6;
+    }
+    return sizes;
+}
+
+/// Triangles of a shell, with the nodes of the whole surface.
+SurfaceMesh shell_of(const SurfaceReport& report, std::size_t shell) {
+    SurfaceMesh part{report.cleaned.nodes, {}};
+    for (std::size_t t = 0; t < report.shell.size(); ++t)
+        if (static_cast<std::size_t>(report.shell[t]) == shell) part.triangles.push_back(report.cleaned.triangles[t]);
+    return weld(part, no_weld);
+}
+
+/// Finds shells that repeat an earlier shell. Returns the earlier shell of each shell, or no_index.
+std::vector<Index> repeated_shells(const SurfaceReport& report, std::span<const ShellSize> sizes, Real distance) {
+    // Shells of the same orientation this close together cannot be meant as a wall or a region, relative to their size.
+    constexpr Real close = 1e-3;
+    std::vector<Index> same(sizes.size(), no_index);
+    for (std::size_t j = 1; j < sizes.size(); ++j)
+        for (std::size_t i = 0; i < j && same[j] == no_index; ++i) {
+            const ShellSize &first = sizes[i], &second = sizes[j];
+            const bool alike = report.shells[i].closed == report.shells[j].closed &&
+                               (!report.shells[i].closed || (first.volume > 0) == (second.volume > 0));
+            const Real limit = std::max(distance, alike ? close * first.diagonal() : 0);
+            if (same[i] != no_index || (first.box.lower - second.box.lower).norm() > 2 * limit ||
+                (first.box.upper - second.box.upper).norm() > 2 * limit ||
+                std::abs(first.area - second.area) > 10 * close * first.area)
+                continue;
+            const SurfaceMesh part = shell_of(report, j);
+            const TriangleTree tree(shell_of(report, i));
+            const Real squared = limit * limit;
+            if (std::ranges::all_of(part.nodes,
+                                    [&](const Vec3& x) { return tree.distance_squared(x, 2 * squared) <= squared; }))
+                same[j] = static_cast<Index>(i);
+        }
+    return same;
+}
+
+/// Sign of the side of the line through `p` and `q` on which `x` lies, seen along the first axis. The sign of a point
+/// on the line depends on the line only, so that exactly one of two triangles at an edge contains the point.
+int side_of(const Vec3& x, const Vec3& p, const Vec3& q) {
+    const bool swapped = q.z() < p.z() || (q.z() == p.z() && q.y() < p.y());
+    const Vec3 &a = swapped ? q : p, &b = swapped ? p : q;
+    const bool left = (b.y() - a.y()) * (x.z() - a.z()) - (b.z() - a.z()) * (x.y() - a.y()) >= 0;
+    return left == swapped ? -1 : 1;
+}
+
+/// Finds the shells that contain a point. The rays that it follows lead along the first axis.
+class ContainingShells {
+public:
+    explicit ContainingShells(const SurfaceReport& report, std::span<const ShellSize> sizes)
+        : report_(report), winding_(sizes.size(), 0) {
+        std::vector<Aabb> boxes;
+        for (std::size_t s = 0; s < sizes.size(); ++s)
+            boxes.push_back(report.shells[s].closed ? sizes[s].box : empty_box());
+        shells_ = BoxTree(boxes);
+        triangles_ = BoxTree(triangle_boxes(report.cleaned, 0));
+    }
+
+    /// The closed shells that contain `x`, except shell `own`, in ascending order.
+    std::vector<Index> around(const Vec3& x, Index own) {
+        const auto on_ray = [&](const Aabb& box) {
+            return box.lower.y() <= x.y() && x.y() <= box.upper.y() && box.lower.z() <= x.z() &&
+                   x.z() <= box.upper.z() && x.x() <= box.upper.x();
+        };
+        std::vector<Index> found;
+        shells_.for_each([&](const Aabb& box) { return on_ray(box) && box.lower.x() <= x.x(); },
+                         [&](Index shell) {
+                             if (shell != own) found.push_back(shell);
+                         });
+        if (found.empty()) return found;
+        triangles_.for_each(on_ray, [&](Index t) {
+            const auto [p, q, r] = corners_of(report_.cleaned, t);
+            const int side = side_of(x, p, q);
+            if (side_of(x, q, r) != side || side_of(x, r, p) != side) return;
+            const Vec3 across = (q - p).cross(r - p);
+            if (across.dot(p - x) * across.x() > 0)
+                winding_[static_cast<std::size_t>(report_.shell[static_cast<std::size_t>(t)])] += side;
+        });
+        std::erase_if(found, [&](Index shell) { return winding_[static_cast<std::size_t>(shell)] == 0; });
+        std::ranges::fill(winding_, 0);
+        std::ranges::sort(found);
+        return found;
+    }
+
+private:
+    const SurfaceReport& report_;
+    BoxTree shells_, triangles_;
+    std::vector<int> winding_;  // of each shell around the point
+};
+
+/// Triangles of a shell with the same other shells around the volume behind them.
+struct Surrounded {
+    std::size_t count = 0;
+    Index first = no_index;
+};
+using SurroundedTriangles = std::map<std::pair<Index, std::vector<Index>>, Surrounded>;
+
+SurroundedTriangles surrounded_triangles(const SurfaceReport& report, std::span<const ShellSize> sizes) {
+    constexpr Real depth = 1e-6;  // depth of the points behind the triangles, relative to the size of the surface
+    const Real below = depth * (report.upper - report.lower).norm();
+    ContainingShells containing(report, sizes);
+    SurroundedTriangles found;
+    for (std::size_t t = 0; t < report.shell.size(); ++t) {
+        const auto own = static_cast<std::size_t>(report.shell[t]);
+        if (!report.shells[own].closed) continue;
+        const auto [a, b, c] = corners_of(report.cleaned, static_cast<Index>(t));
+        const Vec3 outward = std::copysign(Real(1), sizes[own].volume) * (b - a).cross(c - a).normalized();
+        if (outward.isZero()) continue;
+        Surrounded& group =
+            found[{static_cast<Index>(own),
+                   containing.around(0.41 * a + 0.35 * b + 0.24 * c - below * outward, static_cast<Index>(own))}];
+        if (group.count++ == 0) group.first = static_cast<Index>(t);
+    }
+    return found;
+}
+
+/// Sets `around` of each shell that lies in others with all of its triangles.
+void nest(SurfaceReport& report, const SurroundedTriangles& surrounded) {
+    std::map<std::pair<Index, Index>, std::size_t> inside;  // number of triangles of the first shell in the second
+    for (const auto& [key, group] : surrounded)
+        for (const Index other : key.second) inside[{key.first, other}] += group.count;
+    for (const auto& [pair, count] : inside) {
+        SurfaceShell& shell = report.shells[static_cast<std::size_t>(pair.first)];
+        const auto size_of = [&](Index s) { return std::abs(report.shells[static_cast<std::size_t>(s)].volume); };
+        if (count == shell.triangles && size_of(pair.second) > size_of(pair.first) &&
+            (shell.around == no_index || size_of(pair.second) < size_of(shell.around)))
+            shell.around = pair.second;
+    }
+}
+
+/// Turns each outermost shell of negative volume, and the shells inside it.
+void turn_inside_out(SurfaceReport& report) {
+    std::vector<bool> turned(report.shells.size(), false);
+    for (std::size_t s = 0; s < turned.size(); ++s) {
+        std::size_t outermost = s;
+        while (report.shells[outermost].around != no_index)
+            outermost = static_cast<std::size_t>(report.shells[outermost].around);
+        turned[s] = report.shells[outermost].volume < 0;
+    }
+    if (std::ranges::count(turned, true) == 0) return;
+    for (std::size_t t = 0; t < report.shell.size(); ++t) {
+        const auto own = static_cast<std::size_t>(report.shell[t]);
+        SurfaceShell& shell = report.shells[own];
+        if (!turned[own]) continue;
+        if (report.number[t] == shell.triangle && shell.around == no_index)
+            add_fault(report, SurfaceFaultKind::inside_out_shells, static_cast<Index>(t));
+        std::swap(report.cleaned.triangles[t][1], report.cleaned.triangles[t][2]);
+    }
+    for (std::size_t s = 0; s < turned.size(); ++s)
+        if (turned[s]) report.shells[s].volume *= -1;
+}
+
+}  // namespace
+
+bool drop_repeated_shells(SurfaceReport& report, Real distance) {
+    const std::vector<Index> same = repeated_shells(report, sizes_of(report), distance);
+    const auto row_of = [&](std::size_t shell) {
+        const auto place = std::ranges::find(report.shell, static_cast<Index>(shell));
+        return static_cast<Index>(place - report.shell.begin());
+    };
+    bool any = false;
+    for (std::size_t s = 0; s < same.size(); ++s) {
+        if (same[s] == no_index) continue;
+        add_fault(report, SurfaceFaultKind::duplicate_shells, row_of(s), row_of(static_cast<std::size_t>(same[s])));
+        any = true;
+    }
+    if (any)
+        keep_triangles(report,
+                       [&](std::size_t t) { return same[static_cast<std::size_t>(report.shell[t])] == no_index; });
+    return any;
+}
+
+void compare_shells(SurfaceReport& report) {
+    const std::vector<ShellSize> sizes = sizes_of(report);
+    std::vector<bool> seen(report.shells.size(), false);
+    for (std::size_t t = 0; t < report.shell.size(); ++t) {
+        const auto own = static_cast<std::size_t>(report.shell[t]);
+        SurfaceShell& shell = report.shells[own];
+        if (seen[own] || !shell.closed) continue;
+        seen[own] = true;
+        constexpr Real flat = 1e-12;  // rounding error of the volume, relative to the cube of the size
+        const Real size = (sizes[own].box.upper - sizes[own].box.lower).maxCoeff();
+        shell.volume = sizes[own].volume;
+        if (std::abs(shell.volume) <= flat * size * size * size)
+            add_fault(report, SurfaceFaultKind::flat_shells, static_cast<Index>(t));
+    }
+    const auto signed_count = std::ranges::count(report.shells, true, &SurfaceShell::closed);
+    SurroundedTriangles surrounded;
+    if (signed_count > 1) surrounded = surrounded_triangles(report, sizes);
+    nest(report, surrounded);
+    turn_inside_out(report);
+    const auto sign_of = [&](Index shell) {
+        return report.shells[static_cast<std::size_t>(shell)].volume > 0 ? 1 : -1;
+    };
+    for (const auto& [key, group] : surrounded) {
+        int volumes = sign_of(key.first);  // number of volumes that contain the points behind the triangles
+        for (const Index other : key.second) volumes += sign_of(other);
+        if (volumes > 1 || (volumes < 0 && !key.second.empty()))
+            add_fault(report, SurfaceFaultKind::doubled_volumes, group.first).count += group.count - 1;
+    }
+    for (const SurfaceShell& shell : report.shells)
+        if (shell.around == no_index || sign_of(shell.around) != (shell.volume > 0 ? 1 : -1))
+            report.volume += shell.volume;
+    for (const ShellSize& size : sizes) report.area += size.area;
+}
+
+}  // namespace skerry::mesh

@@ -1,0 +1,16 @@
+// Volumes of the shells of a surface, and shells inside other shells.
+#pragma once
+
+#include "skerry/surface_check.h"
+
+namespace skerry::mesh {
+
+/// Drops shells that repeat an earlier one, and reports them. `distance`: distance of shells that count as equal
+/// whatever their orientation [m]. Returns false if there are none; otherwise the connections change.
+bool drop_repeated_shells(SurfaceReport& report, Real distance);
+
+/// Computes the volumes of closed shells, finds the shells around others, and turns shells that are inside out together
+/// with the shells inside them. Reports these shells, shells without volume and volumes that several shells enclose.
+void compare_shells(SurfaceReport& report);
+
+}  // namespace skerry::mesh
