@@ -24,7 +24,7 @@ struct BestMesh {
     Mesh mesh;
     Real step = 0;  // stable step; 0: no mesh was found [s]
     std::size_t collapsed = 0, flipped = 0;  // numbers of surface edges that were collapsed or flipped
-    std::string failure;   // reason why no mesh was found
+    std::string failure{};  // reason why no mesh was found
     bool missing = false;  // true if the mesher is not installed
 };
 

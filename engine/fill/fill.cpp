@@ -1,7 +1,7 @@
 #include "skerry/fill.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "engine/fill/best_mesh.h"
@@ -24,7 +24,6 @@ constexpr Real envelope_share = 0.5;
 // Netgen's mesh of a surface of fTetWild must have this share of the number of tetrahedra of fTetWild.
 constexpr Real least_count = 0.7;
 
-const char* const install_netgen = "install Netgen's library (apt-get install libnglib-dev) and build Skerry again";
 const char* const install_ftetwild = "install the Python package of fTetWild: pip install wildmeshing==0.4.1";
 
 /// A surface to fill. `first_triangle`: number of the first triangle of each file.
@@ -128,7 +127,7 @@ private:
             take(std::move(best), "Netgen");
             return true;
         }
-        netgen_failure_ = best.missing ? netgen_program() + " is not installed" : best.failure;
+        netgen_failure_ = best.failure;
         netgen_missing_ = best.missing;
         result_.notes.push_back(netgen_failure_ + ": the surface was filled by fTetWild");
         return false;
@@ -179,7 +178,7 @@ private:
         std::string hint;
         if (filled.missing)
             hint = std::string(netgen_missing_ ? install_netgen : "") + (netgen_missing_ ? "; or " : "") +
-                   install_ftetwild + ", and name its interpreter in SKERRY_PYTHON if it is not " + python;
+                   install_ftetwild + ", and name its interpreter in SKERRY_FILL_PYTHON if it is not " + python;
         else if (filled.stopped)
             hint = "a larger edge than " + number(edge) +
                    " m or a larger tolerance takes less time and memory; or raise the limit";

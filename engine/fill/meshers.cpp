@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <system_error>
 
 #include "engine/mesh/repair/surface_measures.h"
@@ -60,24 +61,33 @@ std::function<void()> waiting(const MesherSetup& setup, const std::string& doing
 
 }  // namespace
 
+const char* const install_netgen =
+    "install Netgen's library (apt-get install libnglib-dev), then configure and build Skerry again";
+
 std::string netgen_program() {
     if (std::string named = value_of("SKERRY_FILL"); !named.empty()) return named;
     std::error_code ignored;
-    const std::filesystem::path beside =
-        std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / "skerry-fill";
-    return access(beside.c_str(), X_OK) == 0 ? beside.string() : "skerry-fill";
+    std::istringstream folders(std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().string() + ":" +
+                               value_of("PATH"));
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (const std::filesystem::path program = std::filesystem::path(folder) / "skerry-fill";
+            access(program.c_str(), X_OK) == 0)
+            return program.string();
+    return {};
 }
 
 std::string python_program(const std::string& given) {
     if (!given.empty()) return given;
-    const std::string named = value_of("SKERRY_PYTHON");
+    const std::string named = value_of("SKERRY_FILL_PYTHON");
     return named.empty() ? "python3" : named;
 }
 
 MesherResult fill_by_netgen(const SurfaceMesh& surface, Real largest_edge, const MesherSetup& setup,
                             const std::string& doing) {
+    const std::string program = netgen_program();
+    if (program.empty()) return {.failure = "is not installed: no program skerry-fill", .missing = true};
     return run_mesher(surface, largest_edge,
-                      {.command = {netgen_program()}, .limits = setup.limits, .wait = waiting(setup, doing)});
+                      {.command = {program}, .limits = setup.limits, .wait = waiting(setup, doing)});
 }
 
 MesherResult fill_by_ftetwild(const SurfaceMesh& surface, Real edge, Real envelope, const MesherSetup& setup) {

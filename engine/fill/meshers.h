@@ -14,9 +14,12 @@ struct MesherSetup {
     FillProgress progress{};
 };
 
-/// Path of skerry-fill: the value of the environment variable SKERRY_FILL, or the program in the folder of this
-/// program, or else the name alone, which is searched in PATH.
+/// Path of skerry-fill: the value of the environment variable SKERRY_FILL, or else the program in the folder of this
+/// program or in a folder of PATH. Empty if there is none.
 std::string netgen_program();
+
+/// Explains how to install Netgen.
+extern const char* const install_netgen;
 
 /// Command that starts the Python interpreter with the package wildmeshing (see FillSettings::python).
 std::string python_program(const std::string& given);

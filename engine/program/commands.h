@@ -8,7 +8,9 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "skerry/fill.h"
 #include "skerry/output.h"
 #include "skerry/problem.h"
 #include "skerry/scene.h"
@@ -71,6 +73,16 @@ struct InspectOptions {
     bool overwrite = false;  // the repaired mesh may replace the input file
 };
 int inspect(const InspectOptions& options);
+
+struct FillOptions {
+    std::vector<std::filesystem::path> surfaces;
+    std::filesystem::path mesh;   // file for the mesh (.msh)
+    std::filesystem::path scene;  // file for a scene in which the body falls on a floor; empty: none
+    std::string material;         // named material of the stable step and of the scene; empty: the default material
+    mesh::FillSettings settings;
+    bool json = false;
+};
+int fill(const FillOptions& options);
 
 /// Prints the named materials, as JSON or as a table.
 int materials(bool as_json);

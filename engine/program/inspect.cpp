@@ -215,7 +215,7 @@ int inspect_scene(const InspectOptions& options) {
     RunOptions run;
     run.scene = options.file;
     run.overrides.assignments = options.assignments;
-    const ScenePlan plan = plan_scene(options.file, run.overrides);
+    const ScenePlan plan = plan_with_progress(options.file, run.overrides, true);
     if (!options.repair.empty()) {
         const BodyPlan& body = body_to_mend(plan, options);
         return inspect_repair({.mesh = plan.meshes[body.mesh],

@@ -1,11 +1,9 @@
 #include "engine/program/inspect_repair.h"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <iostream>
 
-#include "engine/program/fill_surface.h"
+#include "engine/fill/meshers.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
 #include "engine/program/repair.h"
@@ -15,28 +13,6 @@
 namespace skerry {
 
 namespace {
-
-/// Status line on a terminal: the current activity and the elapsed seconds. Prints nothing if standard error is not a
-/// terminal.
-class DoingLine {
-public:
-    explicit DoingLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) != 0) {}
-    ~DoingLine() {
-        if (shown_) std::fputs("\r\033[K", stderr);
-    }
-    DoingLine(const DoingLine&) = delete;
-    DoingLine& operator=(const DoingLine&) = delete;
-
-    void say(const std::string& doing) const {
-        if (!shown_) return;
-        std::fprintf(stderr, "\r\033[K%s, %.1f s", doing.c_str(), watch_.seconds());
-        std::fflush(stderr);
-    }
-
-private:
-    bool shown_;
-    Stopwatch watch_;
-};
 
 Json figures_json(const MeshFigures& figures) {
     return {{"nodes", figures.mesh.nodes},
@@ -142,15 +118,22 @@ void check_repair(const InspectOptions& options) {
     std::error_code none;
     if (!options.overwrite && std::filesystem::equivalent(options.repair, options.file, none))
         refuse("file name", "the input file", "a different file, or the option --overwrite");
-    require_fill();
+    if (mesh::netgen_program().empty())
+        Complaint{.file = {},
+                  .object = "--repair",
+                  .field = {},
+                  .found = "no program skerry-fill in the folder of skerry or in PATH",
+                  .expected = "the program skerry-fill, which is built if Netgen's library is installed",
+                  .hint = mesh::install_netgen}
+            .raise();
 }
 
 int inspect_repair(const RepairTask& task, const InspectOptions& options) {
     RepairedMesh repaired;
     {
-        const DoingLine line(!options.json);
+        const ActivityLine line(!options.json);
         repaired = repair(task.mesh, task.what, task.of, options.tolerance,
-                          [&](const std::string& doing) { line.say(doing); });
+                          [&](const std::string& doing) { line.show(doing); });
         if (repaired.refusal.empty()) mesh::write(options.repair.string(), repaired.mesh);
     }
     if (options.json) print_json(repaired, task, options);

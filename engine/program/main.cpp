@@ -28,6 +28,7 @@ const char* const general_examples = R"(Examples:
   skerry run scenes/bucket.json --out frames --stats s.json   frames for ParaView, statistics for scripts
   skerry inspect scenes/table.json                         sizes, step length, cost and problems of a scene
   skerry inspect bunny.msh                                 sizes, quality and problems of a mesh
+  skerry fill bunny.obj bunny.msh --scene bunny.json       fill a surface with tetrahedra, and write a first scene
   skerry solve problem.hdf5 --tolerance 1e-6               solve a frictional contact problem of FCLIB
   skerry sweep examples/incline_sweep.json                 simulate a scene with many values, one case per core
 
@@ -67,6 +68,23 @@ const char* const inspect_examples = R"(Examples:
 --repair uses Netgen to fill two surfaces with new tetrahedra: the unchanged surface, and the surface without very flat
 triangles. The mesh with the longer stable step is written. If no new stable step is at least 5 % longer, or if the
 surface moves by more than the tolerance, no file is written and the exit code is 1.)";
+
+const char* const fill_examples = R"(Examples:
+  skerry fill bunny.obj bunny.msh                          keep the triangles of the surface if it has no faults
+  skerry fill bunny.obj bunny.msh --edge 0.01              tetrahedra and triangles with edges of about 1 cm
+  skerry fill scan.stl scan.msh --edge 0.01 --tolerance 0.005   allow the surface to move by 0.5 % of its size
+  skerry fill bone.stl skin.stl leg.msh                    two regions, if one surface lies inside the other
+  skerry fill ball.stl ball.msh --cavities                 leave the inside of inner shells empty
+From a surface to a film:
+  skerry fill bunny.obj bunny.msh --scene bunny.json --material rubber_natural
+  skerry run bunny.json --page bunny.html                  then open bunny.html in a browser
+
+A surface without faults is filled by Netgen, which keeps its triangles. A surface with holes, crossings or other
+faults, and one whose edges differ from --edge, is filled by fTetWild within the tolerance. `skerry inspect SURFACE`
+lists the faults. Of several meshes the one with the longest stable step is written. Netgen is part of Skerry if
+libnglib-dev was installed when Skerry was built. fTetWild is a Python package: pip install wildmeshing==0.4.1. Set
+SKERRY_FILL_PYTHON to the Python interpreter that has it, if that is not python3.
+Exit codes: 0 success, 2 the surface cannot be filled or another input is invalid, 1 other failures.)";
 
 const char* const sweep_examples =
     R"(CASES is a JSON file. It names a scene and the values with which to simulate the scene:
@@ -311,6 +329,49 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
     command.add_flag("--overwrite", options.overwrite, "allow --repair to replace the input file")->needs(repair);
 }
 
+void add_fill(CLI::App& app, FillOptions& options) {
+    CLI::App& command = *app.add_subcommand("fill", "Fill a triangle surface with tetrahedra");
+    command.footer(fill_examples);
+    command
+        .add_option_function<std::vector<std::string>>(
+            "FILES",
+            [&options](const std::vector<std::string>& files) {
+                options.surfaces.assign(files.begin(), files.end() - 1);
+                options.mesh = files.back();
+            },
+            "one or more surfaces (.stl, .obj, .ply or a mesh file), then the mesh to write (.msh)")
+        ->required()
+        ->expected(2, CLI::detail::expected_max_vector_size)
+        ->type_name("SURFACE... OUT.msh");
+    command
+        .add_option_function<Real>(
+            "--edge", [&options](const Real& edge) { options.settings.edge = edge; },
+            "edge length of the tetrahedra and of their surface [m]; default: the triangles of a surface without faults "
+            "are kept, and other surfaces get a twentieth of the diagonal of the bounding box")
+        ->check(positive_number);
+    command
+        .add_option("--tolerance", options.settings.tolerance,
+                    "largest distance between the surface and the mesh, as a fraction of the diagonal of the bounding "
+                    "box; 0: keep all triangles, and refuse surfaces with faults")
+        ->check(share)
+        ->capture_default_str();
+    command.add_flag("--cavities", options.settings.cavities,
+                     "leave the inside of inner shells empty; default: only of shells whose triangles are clockwise as "
+                     "seen from outside, and the other inner shells bound regions with labels of their own");
+    command.add_option("--material", options.material,
+                       "material for which the stable step is computed; `skerry materials` lists the names");
+    command.add_option("--scene", options.scene, "also write a scene in which the body falls on a floor");
+    command.add_option("--time-limit", options.settings.limits.seconds, "time limit of each run of a mesher [s]")
+        ->check(positive_number)
+        ->capture_default_str();
+    command
+        .add_option_function<Real>(
+            "--memory-limit", [&options](const Real& limit) { options.settings.limits.bytes = 1e9 * limit; },
+            "memory limit of a mesher [GB]; default: 8")
+        ->check(positive_number);
+    command.add_flag("--json", options.json, "print the result as JSON");
+}
+
 void add_sweep(CLI::App& app, SweepOptions& options) {
     CLI::App& command = *app.add_subcommand("sweep", "Simulate a scene with many values, one case per core");
     command.footer(sweep_examples);
@@ -366,10 +427,12 @@ int run_command_line(int argc, char** argv) {
     RunOptions run_options;
     SolveOptions solve_options;
     InspectOptions inspect_options;
+    FillOptions fill_options;
     SweepOptions sweep_options;
     add_run(app, run_options);
     add_solve(app, solve_options);
     add_inspect(app, inspect_options);
+    add_fill(app, fill_options);
     add_sweep(app, sweep_options);
     bool schema_of_sweeps = false;
     app.add_subcommand("schema", "Print the JSON schema of scenes")
@@ -386,6 +449,7 @@ int run_command_line(int argc, char** argv) {
     if (app.got_subcommand("run")) return run(run_options);
     if (app.got_subcommand("solve")) return solve(solve_options);
     if (app.got_subcommand("inspect")) return inspect(inspect_options);
+    if (app.got_subcommand("fill")) return fill(fill_options);
     if (app.got_subcommand("materials")) return materials(materials_as_json);
     if (app.got_subcommand("sweep")) return sweep(sweep_options);
     std::cout << (schema_of_sweeps ? sweep_schema() : scene_schema());

@@ -124,4 +124,21 @@ void SetupProgress::begin(const char* work) {
     std::fprintf(stderr, "skerry: set-up after %s: %s\n", duration_text(last_).c_str(), work);
 }
 
+ActivityLine::ActivityLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) != 0) {}
+
+ActivityLine::~ActivityLine() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+}
+
+void ActivityLine::show(const std::string& activity) const {
+    if (!shown_) return;
+    std::fprintf(stderr, "\r\033[K%s, %.1f s", activity.c_str(), watch_.seconds());
+    std::fflush(stderr);
+}
+
+ScenePlan plan_with_progress(const std::filesystem::path& file, const SceneOverrides& overrides, bool wanted) {
+    const ActivityLine line(wanted);
+    return plan_scene(file, overrides, [&](const std::string& activity) { line.show(activity); });
+}
+
 }  // namespace skerry

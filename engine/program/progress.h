@@ -4,12 +4,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "engine/program/time_left.h"
 
 namespace skerry {
 
+struct SceneOverrides;
 struct ScenePlan;
 
 /// Measures the wall time since the construction of the object [s].
@@ -76,5 +78,25 @@ private:
     double last_ = 0;  // time of the last line [s]
     Stopwatch watch_;
 };
+
+/// Status line on a terminal: the current activity and the elapsed seconds. Prints nothing if standard error is not a
+/// terminal.
+class ActivityLine {
+public:
+    explicit ActivityLine(bool wanted);
+    ~ActivityLine();
+    ActivityLine(const ActivityLine&) = delete;
+    ActivityLine& operator=(const ActivityLine&) = delete;
+
+    void show(const std::string& activity) const;
+
+private:
+    bool shown_;
+    Stopwatch watch_;
+};
+
+/// Plans a scene. While a surface of the scene is filled with tetrahedra, the activity is shown on a terminal if
+/// `wanted` is true.
+ScenePlan plan_with_progress(const std::filesystem::path& file, const SceneOverrides& overrides, bool wanted);
 
 }  // namespace skerry

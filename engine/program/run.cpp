@@ -285,7 +285,7 @@ RunResult simulate(const RunOptions& asked) {
         options.overrides.assignments = restart->memory.assignments;
     }
     RunResult result;
-    const ScenePlan plan = plan_scene(options.scene, options.overrides);
+    const ScenePlan plan = plan_with_progress(options.scene, options.overrides, !options.quiet);
     result.seconds_load = loading.seconds();
     const Stopwatch setting_up;
     SetupProgress setup(!options.quiet, plan);

@@ -1,10 +1,16 @@
 // Tetrahedral meshes and surfaces.
 #include "skerry/mesh.h"
 
+#include <nanobind/stl/tuple.h>
+
+#include <filesystem>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <variant>
 
 #include "engine/python/mesh_sets.h"
+#include "skerry/fill.h"
 
 namespace skerry::python {
 
@@ -48,6 +54,32 @@ nb::tuple read_surface(const std::string& path) {
     Notes notes;
     const SurfaceMesh surface = without_gil([&] { return mesh::read_surface(path, &notes); });
     return nb::make_tuple(arrays_of(surface), notes);
+}
+
+/// Fills the surface of an array of file names, or of arrays of nodes and triangles. Returns the mesh and its notes.
+nb::tuple fill(const std::variant<std::vector<std::string>, std::tuple<Vectors, IndexRows<3>>>& given,
+               std::optional<Real> edge, Real tolerance, bool cavities, Real seconds, Real bytes,
+               const std::string& python) {
+    const mesh::FillSettings settings{.edge = edge,
+                                      .tolerance = tolerance,
+                                      .cavities = cavities,
+                                      .limits = {.seconds = seconds, .bytes = bytes},
+                                      .python = python};
+    const auto poll = [](const std::string&) {
+        const nb::gil_scoped_acquire held;
+        if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    };
+    if (const auto* names = std::get_if<0>(&given)) {
+        const std::vector<std::filesystem::path> files(names->begin(), names->end());
+        mesh::FilledMesh filled = without_gil([&] { return mesh::fill(files, settings, poll); });
+        return nb::make_tuple(std::move(filled.mesh), filled.notes);
+    }
+    const auto& [nodes, triangles] = std::get<1>(given);
+    const auto points = span_of(nodes);
+    const auto rows = span_of(triangles);
+    const SurfaceMesh surface{.nodes{points.begin(), points.end()}, .triangles{rows.begin(), rows.end()}};
+    mesh::FilledMesh filled = without_gil([&] { return mesh::fill(surface, "surface", settings, poll); });
+    return nb::make_tuple(std::move(filled.mesh), filled.notes);
 }
 
 Mesh table(Real length, Real width, Real height, Real thickness, Real leg, int cells_per_leg) {
@@ -123,6 +155,7 @@ void bind_mesh(nb::module_& module) {
     module.def("same_mesh", &same_mesh, nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg());
     module.def("read_mesh", &read);
     module.def("read_surface", &read_surface);
+    module.def("fill", &fill, nb::arg(), nb::arg().none(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg());
     module.def("box", [](const Vec3& size, const std::array<int, 3>& cells) { return mesh::box(size, cells); });
     module.def("ball", &mesh::ball);
     module.def("cylinder", &mesh::cylinder);

@@ -17,7 +17,9 @@ namespace skerry {
 namespace {
 
 /// `rigid`: true if the mesh may be a surface without tetrahedra. `notes`: gets remarks about the mesh file.
-Mesh make_shape(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes) {
+/// `progress`: gets the activity while a surface is filled.
+Mesh make_shape(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes,
+                const mesh::FillProgress& progress) {
     if (entry.box) return mesh::box(entry.box->size, entry.box->cells);
     if (entry.ball) return mesh::ball(entry.ball->radius, entry.ball->resolution);
     if (entry.cylinder)
@@ -25,12 +27,18 @@ Mesh make_shape(const MeshEntry& entry, bool rigid, std::vector<std::string>& no
     if (entry.lathe) return mesh::lathe(entry.lathe->profile, entry.lathe->resolution);
     if (entry.skittle) return mesh::skittle(entry.skittle->height, entry.skittle->resolution);
     if (entry.table) return mesh::table(*entry.table);
+    if (entry.surface) {
+        mesh::FillSettings settings{.edge = entry.edge, .cavities = entry.cavities};
+        settings.tolerance = entry.tolerance.value_or(settings.tolerance);
+        return mesh::fill_cached(entry.surface->path, settings, progress, &notes);
+    }
     const std::string file = entry.file->path.string();
     return rigid ? mesh::read_rigid(file, &notes) : mesh::read(file, &notes);
 }
 
-Mesh make_mesh(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes) {
-    Mesh mesh = called_at(entry.place, [&] { return make_shape(entry, rigid, notes); });
+Mesh make_mesh(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes,
+               const mesh::FillProgress& progress = {}) {
+    Mesh mesh = called_at(entry.place, [&] { return make_shape(entry, rigid, notes, progress); });
     for (Vec3& node : mesh.nodes) node *= entry.scale;
     return mesh;
 }
@@ -164,23 +172,31 @@ void plan_materials(const BodyEntry& entry, const Mesh& mesh, const ScenePlan& p
 /// Names and mesh files of the bodies that have been planned so far.
 struct PlannedBodies {
     std::set<std::string> names;
-    // Index in ScenePlan::meshes of each mesh file that was read, by path and scale.
-    std::map<std::pair<std::filesystem::path, Real>, std::size_t> mesh_of_file;
+    // Index in ScenePlan::meshes of each mesh file that was read and of each surface that was filled, by the members of
+    // the entry.
+    std::map<std::tuple<std::filesystem::path, Real, std::optional<Real>, std::optional<Real>, bool>, std::size_t>
+        mesh_of_file;
     // by path and scale of the file, and index in ScenePlan::meshes
     std::map<std::tuple<std::filesystem::path, Real, std::size_t>, std::shared_ptr<const BoundVisual>> visuals;
+    const mesh::FillProgress& progress;
 };
 
 /// Returns the index of the body's mesh in plan.meshes. Each mesh file is read only once.
 std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& plan) {
     const std::size_t next = plan.meshes.size();
-    if (entry.mesh && entry.mesh->file) {
-        const auto known = so_far.mesh_of_file.find({entry.mesh->file->path, entry.mesh->scale});
-        if (known != so_far.mesh_of_file.end()) return known->second;
-    }
     const bool rigid = entry.dynamics == BodyDynamics::rigid;
-    plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh, rigid, plan.notes) : picture_of(*entry.shape));
-    plan.mesh_files.push_back(entry.mesh && entry.mesh->file ? entry.mesh->file->path : std::filesystem::path());
-    if (entry.mesh && entry.mesh->file) so_far.mesh_of_file[{entry.mesh->file->path, entry.mesh->scale}] = next;
+    if (!entry.mesh || !(entry.mesh->file || entry.mesh->surface)) {
+        plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh, rigid, plan.notes) : picture_of(*entry.shape));
+        plan.mesh_files.emplace_back();
+        return next;
+    }
+    const MeshEntry& mesh = *entry.mesh;
+    const std::filesystem::path& file = (mesh.file ? mesh.file : mesh.surface)->path;
+    const auto [known, is_new] =
+        so_far.mesh_of_file.try_emplace({file, mesh.scale, mesh.edge, mesh.tolerance, mesh.cavities}, next);
+    if (!is_new) return known->second;
+    plan.meshes.push_back(make_mesh(mesh, rigid, plan.notes, so_far.progress));
+    plan.mesh_files.push_back(file);
     return next;
 }
 
@@ -353,11 +369,13 @@ void apply(const SceneOverrides& overrides, Settings& settings) {
 
 }  // namespace
 
-ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides) {
-    return plan_scene(read_scene_file(file, overrides.assignments), file, overrides);
+ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides,
+                     const mesh::FillProgress& progress) {
+    return plan_scene(read_scene_file(file, overrides.assignments), file, overrides, progress);
 }
 
-ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, const SceneOverrides& overrides) {
+ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, const SceneOverrides& overrides,
+                     const mesh::FillProgress& progress) {
     ScenePlan plan;
     plan.file = file;
     plan.name = scene.name;
@@ -369,7 +387,7 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     apply(overrides, plan.settings);
     plan.materials = scene.materials.items;
     for (const PairEntry& pair : scene.pairs) plan_pair_once(pair, plan);
-    PlannedBodies so_far;
+    PlannedBodies so_far{.names = {}, .mesh_of_file = {}, .visuals = {}, .progress = progress};
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, so_far, plan);
     if (overrides.element)
         for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;

@@ -52,6 +52,10 @@ struct MeshEntry {
     std::optional<SkittleMesh> skittle;
     std::optional<mesh::TableShape> table;
     std::optional<FilePath> file;
+    std::optional<FilePath> surface;  // surface that is filled with tetrahedra, with the three members below
+    std::optional<Real> edge;
+    std::optional<Real> tolerance;
+    bool cavities = false;
     Real scale = 1;
     Place place;
 };

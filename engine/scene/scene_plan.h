@@ -17,6 +17,7 @@
 #include "engine/scene/scene_file.h"
 #include "engine/world/tuning.h"
 #include "skerry/anchor.h"
+#include "skerry/fill.h"
 #include "skerry/load.h"
 #include "skerry/scene.h"
 #include "skerry/spring.h"
@@ -148,9 +149,9 @@ struct ScenePlan {
     Settings settings;
     Tuning tuning{};  // set by tests and measurements, not by scene files
     std::vector<std::pair<std::string, MaterialSettings>> materials;
-    // one mesh for each mesh file, and for each entry of "bodies" without a file; copies of a body share the mesh
+    // one mesh for each mesh file or filled surface, and for each entry of "bodies" without a file; copies of a body share the mesh
     std::vector<Mesh> meshes;
-    std::vector<std::filesystem::path> mesh_files;  // file of each mesh; empty for a mesh without a file
+    std::vector<std::filesystem::path> mesh_files;  // file of each mesh or filled surface; else empty
     std::vector<std::string> notes;                 // remarks about mesh files that were corrected on reading
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
@@ -170,10 +171,13 @@ struct ScenePlan {
     std::filesystem::path file;
 };
 
-/// Reads a scene, its meshes and the files that it includes, and resolves all names. Throws SceneError.
-ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
+/// Reads a scene, its meshes and the files that it includes, fills surfaces with tetrahedra, and resolves all names.
+/// `progress`: gets the activity while surfaces are filled. Throws SceneError.
+ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {},
+                     const mesh::FillProgress& progress = {});
 /// Plans a scene that was read with the assignments of `overrides`. Messages name `file`.
-ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, const SceneOverrides& overrides);
+ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, const SceneOverrides& overrides,
+                     const mesh::FillProgress& progress = {});
 
 /// Returns the positions of all copies of a body [m].
 std::vector<Vec3> positions_of(const BodyEntry& entry);

@@ -100,9 +100,28 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
             .key("file", &MeshEntry::file,
                  {.meaning = "path of a Gmsh .msh, VTK .vtk or .vtu, or TetGen .node/.ele file, relative to the folder "
                              "of the scene; rigid bodies and colliders also take .obj, .ply and .stl"})
+            .key("surface", &MeshEntry::surface,
+                 {.meaning = "path of a surface, for example .obj or .stl, relative to the folder of the scene. It is "
+                             "filled with tetrahedra as by `skerry fill`, and the mesh is kept in a file beside it"})
+            .key("edge", &MeshEntry::edge,
+                 {.meaning = "with \"surface\": edge length of the tetrahedra, before scaling; default: the triangles "
+                             "of a surface without faults are kept",
+                  .unit = "m",
+                  .limits = positive})
+            .key("tolerance", &MeshEntry::tolerance,
+                 {.meaning = "with \"surface\": largest distance between surface and mesh, as a fraction of the "
+                             "diagonal of the bounding box; default: 0.001",
+                  .limits = within(0, 0.5)})
+            .key("cavities", &MeshEntry::cavities,
+                 {.meaning = "with \"surface\": leave the inside of inner shells empty; default: false"})
             .key("scale", &MeshEntry::scale,
                  {.meaning = "factor for all coordinates of the mesh; default: 1", .limits = positive})
-            .exactly_one({"box", "ball", "cylinder", "lathe", "skittle", "table", "file"});
+            .exactly_one({"box", "ball", "cylinder", "lathe", "skittle", "table", "file", "surface"})
+            .check([](const Place& place, const MeshEntry& mesh) {
+                if (!mesh.surface && (mesh.edge || mesh.tolerance || mesh.cavities))
+                    place.refuse("\"edge\", \"tolerance\" or \"cavities\" without \"surface\"",
+                                 "these keys only beside \"surface\"");
+            });
     return rule;
 }
 

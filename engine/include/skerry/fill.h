@@ -33,7 +33,7 @@ struct FillSettings {
     MaterialSettings material{};  // material for which the stable steps of meshes are compared
     FillLimits limits{};
     // Python interpreter with the package wildmeshing. If it is empty: the value of the environment variable
-    // SKERRY_PYTHON, or else python3 in PATH.
+    // SKERRY_FILL_PYTHON, or else python3 in PATH.
     std::string python{};
 };
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -159,6 +160,46 @@ class Mesh:
         labels gets the label 1 everywhere. The name must end in .msh. An existing file is replaced completely or not at
         all."""
         _core.write_mesh(path_text(path, "path"), self._core)
+
+    # Surfaces.
+
+    @staticmethod
+    def fill(
+        surface: SurfaceMesh | Path | Sequence[Path],
+        *,
+        edge: float | None = None,
+        tolerance: float = 1e-3,
+        cavities: bool = False,
+        time_limit: float = 300,
+        memory_limit: float = 8e9,
+    ) -> Mesh:
+        """Fills a triangle surface, or the surfaces of one or more files, with tetrahedra.
+
+        edge: edge length of the tetrahedra and of their surface [m]. Without it the triangles of a surface without
+            faults are kept, and other surfaces get a twentieth of the diagonal of the bounding box.
+        tolerance: largest distance between surface and mesh, as a fraction of this diagonal. With 0 all triangles are
+            kept, and surfaces with faults are refused.
+        cavities: True: the inside of inner shells is empty. False: only of shells whose triangles are clockwise as seen
+            from outside. The other inner shells bound regions with labels of their own.
+        time_limit: time limit of each run of a mesher [s].
+        memory_limit: memory limit of a mesher [bytes].
+
+        Surfaces without faults are filled by Netgen, which needs the program skerry-fill in PATH. Other surfaces, and
+        all surfaces without this program, are filled by fTetWild, the package wildmeshing of this Python interpreter or
+        of the one named in SKERRY_FILL_PYTHON. Of several meshes the one with the longest stable step is returned. Faults
+        and corrections are warnings Doubt. SceneError: a file cannot be read, a mesher is not installed, or no mesher
+        fills the surface within the limits."""
+        if isinstance(surface, SurfaceMesh):
+            given: Any = (surface.nodes, surface.triangles)
+        else:
+            files = [surface] if isinstance(surface, str | os.PathLike) else surface
+            given = [path_text(file, "surface") for file in files]
+        length = None if edge is None else real(edge, "edge")
+        limits = real(time_limit, "time_limit"), real(memory_limit, "memory_limit")
+        python = os.environ.get("SKERRY_FILL_PYTHON", sys.executable)
+        core, notes = _core.fill(given, length, real(tolerance, "tolerance"), bool(cavities), *limits, python)
+        _warn(notes)
+        return Mesh._of(core)
 
     # Shapes.
 

@@ -1,11 +1,9 @@
 // skerry-fill: reads a closed surface from standard input and writes tetrahedra that fill the surface to a file.
-// `skerry inspect --repair` calls it. It is a separate program for two reasons. First, `skerry` then does not link
+// mesh::fill and `skerry inspect --repair` start it. It is a separate program for two reasons. First, `skerry` then does not link
 // Netgen (LGPL) and the libraries that Debian's build of Netgen loads (CAD libraries, Tcl, Python and MPI). Second, if
 // Netgen crashes on a surface, only this process ends.
 //
-// Input: "NODES TRIANGLES LARGEST_EDGE", then lines "x y z" of the nodes, then lines "a b c" of the triangles, with
-// nodes counted from 0. Output, to file descriptor 3: "NODES TETRAHEDRA", then lines "x y z" of the nodes, then lines
-// "a b c d" of the tetrahedra, with nodes counted from 0.
+// engine/fill/mesher_process.h describes the formats of the input and of the output.
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>

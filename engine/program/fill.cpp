@@ -1,0 +1,151 @@
+// The command `skerry fill`.
+#include "skerry/fill.h"
+
+#include <cmath>
+#include <iostream>
+
+#include "engine/mesh/repair/surface_measures.h"
+#include "engine/output/write_file.h"
+#include "engine/program/commands.h"
+#include "engine/program/inspect_mesh.h"
+#include "engine/program/number_text.h"
+#include "engine/program/progress.h"
+#include "engine/program/require_writable.h"
+#include "skerry/error.h"
+#include "skerry/materials.h"
+
+namespace skerry {
+
+namespace {
+
+void check_outputs(const FillOptions& options) {
+    if (options.mesh.extension() != ".msh")
+        Complaint{options.mesh.string(),
+                  {},
+                  "file name",
+                  options.mesh.has_extension() ? "the extension " + options.mesh.extension().string() : "no extension",
+                  "the extension .msh",
+                  "the last file is the mesh to write: skerry fill SURFACE OUT.msh"}
+            .raise();
+    std::vector<NamedFile> files{{"the mesh", options.mesh}, {"--scene", options.scene}};
+    for (const std::filesystem::path& surface : options.surfaces) files.push_back({"SURFACE", surface});
+    require_distinct(files);
+    require_writable_file(options.mesh);
+    if (!options.scene.empty()) require_writable_file(options.scene);
+}
+
+/// A scene in which the body falls on a floor from half of its size.
+Json starter_scene(const FillOptions& options, const MaterialSettings& given, const MeshReport& report) {
+    const auto from_scene = [&](const std::filesystem::path& file) {
+        const std::filesystem::path folder = std::filesystem::absolute(options.scene).parent_path();
+        return std::filesystem::absolute(file).lexically_relative(folder).string();
+    };
+    const Real gravity = 9.81, height = report.upper.z() - report.lower.z(), fall = height / 2;
+    const Real rounding = std::pow(10, std::ceil(std::log10(height)) - 3);
+    // Time of six falls, enough for the body to come to rest.
+    const Real seconds = std::ceil(60 * std::sqrt(2 * fall / gravity)) / 10;
+    Json material{{"young_modulus", given.young_modulus},
+                  {"poisson_ratio", given.poisson_ratio},
+                  {"density", given.density}};
+    if (!options.material.empty()) material = {{"like", options.material}};
+    const std::string name = options.surfaces.front().stem().string();
+    Json body{{"name", name},
+              {"mesh", {{"file", from_scene(options.mesh)}}},
+              {"material", "body"},
+              {"position", {0, 0, std::ceil((fall - report.lower.z()) / rounding) * rounding}}};
+    if (options.surfaces.size() == 1) body["visual"] = {{"file", from_scene(options.surfaces.front())}};
+    return {{"description", name + " falls on a floor."},
+            {"seconds", seconds},
+            {"materials", {{"body", material}}},
+            {"bodies", {body}},
+            {"colliders", {{{"name", "floor"}, {"shape", {{"plane", Json::object()}}}}}}};
+}
+
+Json fill_json(const FillOptions& options, const mesh::FilledMesh& filled, const MeshReport& report,
+               const Problems& problems, double seconds) {
+    const mesh::SurfaceDistance& distance = filled.distance;
+    return {{"schema", "skerry.fill/1"},
+            {"output", options.mesh.string()},
+            {"mesher", filled.mesher},
+            {"exact", filled.exact},
+            {"seconds", seconds},
+            {"surface_triangles", filled.surface.triangles},
+            {"surface_volume", filled.surface_volume ? Json(*filled.surface_volume) : Json()},
+            {"tolerance", filled.tolerance},
+            {"distance",
+             {{"surface_to_mesh", distance.from_first},
+              {"mesh_to_surface", distance.from_second},
+              {"mean_surface_to_mesh", distance.mean_from_first},
+              {"mean_mesh_to_surface", distance.mean_from_second}}},
+            {"stable_dt", filled.stable_step},
+            {"mesh", mesh_json(report)},
+            {"notes", filled.notes},
+            {"problems", problems}};
+}
+
+void print_text(const FillOptions& options, const mesh::FilledMesh& filled, const MeshReport& report,
+                const Problems& problems, double seconds) {
+    const mesh::SurfaceDistance& distance = filled.distance;
+    std::cout << options.mesh.string() << ": " << grouped(report.tetrahedra) << " tetrahedra, "
+              << grouped(report.nodes) << " nodes\n"
+              << summary_line("surface", grouped(filled.surface.triangles) + " triangles, mean edge " +
+                                             with_unit(filled.surface.mean_edge, "m"))
+              << summary_line("filled by", filled.mesher + " in " + duration_text(seconds));
+    std::string volume = short_number(report.volume, 6) + " m^3";
+    if (filled.surface_volume && *filled.surface_volume > 0)
+        volume += ", " + percent(std::abs(report.volume / *filled.surface_volume - 1)) + " from that of the surface";
+    std::cout << summary_line("volume", volume);
+    if (filled.exact)
+        std::cout << summary_line("distance", "0, the surface is unchanged");
+    else
+        std::cout << summary_line("distance", "from the surface to the mesh up to " + with_unit(distance.from_first, "m") +
+                                                  ", mean " + with_unit(distance.mean_from_first, "m"))
+                  << summary_line("", "from the mesh to the surface up to " + with_unit(distance.from_second, "m") +
+                                          ", mean " + with_unit(distance.mean_from_second, "m") + "; tolerance " +
+                                          with_unit(filled.tolerance, "m"));
+    std::cout << summary_line("quality", "mean " + short_number(report.mean_quality) + ", worst " +
+                                             short_number(report.min_quality) + " (1: regular tetrahedron)")
+              << summary_line("step", with_unit(filled.stable_step, "s") + " is stable with " +
+                                          (options.material.empty()
+                                               ? "the default material, 1e5 Pa and 1000 kg/m^3"
+                                               : "the material " + in_quotes(options.material)));
+    if (!report.labels.empty()) std::cout << summary_line("labels", labels_text(report));
+    print_notes(filled.notes);
+    print_problems(problems);
+    std::cout << summary_line("written", options.mesh.string());
+    if (!options.scene.empty())
+        std::cout << summary_line("", options.scene.string() + "; next: skerry run " + options.scene.string() +
+                                          " --page " + options.scene.stem().string() + ".html");
+}
+
+}  // namespace
+
+int fill(const FillOptions& options) {
+    check_outputs(options);
+    mesh::FillSettings settings = options.settings;
+    if (!options.material.empty()) settings.material = named_material(options.material);
+    const Stopwatch watch;
+    mesh::FilledMesh filled;
+    {
+        const ActivityLine line(!options.json);
+        filled = mesh::fill(options.surfaces, settings, [&](const std::string& activity) { line.show(activity); });
+    }
+    const double seconds = watch.seconds();
+    const MeshReport report = inspect(filled.mesh);
+    Problems problems = problems_of(report);
+    StepCase of;
+    of.material = settings.material;
+    add_thin_part(filled.mesh, mesh::boundary(filled.mesh).triangles, of, problems);
+    mesh::write(options.mesh.string(), filled.mesh);
+    if (!options.scene.empty())
+        write_file(options.scene, [&](std::ostream& out) {
+            out << starter_scene(options, settings.material, report).dump(4) << "\n";
+        });
+    if (options.json)
+        std::cout << fill_json(options, filled, report, problems, seconds).dump(1) << std::endl;
+    else
+        print_text(options, filled, report, problems, seconds);
+    return exit_ok;
+}
+
+}  // namespace skerry

@@ -1,0 +1,226 @@
+// Filling of surfaces: exact filling by Netgen, regions, limits and failures of meshers, and the cache.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "engine/mesh/repair/surface_measures.h"
+#include "skerry/error.h"
+#include "skerry/fill.h"
+#include "tests/support/surface_corpus.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skerry::test::mesh_fill_test {
+
+namespace {
+
+using Catch::Contains;
+
+/// Sets an environment variable for the lifetime of the object.
+class Variable {
+public:
+    Variable(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
+    ~Variable() { unsetenv(name_); }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+
+private:
+    const char* name_;
+};
+
+/// A program in place of a mesher.
+std::filesystem::path stub(const TemporaryFolder& folder, const std::string& name, const std::string& commands) {
+    const std::filesystem::path file = folder.write(name, "#!/bin/sh\n" + commands + "\n");
+    std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+    return file;
+}
+
+/// The surface of one tetrahedron, and the commands of a mesher that fills it.
+const SurfaceMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+const char* const fill_tetrahedron = "printf '4 1\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n0 1 2 3\\n' >&3";
+
+std::string failure(const SurfaceMesh& surface, const mesh::FillSettings& settings = {}) {
+    try {
+        mesh::fill(surface, "part.stl", settings);
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "no failure";
+}
+
+bool notes_contain(const mesh::FilledMesh& filled, const std::string& part) {
+    return std::ranges::any_of(filled.notes,
+                               [&](const std::string& note) { return note.find(part) != std::string::npos; });
+}
+
+#ifdef SKERRY_FILL_PROGRAM
+
+TEST_CASE("a clean surface is filled with its own nodes and triangles") {
+    const Variable netgen("SKERRY_FILL", SKERRY_FILL_PROGRAM);
+    const SurfaceMesh ball = moved(ball_surface(0.5), {3, 1, 2});
+    const mesh::FilledMesh filled = mesh::fill(ball, "ball.stl");
+    REQUIRE(filled.mesher == "Netgen");
+    CHECK(filled.exact);
+    REQUIRE(filled.mesh.nodes.size() >= ball.nodes.size());
+    CHECK(std::equal(ball.nodes.begin(), ball.nodes.end(), filled.mesh.nodes.begin()));
+    const auto rotated = [](std::array<Index, 3> t) {
+        std::ranges::rotate(t, std::ranges::min_element(t));
+        return t;
+    };
+    std::set<std::array<Index, 3>> given, found;
+    for (const auto& t : ball.triangles) given.insert(rotated(t));
+    for (const auto& t : mesh::boundary(filled.mesh).triangles) found.insert(rotated(t));
+    CHECK(given == found);
+    const Real volume = mesh::volume_inside(ball);
+    CHECK(std::abs(inspect(filled.mesh).volume - volume) < 1e-12 * volume);
+    CHECK(std::abs(*filled.surface_volume - volume) < 1e-12 * volume);
+    CHECK(filled.distance.greatest() < 1e-14);
+    CHECK(filled.stable_step > 0);
+    CHECK(filled.mesh.label.empty());
+}
+
+TEST_CASE("an inner shell bounds a region with a label, or a cavity") {
+    const Variable netgen("SKERRY_FILL", SKERRY_FILL_PROGRAM);
+    const SurfaceMesh outer = ball_surface(0.5), inner = ball_surface(0.2, 6);
+    const Real outer_volume = mesh::volume_inside(outer), inner_volume = mesh::volume_inside(inner);
+    const auto volume_of = [](const Mesh& mesh, int label) {
+        Mesh part{.nodes = mesh.nodes, .tetrahedra = {}};
+        for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+            if (mesh.label[t] == label) part.tetrahedra.push_back(mesh.tetrahedra[t]);
+        return inspect(part).volume;
+    };
+    // The order of the shells in the file does not matter.
+    const mesh::FilledMesh regions = mesh::fill(both(inner, outer), "ball.stl");
+    CHECK(volume_of(regions.mesh, 1) == Approx(outer_volume - inner_volume).epsilon(1e-12));
+    CHECK(volume_of(regions.mesh, 2) == Approx(inner_volume).epsilon(1e-12));
+    CHECK(inspect(regions.mesh).closed_manifold);
+    REQUIRE(regions.mesh.sets.size() == 2);
+    CHECK(regions.mesh.sets.at("shell_1").faces.size() == outer.triangles.size());
+    CHECK(regions.mesh.sets.at("shell_2").faces.size() == inner.triangles.size());
+    CHECK(*regions.surface_volume == Approx(outer_volume).epsilon(1e-12));
+
+    const mesh::FilledMesh hollow = mesh::fill(both(outer, inner), "ball.stl", {.cavities = true});
+    CHECK(inspect(hollow.mesh).volume == Approx(outer_volume - inner_volume).epsilon(1e-12));
+    CHECK(hollow.mesh.label.empty());
+    CHECK(hollow.mesh.sets.at("shell_2").faces.size() == inner.triangles.size());
+    // Clockwise triangles of an inner shell mean a cavity without the flag.
+    CHECK(mesh::fill(both(outer, turned_inside_out(inner)), "ball.stl").mesh.tetrahedra == hollow.mesh.tetrahedra);
+}
+
+TEST_CASE("the shells of several files are sets with the names of the files") {
+    const Variable netgen("SKERRY_FILL", SKERRY_FILL_PROGRAM);
+    const TemporaryFolder folder;
+    const auto write = [&](const char* name, const SurfaceMesh& surface) {
+        std::ofstream file(folder.path() / name);
+        file.precision(17);
+        for (const Vec3& x : surface.nodes) file << "v " << x.transpose() << "\n";
+        for (const auto& [a, b, c] : surface.triangles) file << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << "\n";
+        return folder.path() / name;
+    };
+    const std::vector files{write("bone.obj", ball_surface(0.2, 6)), write("skin.obj", ball_surface(0.5))};
+    const mesh::FilledMesh filled = mesh::fill(files);
+    CHECK(filled.mesh.sets.at("bone").faces.size() == ball_surface(0.2, 6).triangles.size());
+    CHECK(filled.mesh.sets.at("skin").faces.size() == ball_surface(0.5).triangles.size());
+    CHECK(inspect(filled.mesh).labels.size() == 2);
+}
+
+TEST_CASE("a repeated shell is filled once, with a note") {
+    const Variable netgen("SKERRY_FILL", SKERRY_FILL_PROGRAM);
+    const SurfaceMesh ball = ball_surface(0.5);
+    const mesh::FilledMesh filled = mesh::fill(both(ball, renumbered(ball)), "twice.stl");
+    CHECK(inspect(filled.mesh).volume == Approx(mesh::volume_inside(ball)).epsilon(1e-12));
+    CHECK(notes_contain(filled, "shell"));
+}
+
+#endif
+
+TEST_CASE("a mesher that hangs, crashes or writes no mesh is an error of the surface") {
+    const TemporaryFolder folder;
+    const SurfaceMesh open = with_hole(ball_surface(0.5, 4), {0, 0, 0.5}, 0.05);
+    const auto failure_of = [&](const std::string& commands, const mesh::FillLimits& limits = {}) {
+        const Variable python("SKERRY_FILL_PYTHON", stub(folder, "python", commands).string());
+        return failure(open, {.limits = limits});
+    };
+    const std::string hung = failure_of("sleep 100", {.seconds = 0.1});
+    CHECK_THAT(hung, Contains("part.stl") && Contains("time limit of 0.1 s") && Contains("larger edge"));
+    CHECK_THAT(failure_of("kill -ABRT $$"), Contains("crashed: Aborted"));
+    CHECK_THAT(failure_of("echo no license >&2; exit 9"), Contains("exit code 9") && Contains("no license"));
+    for (const char* garbage : {"echo rubbish >&3", "printf '1 1\\n0 0 0\\n0 0 0 0\\n' >&3", "true",
+                                "printf '4 1\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 nan\\n0 1 2 3\\n' >&3",
+                                "printf '4 1\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n0 1 2 7\\n' >&3"})
+        CHECK_THAT(failure_of(garbage), Contains("not a valid mesh"));
+    CHECK_THAT(failure_of("sleep 100", {.bytes = 1000}), Contains("more memory"));
+    CHECK_THAT(failure_of("exit 3"), Contains("pip install wildmeshing"));
+    const Variable python("SKERRY_FILL_PYTHON", "/nowhere/python");
+    CHECK_THAT(failure(open), Contains("/nowhere/python") && Contains("pip install wildmeshing"));
+    CHECK_THAT(failure(open, {.tolerance = 0}), Contains("tolerance above 0"));
+    CHECK_THAT(failure(open, {.edge = -1}), Contains("edge") && Contains("-1"));
+}
+
+TEST_CASE("a mesher ends with the exception of a progress function") {
+    const TemporaryFolder folder;
+    const Variable netgen("SKERRY_FILL", stub(folder, "fill", "sleep 100").string());
+    const auto stop = [](const std::string& activity) {
+        if (activity.find("Netgen") != std::string::npos) throw std::runtime_error("stopped by the user");
+    };
+    CHECK_THROWS_WITH(mesh::fill(tetrahedron, "part.stl", {}, stop), "stopped by the user");
+}
+
+TEST_CASE("if Netgen fails or is missing, fTetWild fills the surface, with a note") {
+    const TemporaryFolder folder;
+    const Variable python("SKERRY_FILL_PYTHON", stub(folder, "python", fill_tetrahedron).string());
+    for (const std::string& program : {stub(folder, "fill", "kill -SEGV $$").string(), std::string("/nowhere/fill")}) {
+        const Variable netgen("SKERRY_FILL", program);
+        const mesh::FilledMesh filled = mesh::fill(tetrahedron, "part.stl");
+        CHECK(filled.mesher == "fTetWild");
+        CHECK_FALSE(filled.exact);
+        CHECK(notes_contain(filled, "Netgen"));
+        CHECK_THAT(failure(tetrahedron, {.tolerance = 0}), Contains("Netgen"));
+    }
+}
+
+TEST_CASE("a surface of a scene is filled again only after a change of the surface or of the settings") {
+    const TemporaryFolder folder;
+    const Variable netgen("SKERRY_FILL",
+                          stub(folder, "fill", "echo run >> " + (folder.path() / "runs").string() + "\n" +
+                                                   std::string(fill_tetrahedron))
+                              .string());
+    const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    const std::filesystem::path file = folder.write("part.obj", obj);
+    const auto runs_of = [&](const mesh::FillSettings& settings) {
+        std::filesystem::remove(folder.path() / "runs");
+        const Mesh mesh = mesh::fill_cached(file, settings);
+        CHECK(mesh.tetrahedra.size() == 1);
+        std::ifstream runs(folder.path() / "runs");
+        return std::distance(std::istream_iterator<std::string>(runs), {});
+    };
+    const mesh::FillSettings exact{.tolerance = 0};
+    const auto cache_of = [&] {
+        for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+            if (entry.path().extension() == ".msh") return entry.path();
+        return std::filesystem::path();
+    };
+    CHECK(runs_of(exact) > 0);
+    CHECK(runs_of(exact) == 0);
+    const std::filesystem::path cache = cache_of();
+    CHECK_THAT(cache.filename().string(), Contains("part.obj."));
+    CHECK(runs_of({.edge = 2, .tolerance = 0}) > 0);
+    folder.write("part.obj", "# changed\n" + obj);
+    CHECK(runs_of(exact) > 0);
+    folder.write("part.obj", obj);
+    CHECK(runs_of(exact) == 0);
+    std::ofstream(cache) << "damaged";
+    CHECK(runs_of(exact) > 0);
+    CHECK(runs_of(exact) == 0);
+    // A cache file that cannot be written is no error.
+    std::filesystem::remove(cache);
+    std::filesystem::create_directory(cache);
+    CHECK(runs_of(exact) > 0);
+}
+
+}  // namespace
+
+}  // namespace skerry::test::mesh_fill_test
