@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
@@ -64,6 +65,15 @@ FileReplacement::Target target_of(const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+void require_extension(const std::filesystem::path& file, std::initializer_list<std::string_view> extensions) {
+    const std::string found = file.extension().string();
+    if (std::ranges::find(extensions, found) != extensions.end()) return;
+    std::string expected;
+    for (const std::string_view extension : extensions)
+        expected += (expected.empty() ? "" : " or ") + std::string(extension);
+    complain(file, found.empty() ? "no extension" : "the extension " + found, expected, "choose another file name");
+}
 
 void require_replaceable(const std::filesystem::path& file) {
     target_of(file);

@@ -46,8 +46,8 @@ enum class SpecKind : std::uint8_t { attribute = 1, prim = 6, root = 7, relation
 struct CrateSpec {
     SpecKind kind = SpecKind::prim;
     std::string name;
-    std::vector<std::pair<std::string, CrateValue>> fields;
-    std::vector<CrateSpec> children;
+    std::vector<std::pair<std::string, CrateValue>> fields{};
+    std::vector<CrateSpec> children{};
 };
 
 /// Writes a file of version 0.8.0, which every program with OpenUSD reads since 2018. Values go to the file at once, so
