@@ -114,8 +114,7 @@ std::fstream& FileReplacement::seekable_stream() {
 }
 
 void FileReplacement::require_written() {
-    stream_.flush();
-    if (!stream_)
+    if (!stream_.flush())
         complain(file_, failure(what(errno)) + " while writing", "enough space for the whole file",
                  "free disk space or choose another path");
 }
@@ -123,7 +122,6 @@ void FileReplacement::require_written() {
 void FileReplacement::commit() {
     require_written();
     stream_.close();
-    require_written();
     if (target_.takes_bytes) return;
     std::error_code error;
     if (target_.permissions != std::filesystem::perms::unknown)
