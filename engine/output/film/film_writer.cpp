@@ -37,12 +37,14 @@ const std::filesystem::path& checked(const std::filesystem::path& file, const Fi
 struct FilmWriter::Impl {
     std::filesystem::path path;
     FileReplacement file;
+    FilmColor color;
     UsdFilm usd;
     std::optional<Real> time{};  // of the previous frame [s]
 
     Impl(const std::filesystem::path& place, const FilmSettings& settings)
         : path(checked(place, settings)),
           file(path),
+          color(settings.color),
           usd(file.seekable_stream(), std::filesystem::absolute(path).parent_path(), settings) {}
 };
 
@@ -63,7 +65,7 @@ void FilmWriter::add_frame(const World& world) {
                     "a time after that of the previous frame, " + std::to_string(*film.time) + " s");
     film.time = world.time();
     try {
-        film.usd.add(collect_frame(world));
+        film.usd.add(collect_frame(world, film.color == FilmColor::stress));
         film.file.require_written();
     } catch (...) {
         impl_.reset();  // this removes the temporary file

@@ -234,7 +234,7 @@ private:
 
 void write_gltf(const World& world, const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max) {
     require_extension(file, {".glb"});
-    const Frame frame = collect_frame(world);
+    const Frame frame = collect_frame(world, color == FilmColor::stress);
     std::vector<std::vector<Real>> quantity(frame.bodies.size());
     if (color != FilmColor::none) quantity = quantity_of_nodes(frame, color);
     std::vector<GltfMesh> meshes;
