@@ -15,6 +15,10 @@ PageWriter::~PageWriter() = default;
 void PageWriter::add_frame(const World&) {}
 void PageWriter::close(const World&) {}
 
+void write_gltf(const World&, const std::filesystem::path&, FilmColor, std::optional<Real>) {
+    refuse_absent("write_gltf", "SKERRY_PAGES");
+}
+
 std::optional<std::string> mesh::inflated(std::string_view, std::size_t) {
     refuse_absent("compressed VTK files", "SKERRY_PAGES");
 }

@@ -35,7 +35,7 @@ std::vector<T> values_of_cells(std::vector<T> of_tetrahedra, const BodyFrame& bo
 
 }  // namespace
 
-Frame collect_frame(const World& world) {
+Frame collect_frame(const World& world, bool stresses) {
     Frame frame{.time = world.time(),
                 .gravity = world.settings().gravity,
                 .energy = world.energy(),
@@ -47,9 +47,10 @@ Frame collect_frame(const World& world) {
     const bool yields =
         std::ranges::any_of(WorldAccess::state_of(world).model.materials.constants, &MaterialConstants::yields);
     std::vector<NodeFields> fields(bodies.size());
-    parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) fields[b] = node_fields(world, bodies[b]);
-    });
+    if (stresses)
+        parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t b = begin; b < end; ++b) fields[b] = node_fields(world, bodies[b]);
+        });
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const BodyHandle body = bodies[b];
         BodyFrame& of_body = frame.bodies.emplace_back(BodyFrame{.handle = body,
@@ -66,6 +67,7 @@ Frame collect_frame(const World& world) {
                                                                  .material = materials_of(world, body)});
         of_body.visual = visual_of(world, body);
         if (world.dynamics(body) == BodyDynamics::rigid) of_body.rigid_pose = world.pose(body);
+        if (!stresses) continue;
         of_body.stress = values_of_cells<Mat3>(world.stress(body), of_body, Mat3::Zero());
         of_body.strain = values_of_cells<Mat3>(world.strain(body), of_body, Mat3::Zero());
         if (yields) of_body.plastic_strain = values_of_cells<Real>(world.plastic_strain(body), of_body, 0);

@@ -8,7 +8,8 @@
 
 namespace skerry {
 
-Frame collect_frame(const World& world);
+/// Without `stresses`, stresses and strains of the bodies are left empty, which saves most of the time.
+Frame collect_frame(const World& world, bool stresses = true);
 /// Joints, ties, cables and springs, in this order.
 std::vector<LineFrame> collect_lines(const World& world);
 

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
@@ -65,6 +66,15 @@ FileReplacement::Target target_of(const std::filesystem::path& file) {
 
 }  // namespace
 
+void require_extension(const std::filesystem::path& file, std::initializer_list<std::string_view> extensions) {
+    const std::string found = file.extension().string();
+    if (std::ranges::find(extensions, found) != extensions.end()) return;
+    std::string expected;
+    for (const std::string_view extension : extensions)
+        expected += (expected.empty() ? "" : " or ") + std::string(extension);
+    complain(file, found.empty() ? "no extension" : "the extension " + found, expected, "choose another file name");
+}
+
 void require_replaceable(const std::filesystem::path& file) {
     target_of(file);
 }
@@ -104,8 +114,7 @@ std::fstream& FileReplacement::seekable_stream() {
 }
 
 void FileReplacement::require_written() {
-    stream_.flush();
-    if (!stream_)
+    if (!stream_.flush())
         complain(file_, failure(what(errno)) + " while writing", "enough space for the whole file",
                  "free disk space or choose another path");
 }
@@ -113,7 +122,6 @@ void FileReplacement::require_written() {
 void FileReplacement::commit() {
     require_written();
     stream_.close();
-    require_written();
     if (target_.takes_bytes) return;
     std::error_code error;
     if (target_.permissions != std::filesystem::perms::unknown)

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
+#include <string_view>
 
 #include "jobs/function_ref.h"
 
@@ -10,6 +12,9 @@ namespace skerry {
 
 /// Creates the folder if it does not exist. Throws SceneError with its name if it cannot be created or is not a folder.
 void make_folder(const std::filesystem::path& folder);
+
+/// Throws SceneError unless the file has one of the extensions, for example ".usd".
+void require_extension(const std::filesystem::path& file, std::initializer_list<std::string_view> extensions);
 
 /// Throws SceneError if write_file would refuse to replace an existing object of this name. Writable regular files and
 /// streams such as pipes and terminals are accepted. Symbolic links are followed.

@@ -1,10 +1,11 @@
-// Scenes, and the writers of pages and of files for ParaView.
+// Scenes, and the writers of pages, films, and files for ParaView.
 #include "skerry/scene.h"
 
 #include <string>
 #include <utility>
 
 #include "engine/python/world/parts.h"
+#include "skerry/error.h"
 #include "skerry/output.h"
 
 namespace skerry::python {
@@ -42,6 +43,17 @@ nb::dict load_text(const std::string& json, const std::string& folder, const std
     return values_of(without_gil([&] { return load_scene_text(json, folder, overrides_of(assignments, threads)); }));
 }
 
+FilmColor film_color(const std::string& name) {
+    if (const auto known = from_name<FilmColor>(name)) return *known;
+    Complaint{.file = {},
+              .object = "film",
+              .field = "color",
+              .found = "'" + name + "'",
+              .expected = "'none', 'stress', 'speed' or 'contact'",
+              .hint = {}}
+        .raise();
+}
+
 }  // namespace
 
 void bind_scene(nb::module_& module) {
@@ -71,6 +83,28 @@ void bind_scene(nb::module_& module) {
             Use use(object);
             without_gil([&] { writer.close(object.world); });
         });
+    nb::class_<FilmWriter>(module, "FilmWriter")
+        .def(
+            "__init__",
+            [](FilmWriter* self, const std::string& file, Real frame_step, const std::string& color,
+               std::optional<Real> color_max) {
+                new (self) FilmWriter(
+                    file, {.frame_step = frame_step, .color = film_color(color), .color_max = color_max});
+            },
+            nb::arg(), nb::arg(), nb::arg(), nb::arg().none())
+        .def("add_frame",
+             [](FilmWriter& writer, WorldObject& object) {
+                 Use use(object);
+                 without_gil([&] { writer.add_frame(object.world); });
+             })
+        .def("close", [](FilmWriter& writer) { return without_gil([&] { return writer.close(); }); });
+    module.def(
+        "write_gltf",
+        [](WorldObject& object, const std::string& file, const std::string& color, std::optional<Real> color_max) {
+            Use use(object);
+            without_gil([&] { write_gltf(object.world, file, film_color(color), color_max); });
+        },
+        nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
 }
 
 }  // namespace skerry::python

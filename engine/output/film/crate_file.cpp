@@ -174,17 +174,20 @@ CrateValue CrateFile::time_samples(CrateValue times, std::span<const CrateValue>
     return value;
 }
 
-std::size_t CrateFile::array_size(CrateValue value) {
-    const std::uint64_t position = static_cast<std::uint64_t>(value) & payload_mask;
+std::uint64_t CrateFile::begin_read(CrateValue array) {
+    const std::uint64_t position = static_cast<std::uint64_t>(array) & payload_mask;
     if (position == 0) return 0;
     std::uint64_t count = 0;
     file_.seekg(static_cast<std::streamoff>(position));
-    read_elements(std::as_writable_bytes(std::span(&count, 1)));
+    read(std::as_writable_bytes(std::span(&count, 1)));
     return count;
 }
 
-void CrateFile::read_elements(std::span<std::byte> bytes) {
+void CrateFile::read(std::span<std::byte> bytes) {
     file_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+void CrateFile::end_read() {
     file_.seekp(0, std::ios::end);
 }
 

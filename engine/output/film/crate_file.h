@@ -46,8 +46,8 @@ enum class SpecKind : std::uint8_t { attribute = 1, prim = 6, root = 7, relation
 struct CrateSpec {
     SpecKind kind = SpecKind::prim;
     std::string name;
-    std::vector<std::pair<std::string, CrateValue>> fields;
-    std::vector<CrateSpec> children;
+    std::vector<std::pair<std::string, CrateValue>> fields{};
+    std::vector<CrateSpec> children{};
 };
 
 /// Writes a file of version 0.8.0, which every program with OpenUSD reads since 2018. Values go to the file at once, so
@@ -90,8 +90,9 @@ public:
     /// Reads an array back from the file. T must be the type with which the array was written.
     template <class T>
     std::vector<T> read_array(CrateValue value) {
-        std::vector<T> values(array_size(value));
-        read_elements(std::as_writable_bytes(std::span(values)));
+        std::vector<T> values(begin_read(value));
+        read(std::as_writable_bytes(std::span(values)));
+        end_read();
         return values;
     }
     /// Completes the file. `root` has the kind SpecKind::root. The fields that list children are added.
@@ -113,8 +114,10 @@ private:
     void align();
     CrateValue write_scalar(CrateType type, std::span<const std::byte> bytes);
     CrateValue write_array(CrateType type, std::size_t count, std::span<const std::byte> bytes);
-    std::size_t array_size(CrateValue value);
-    void read_elements(std::span<std::byte> bytes);
+    /// Returns the number of elements of an array. The next bytes read are those of the elements.
+    std::uint64_t begin_read(CrateValue array);
+    void read(std::span<std::byte> bytes);
+    void end_read();
     void put_packed(std::string_view bytes);
     void put_integers(std::span<const std::int32_t> values);
     void list_children(CrateSpec& spec);

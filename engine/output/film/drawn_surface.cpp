@@ -24,6 +24,14 @@ Color linear(std::uint32_t srgb) {
     return {channel(16), channel(8), channel(0)};
 }
 
+template <class T>
+std::vector<T> gathered(std::span<const Index> nodes, std::span<const T> of_nodes) {
+    std::vector<T> values;
+    values.reserve(nodes.size());
+    for (const Index node : nodes) values.push_back(of_nodes[static_cast<std::size_t>(node)]);
+    return values;
+}
+
 /// Normal forces of the contacts, divided by the area of the surface that belongs to each node [Pa].
 std::vector<std::vector<Real>> contact_pressures(const Frame& frame) {
     std::vector<std::vector<Real>> pressure;
@@ -55,7 +63,11 @@ std::vector<std::vector<Real>> contact_pressures(const Frame& frame) {
 
 }  // namespace
 
-DrawnSurface::DrawnSurface(const BodyFrame& body) {
+DrawnSurface::DrawnSurface(const BodyFrame& body) : visual_(body.visual) {
+    if (visual_ != nullptr) {
+        triangles_ = visual_->surface.triangles;
+        return;
+    }
     std::vector<Index> vertex(body.position.size(), no_index);
     for (const auto& triangle : body.surface)
         for (const Index node : triangle) vertex[static_cast<std::size_t>(node)] = 0;
@@ -66,6 +78,18 @@ DrawnSurface::DrawnSurface(const BodyFrame& body) {
     }
     const auto vertex_of = [&](Index node) { return vertex[static_cast<std::size_t>(node)]; };
     for (const auto& [a, b, c] : body.surface) triangles_.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
+}
+
+bool DrawnSurface::is_drawn(const BodyFrame& body) const {
+    return body.visual == visual_ && (visual_ == nullptr || body.visual->surface.triangles == triangles_);
+}
+
+std::vector<Vec3> DrawnSurface::vectors(const BodyFrame& body, std::span<const Vec3> of_nodes) const {
+    return visual_ != nullptr ? visual_positions(*body.visual, of_nodes) : gathered(node_, of_nodes);
+}
+
+std::vector<Real> DrawnSurface::values(const BodyFrame& body, std::span<const Real> of_nodes) const {
+    return visual_ != nullptr ? visual_values(*body.visual, of_nodes) : gathered(node_, of_nodes);
 }
 
 std::vector<Vec3f> relative_to(const Vec3& origin, std::span<const Vec3> points) {

@@ -11,24 +11,23 @@
 
 namespace skerry {
 
-/// Vertices and triangles of the drawn surface of a body.
+/// Vertices and triangles of the drawn surface of a body: its visual surface, or its boundary if it has none.
 class DrawnSurface {
 public:
     explicit DrawnSurface(const BodyFrame& body);
 
+    /// True if `body`, a later frame of the same body, has the same drawn surface.
+    bool is_drawn(const BodyFrame& body) const;
     /// Corners as vertex numbers, counter-clockwise as seen from outside.
     const std::vector<std::array<Index, 3>>& triangles() const { return triangles_; }
-    /// Values at the vertices, given those at the nodes of the body.
-    template <class T>
-    std::vector<T> at_vertices(std::span<const T> of_nodes) const {
-        std::vector<T> values;
-        values.reserve(node_.size());
-        for (const Index node : node_) values.push_back(of_nodes[static_cast<std::size_t>(node)]);
-        return values;
-    }
+    /// Positions or velocities of the vertices, given those of the nodes of `body`.
+    std::vector<Vec3> vectors(const BodyFrame& body, std::span<const Vec3> of_nodes) const;
+    /// Values at the vertices, given those at the nodes of `body`.
+    std::vector<Real> values(const BodyFrame& body, std::span<const Real> of_nodes) const;
 
 private:
-    std::vector<Index> node_;  // node of the body at each vertex
+    const BoundVisual* visual_;  // visual surface in the first frame, only for comparison
+    std::vector<Index> node_;    // without visual surface: node of the body at each vertex
     std::vector<std::array<Index, 3>> triangles_;
 };
 

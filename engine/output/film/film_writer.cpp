@@ -15,21 +15,18 @@ namespace skerry {
 
 namespace {
 
-[[noreturn]] void refuse_film(const std::filesystem::path& file, const std::string& field, const std::string& found,
-                              const std::string& expected, const std::string& hint = {}) {
-    Complaint{
-        .file = file.string(), .object = "film", .field = field, .found = found, .expected = expected, .hint = hint}
+[[noreturn]] void refuse_film(const std::filesystem::path& file, const char* field, const std::string& found,
+                              const std::string& expected) {
+    Complaint{.file = file.string(), .object = "film", .field = field, .found = found, .expected = expected, .hint = {}}
         .raise();
 }
 
-/// Throws if the settings cannot be those of a film. Otherwise returns the file.
-std::filesystem::path film_path(const std::filesystem::path& file, const FilmSettings& settings) {
-    if (const std::string extension = file.extension().string(); extension != ".usd" && extension != ".usdc")
-        refuse_film(file, {}, extension.empty() ? "no extension" : "the extension " + extension, ".usd or .usdc",
-                    "the program usdcat of USD converts films to .usda and .usdz");
+/// Throws unless a film with these settings can be written to `file`. Returns the file.
+const std::filesystem::path& checked(const std::filesystem::path& file, const FilmSettings& settings) {
     const auto require_positive = [&](const char* field, Real value) {
         if (!(value > 0 && std::isfinite(value))) refuse_film(file, field, std::to_string(value), "a number above 0");
     };
+    require_extension(file, {".usd", ".usdc"});
     require_positive("frame_step", settings.frame_step);
     if (settings.color_max) require_positive("color_max", *settings.color_max);
     return file;
@@ -40,11 +37,15 @@ std::filesystem::path film_path(const std::filesystem::path& file, const FilmSet
 struct FilmWriter::Impl {
     std::filesystem::path path;
     FileReplacement file;
+    FilmColor color;
     UsdFilm usd;
     std::optional<Real> time{};  // of the previous frame [s]
 
     Impl(const std::filesystem::path& place, const FilmSettings& settings)
-        : path(film_path(place, settings)), file(path), usd(file.seekable_stream(), settings) {}
+        : path(checked(place, settings)),
+          file(path),
+          color(settings.color),
+          usd(file.seekable_stream(), std::filesystem::absolute(path).parent_path(), settings) {}
 };
 
 FilmWriter::FilmWriter(const std::filesystem::path& file, const FilmSettings& settings)
@@ -53,23 +54,23 @@ FilmWriter::FilmWriter(const std::filesystem::path& file, const FilmSettings& se
 FilmWriter::~FilmWriter() = default;
 
 void FilmWriter::require_open() const {
-    if (!impl_) refuse_film({}, {}, "a film that was closed or could not be written", "a new FilmWriter");
+    if (!impl_) refuse_film({}, "", "a film that was closed or could not be written", "a new FilmWriter");
 }
 
 void FilmWriter::add_frame(const World& world) {
     require_open();
     Impl& film = *impl_;
     if (film.time && !(world.time() > *film.time))
-        refuse_film(film.path, "time of a frame", std::to_string(world.time()) + " s",
+        refuse_film(film.path, "time of the frame", std::to_string(world.time()) + " s",
                     "a time after that of the previous frame, " + std::to_string(*film.time) + " s");
+    film.time = world.time();
     try {
-        film.usd.add(collect_frame(world));
+        film.usd.add(collect_frame(world, film.color == FilmColor::stress));
         film.file.require_written();
     } catch (...) {
-        impl_.reset();  // which removes the temporary file
+        impl_.reset();  // this removes the temporary file
         throw;
     }
-    film.time = world.time();
 }
 
 Real FilmWriter::close() {
@@ -83,10 +84,10 @@ Real FilmWriter::close() {
 namespace {
 
 /// Film of a run.
-class UsdOutput final : public Writer {
+class FilmOutput final : public Writer {
 public:
-    UsdOutput(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max)
-        : file_(film_path(file, {})), settings_{.color = color, .color_max = color_max} {}
+    FilmOutput(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max)
+        : settings_{.color = color, .color_max = color_max}, file_(checked(file, settings_)) {}
 
     void open(World& world, const RunStart& start) override {
         settings_.frame_step = start.frame_step;
@@ -96,27 +97,49 @@ public:
     void add_frame(const World& world) override { writer_->add_frame(world); }
     void close(const World&) override { color_max_ = writer_->close(); }
     std::string written() const override {
-        std::string text = file_.string() + " (film; open it in Blender: File > Import > Universal Scene Description";
+        std::string text = file_.string() + " (film; open it in Blender with File > Import > Universal Scene Description";
         if (settings_.color != FilmColor::none) {
             const Quantity quantity = quantity_of(settings_.color);
             char range[100];
-            std::snprintf(range, sizeof range, "; colours: %s from 0 to %.3g %s", quantity.name, color_max_, quantity.unit);
+            std::snprintf(range, sizeof range, "; colours: %s from 0 to %.3g %s", quantity.name, color_max_,
+                          quantity.unit);
             text += range;
         }
         return text + ")";
     }
 
 private:
-    std::filesystem::path file_;
     FilmSettings settings_;
+    std::filesystem::path file_;
     std::unique_ptr<FilmWriter> writer_;
     Real color_max_ = 0;
+};
+
+/// State at the end of a run as glTF.
+class GltfOutput final : public Writer {
+public:
+    GltfOutput(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max)
+        : file_(file), color_(color), color_max_(color_max) {
+        require_extension(file, {".glb"});
+    }
+
+    void close(const World& world) override { write_gltf(world, file_, color_, color_max_); }
+    std::string written() const override { return file_.string() + " (last state; open it in a viewer of glTF)"; }
+
+private:
+    std::filesystem::path file_;
+    FilmColor color_;
+    std::optional<Real> color_max_;
 };
 
 }  // namespace
 
 std::unique_ptr<Writer> usd_film(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max) {
-    return std::make_unique<UsdOutput>(file, color, color_max);
+    return std::make_unique<FilmOutput>(file, color, color_max);
+}
+
+std::unique_ptr<Writer> gltf_state(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max) {
+    return std::make_unique<GltfOutput>(file, color, color_max);
 }
 
 }  // namespace skerry

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "systems/geometry/rotation.h"
 
@@ -10,7 +11,8 @@ namespace skerry {
 
 namespace {
 
-constexpr const char* material = "/World/Looks/vertex_color";
+constexpr const char *looks_path = "/World/Looks/", *vertex_color_path = "/World/Looks/vertex_color";
+using Vec2f = std::array<float, 2>;
 
 /// Characters that a name of USD may have: letters, digits and underscores, but no digit at the beginning.
 std::string identifier(std::string_view name) {
@@ -26,16 +28,20 @@ std::string identifier(std::string_view name) {
 
 }  // namespace
 
-UsdFilm::UsdFilm(std::iostream& file, const FilmSettings& settings) : file_(file), settings_(settings) {
-    names_.insert("Looks");  // prim of the material
-}
+UsdFilm::UsdFilm(std::iostream& file, std::filesystem::path folder, const FilmSettings& settings)
+    : file_(file), folder_(std::move(folder)), settings_(settings), names_{"Looks", "vertex_color"} {}
 
-UsdFilm::Object& UsdFilm::add_object(std::string_view name, std::string_view name_if_empty) {
+/// Returns a name for a prim that no other prim has.
+std::string UsdFilm::unique_name(std::string_view name, std::string_view name_if_empty) {
     const std::string base = identifier(name.empty() ? name_if_empty : name);
     std::string unique = base;
     for (int number = 1; !names_.insert(unique).second; ++number) unique = base + "_" + std::to_string(number);
+    return unique;
+}
+
+UsdFilm::Object& UsdFilm::add_object(std::string_view name, std::string_view name_if_empty) {
     Object& object = objects_.emplace_back();
-    object.name = unique;
+    object.name = unique_name(name, name_if_empty);
     object.first = times_.size();
     return object;
 }
@@ -108,20 +114,21 @@ void UsdFilm::put_rigid_body(Object& object, const MotionKey& pose, std::span<co
 }
 
 void UsdFilm::put_body(const BodyFrame& body, std::span<const Real> quantity) {
-    auto known = body_object_.find(body.handle);
-    if (known == body_object_.end()) {
+    const auto [known, is_new] = body_object_.try_emplace(body.handle, objects_.size());
+    if (is_new || !objects_[known->second].surface->is_drawn(body)) {
+        known->second = objects_.size();
         Object& added = add_object(body.name, "body");
         added.surface.emplace(body);
         put_triangles(added, added.surface->triangles());
-        known = body_object_.emplace(body.handle, objects_.size() - 1).first;
+        if (body.visual != nullptr && settings_.color == FilmColor::none) put_materials(added, body.visual->surface);
     }
     Object& object = objects_[known->second];
     const DrawnSurface& surface = *object.surface;
-    const std::vector<Vec3> points = surface.at_vertices(body.position);
+    const std::vector<Vec3> points = surface.vectors(body, body.position);
     if (body.rigid_pose) {
         put_rigid_body(object, *body.rigid_pose, points);
     } else {
-        const std::vector<Vec3> velocities = surface.at_vertices(body.velocity);
+        const std::vector<Vec3> velocities = surface.vectors(body, body.velocity);
         const Vec3 origin = mean_of(points);
         object.rigid_points.clear();
         put_pose(object, origin, Mat3::Identity());
@@ -132,7 +139,7 @@ void UsdFilm::put_body(const BodyFrame& body, std::span<const Real> quantity) {
     }
     if (!quantity.empty()) {
         std::vector<float> values;
-        for (const Real value : surface.at_vertices(quantity)) {
+        for (const Real value : surface.values(body, quantity)) {
             values.push_back(static_cast<float>(value));
             quantity_.add(value);
         }
@@ -142,15 +149,14 @@ void UsdFilm::put_body(const BodyFrame& body, std::span<const Real> quantity) {
 }
 
 void UsdFilm::put_collider(const ColliderFrame& collider) {
-    auto known = collider_object_.find(collider.handle);
-    if (known == collider_object_.end()) {
+    const auto [known, is_new] = collider_object_.try_emplace(collider.handle, objects_.size());
+    if (is_new) {
         PlanePatch patch = patch_.value_or(PlanePatch{});
         patch.center = to_shape(collider.pose, patch.center);
         const SurfaceMesh picture = shape_picture(*collider.shape, patch);
         Object& added = add_object(collider.name, "collider");
         put_triangles(added, picture.triangles);
         put_points(added, relative_to(Vec3::Zero(), picture.nodes));
-        known = collider_object_.emplace(collider.handle, objects_.size() - 1).first;
     }
     Object& object = objects_[known->second];
     put_pose(object, collider.pose.position, rotation_matrix(collider.pose.rotation));
@@ -230,6 +236,36 @@ void UsdFilm::put_colors(const Object& object, std::size_t number, CrateSpec& me
         primvar(animated(object, quantity.c_str(), "float[]", object.quantity.values), "vertex"));
 }
 
+/// Adds texture coordinates, and the materials of single triangles.
+void UsdFilm::put_materials(Object& object, const VisualSurface& surface) {
+    if (!surface.texture_corners.empty()) {
+        std::vector<Vec2f> points;
+        std::vector<std::int32_t> corners;
+        for (const auto& [u, v] : surface.texture_points)
+            points.push_back({static_cast<float>(u), static_cast<float>(v)});
+        for (const auto& triangle : surface.texture_corners)
+            for (const Index corner : triangle) corners.push_back(std::max<Index>(corner, 0));
+        object.mesh.push_back(primvar(attribute("primvars:st", "texCoord2f[]",
+                                                file_.array(CrateType::vec2_float, std::span<const Vec2f>(points))),
+                                      "faceVarying"));
+        object.mesh.push_back(attribute("primvars:st:indices", "int[]",
+                                        file_.array(CrateType::int32, std::span<const std::int32_t>(corners))));
+    }
+    for (std::size_t m = 0; m < surface.materials.size(); ++m) {
+        std::vector<std::int32_t> faces;
+        for (std::size_t face = 0; face < surface.material.size(); ++face)
+            if (surface.material[face] == static_cast<Index>(m)) faces.push_back(static_cast<std::int32_t>(face));
+        if (faces.empty()) continue;
+        CrateSpec subset = prim("GeomSubset", "material_" + std::to_string(m));
+        subset.children = {uniform("elementType", "token", file_.token("face")),
+                           uniform("familyName", "token", file_.token("materialBind")),
+                           attribute("indices", "int[]",
+                                     file_.array(CrateType::int32, std::span<const std::int32_t>(faces)))};
+        bind(subset, material_path(surface.materials[m]));
+        object.mesh.push_back(std::move(subset));
+    }
+}
+
 /// Hides an object in the frames before it was added and after it was removed. Blender ignores animated visibility, so
 /// the object also gets the size zero.
 void UsdFilm::put_presence(const Object& object, CrateSpec& mesh) {
@@ -265,7 +301,6 @@ void UsdFilm::put_presence(const Object& object, CrateSpec& mesh) {
 
 CrateSpec UsdFilm::mesh_prim(Object& object, std::size_t number) {
     CrateSpec mesh = prim("Mesh", object.name);
-    mesh.fields.emplace_back("apiSchemas", file_.prepended_token("MaterialBindingAPI"));
     mesh.children = std::move(object.mesh);
     const auto put = [&](const char* name, const char* type, const Track& track) {
         if (!track.values.empty()) mesh.children.push_back(animated(object, name, type, track.values));
@@ -278,43 +313,91 @@ CrateSpec UsdFilm::mesh_prim(Object& object, std::size_t number) {
     put_presence(object, mesh);
     put_colors(object, number, mesh);
     mesh.children.push_back(uniform("subdivisionScheme", "token", file_.token("none")));
-    mesh.children.push_back({.kind = SpecKind::relationship,
-                             .name = "material:binding",
-                             .fields = {{"targetPaths", file_.target(material)}, {"variability", file_.uniform()}}});
+    bind(mesh, vertex_color_path);
     return mesh;
 }
 
-/// Material that shows the colours of the vertices.
-CrateSpec UsdFilm::material_prim() {
-    const auto output = [&](const char* name, const char* type) {
-        return CrateSpec{
-            .kind = SpecKind::attribute, .name = name, .fields = {{"typeName", file_.token(type)}}};
-    };
-    const auto connected = [&](const char* name, const char* type, const std::string& to) {
-        CrateSpec spec = output(name, type);
-        spec.fields.emplace_back("connectionPaths", file_.target(to));
-        return spec;
-    };
-    const std::string path = material;
-    CrateSpec reader = prim("Shader", "color");
-    reader.children = {uniform("info:id", "token", file_.token("UsdPrimvarReader_float3")),
-                       attribute("inputs:varname", "string", file_.string("displayColor")),
-                       output("outputs:result", "float3")};
-    CrateSpec surface = prim("Shader", "surface");
-    surface.children = {uniform("info:id", "token", file_.token("UsdPreviewSurface")),
-                        connected("inputs:diffuseColor", "color3f", path + "/color.outputs:result"),
-                        attribute("inputs:roughness", "float", file_.float32(0.5F)),
-                        output("outputs:surface", "token")};
-    CrateSpec shown = prim("Material", path.substr(path.rfind('/') + 1));
-    shown.children = {connected("outputs:surface", "token", path + "/surface.outputs:surface"), std::move(surface),
-                      std::move(reader)};
-    return shown;
+/// Gives a prim the material at `path`.
+void UsdFilm::bind(CrateSpec& spec, const std::string& path) {
+    spec.fields.emplace_back("apiSchemas", file_.prepended_token("MaterialBindingAPI"));
+    spec.children.push_back({.kind = SpecKind::relationship,
+                             .name = "material:binding",
+                             .fields = {{"targetPaths", file_.target(path)}, {"variability", file_.uniform()}},
+                             .children = {}});
+}
+
+CrateSpec UsdFilm::unset(const char* name, const char* type) {
+    return {.kind = SpecKind::attribute, .name = name, .fields = {{"typeName", file_.token(type)}}};
+}
+
+CrateSpec UsdFilm::connected(const char* name, const char* type, const std::string& to) {
+    CrateSpec spec = unset(name, type);
+    spec.fields.emplace_back("connectionPaths", file_.target(to));
+    return spec;
+}
+
+CrateSpec UsdFilm::shader(std::string name, const char* kind) {
+    CrateSpec spec = prim("Shader", std::move(name));
+    spec.children.push_back(uniform("info:id", "token", file_.token(kind)));
+    return spec;
+}
+
+/// Adds a material to `looks_`. `inputs`: shaders from which it takes its colour, as value of `diffuse`.
+void UsdFilm::add_material(const std::string& path, CrateSpec diffuse, Real opacity, std::vector<CrateSpec> inputs) {
+    CrateSpec surface = shader("surface", "UsdPreviewSurface");
+    surface.children.push_back(std::move(diffuse));
+    surface.children.push_back(attribute("inputs:roughness", "float", file_.float32(0.5F)));
+    surface.children.push_back(attribute("inputs:opacity", "float", file_.float32(static_cast<float>(opacity))));
+    surface.children.push_back(unset("outputs:surface", "token"));
+    CrateSpec material = prim("Material", path.substr(path.rfind('/') + 1));
+    material.children = std::move(inputs);
+    material.children.push_back(connected("outputs:surface", "token", path + "/surface.outputs:surface"));
+    material.children.push_back(std::move(surface));
+    looks_.push_back(std::move(material));
+}
+
+/// Adds the material that shows the colours of the vertices.
+void UsdFilm::add_vertex_color() {
+    const std::string path = vertex_color_path;
+    CrateSpec reader = shader("color", "UsdPrimvarReader_float3");
+    reader.children.push_back(attribute("inputs:varname", "string", file_.string("displayColor")));
+    reader.children.push_back(unset("outputs:result", "float3"));
+    add_material(path, connected("inputs:diffuseColor", "color3f", path + "/color.outputs:result"), 1, {reader});
+}
+
+/// Returns the path of a material, which is added unless a body already has it.
+std::string UsdFilm::material_path(const VisualMaterial& material) {
+    const auto known = std::ranges::find(materials_, material, &std::pair<VisualMaterial, std::string>::first);
+    if (known != materials_.end()) return known->second;
+    const std::string path = looks_path + unique_name(material.name, "material");
+    materials_.emplace_back(material, path);
+    if (material.texture.empty()) {
+        const auto& [r, g, b] = material.color;
+        const Vec3f color{static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)};
+        add_material(path, attribute("inputs:diffuseColor", "color3f", file_.scalar(CrateType::vec3_float, color)),
+                     material.opacity, {});
+        return path;
+    }
+    CrateSpec reader = shader("st", "UsdPrimvarReader_float2");
+    reader.children.push_back(attribute("inputs:varname", "string", file_.string("st")));
+    reader.children.push_back(unset("outputs:result", "float2"));
+    CrateSpec texture = shader("texture", "UsdUVTexture");
+    const std::filesystem::path place = std::filesystem::proximate(material.texture, folder_);
+    texture.children.push_back(attribute("inputs:file", "asset", file_.asset_path(place.generic_string())));
+    texture.children.push_back(attribute("inputs:wrapS", "token", file_.token("repeat")));
+    texture.children.push_back(attribute("inputs:wrapT", "token", file_.token("repeat")));
+    texture.children.push_back(connected("inputs:st", "float2", path + "/st.outputs:result"));
+    texture.children.push_back(unset("outputs:rgb", "float3"));
+    add_material(path, connected("inputs:diffuseColor", "color3f", path + "/texture.outputs:rgb"), material.opacity,
+                 {reader, texture});
+    return path;
 }
 
 Real UsdFilm::close() {
     top_ = settings_.color_max.value_or(usual_top(quantity_));
     CrateSpec looks = prim("Scope", "Looks"), world = prim("Xform", "World");
-    looks.children.push_back(material_prim());
+    add_vertex_color();
+    looks.children = std::move(looks_);
     if (settings_.color != FilmColor::none) {
         const double range[] = {0, top_};
         world.children.push_back(attribute("userProperties:color_range", "double2",
@@ -324,7 +407,7 @@ Real UsdFilm::close() {
     world.children.push_back(std::move(looks));
     for (std::size_t number = 0; number < objects_.size(); ++number)
         world.children.push_back(mesh_prim(objects_[number], number));
-    CrateSpec root{.kind = SpecKind::root, .name = "", .fields = {}, .children = {}};
+    CrateSpec root{.kind = SpecKind::root, .name = ""};
     const double rate = 1 / settings_.frame_step;
     root.fields = {{"defaultPrim", file_.token(world.name)},
                    {"upAxis", file_.token("Z")},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <iosfwd>
 #include <map>
 #include <optional>
@@ -23,7 +24,8 @@ namespace skerry {
 class UsdFilm {
 public:
     /// `file` must be empty, and must support writing, reading and seeking. It must outlive the object.
-    UsdFilm(std::iostream& file, const FilmSettings& settings);
+    /// `folder`: folder of the film, to which paths of textures are relative.
+    UsdFilm(std::iostream& file, std::filesystem::path folder, const FilmSettings& settings);
     /// The time of the frame must be later than that of the previous frame.
     void add(const Frame& frame);
     /// Completes the file. Returns the value at the upper end of the colours.
@@ -47,6 +49,7 @@ private:
         Track translate, orient, points, velocities, extent, quantity;
     };
 
+    std::string unique_name(std::string_view name, std::string_view name_if_empty);
     Object& add_object(std::string_view name, std::string_view name_if_empty);
     void put_triangles(Object& object, std::span<const std::array<Index, 3>> triangles);
     template <class T>
@@ -65,15 +68,25 @@ private:
     void put_colors(const Object& object, std::size_t number, CrateSpec& mesh);
     void put_presence(const Object& object, CrateSpec& mesh);
     CrateSpec mesh_prim(Object& object, std::size_t number);
-    CrateSpec material_prim();
+    void put_materials(Object& object, const VisualSurface& surface);
+    void bind(CrateSpec& spec, const std::string& path);
+    CrateSpec unset(const char* name, const char* type);
+    CrateSpec connected(const char* name, const char* type, const std::string& to);
+    CrateSpec shader(std::string name, const char* kind);
+    void add_material(const std::string& path, CrateSpec diffuse, Real opacity, std::vector<CrateSpec> inputs);
+    void add_vertex_color();
+    std::string material_path(const VisualMaterial& material);
 
     CrateFile file_;
+    std::filesystem::path folder_;
     FilmSettings settings_;
     std::vector<double> times_;  // time of each earlier frame, as number of frame steps
     std::vector<Object> objects_;
     std::set<std::string, std::less<>> names_;
     std::map<BodyHandle, std::size_t> body_object_;
     std::map<ColliderHandle, std::size_t> collider_object_;
+    std::vector<CrateSpec> looks_;  // materials
+    std::vector<std::pair<VisualMaterial, std::string>> materials_;  // materials of visual surfaces, and their paths
     std::optional<PlanePatch> patch_;  // displayed part of planes, in world coordinates
     Quantile quantity_;
     Real top_ = 0;

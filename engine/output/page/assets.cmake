@@ -45,6 +45,7 @@ set(page_streams
     page/stream/pack.cpp
 )
 set(pages
+    film/write_gltf.cpp
     page/page_data.cpp
     page/page_document.cpp
     page/page_writer.cpp
