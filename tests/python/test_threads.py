@@ -339,11 +339,11 @@ def test_dropped_worlds_free_their_memory() -> None:
         pytest.skip("/proc is found on Linux only")
     if "libasan" in os.environ.get("LD_PRELOAD", ""):
         pytest.skip("the address sanitizer keeps freed memory for a while")
-    make(200)
+    make(50)
     before = resident()
-    make(800)
+    make(200)
     # one leaked world has more than 20 pages
-    assert resident() - before < 800
+    assert resident() - before < 200
 
 
 def test_a_callback_on_another_thread_may_use_another_world() -> None:

@@ -38,7 +38,7 @@ def run_once(command, seconds):
             return None
 
 
-def browse(page, fragment, picture=None, size=(720, 450), seconds=3):
+def browse(page, fragment, picture=None, size=(720, 450), seconds=12):
     """The page as the browser has it after that many seconds of its own time, and its picture if a name is given.
 
     That time also passes while the page waits for its frames to be unpacked, and Chromium hangs if it asks for a
@@ -234,7 +234,7 @@ def check_acting(folder, fragment, script, size=(900, 700), before=""):
     with open(acting, "w", encoding="utf-8") as file:
         file.write(text.replace("<head>", f"<head><script>{before}</script>", 1)
                    .replace("</body>", f"<script>{ACTING % script if script else ''}</script></body>"))
-    for seconds in [60, 600, 6000] if script else [3]:
+    for seconds in [60, 600, 6000] if script else [12]:
         found = marks(browse(acting, fragment, size=size, seconds=seconds))
         if "error" in found or "done" in found:
             break
