@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <span>
@@ -15,34 +14,62 @@
 namespace skerry::mesh {
 namespace {
 
-std::string lower_extension(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
+struct Format {
+    const char* extension;
+    RawMesh (*read)(FileReader&);
+    bool surface_only;  // true if the format has triangles but no tetrahedra
+};
+constexpr std::array<Format, 9> formats{{{".msh", read_gmsh, false},
+                                         {".inp", read_abaqus, false},
+                                         {".mesh", read_medit, false},
+                                         {".meshb", read_medit, false},
+                                         {".vtk", read_vtk, false},
+                                         {".vtu", read_vtu, false},
+                                         {".obj", read_obj, true},
+                                         {".ply", read_ply, true},
+                                         {".stl", read_stl, true}}};
 
-RawMesh read_raw(const std::string& path, bool surface) {
-    const std::string extension = lower_extension(path);
+RawMesh read_file(const std::string& path, bool surface) {
+    const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
     if (extension == ".node" || extension == ".ele") return read_tetgen(path);
-    const bool known = extension == ".msh" || extension == ".vtk" || extension == ".vtu" ||
-                       (surface && (extension == ".obj" || extension == ".stl"));
-    if (!known)
+    const auto* const format = std::ranges::find(formats, extension, &Format::extension);
+    const bool known = format != formats.end();
+    if (!known || (format->surface_only && !surface)) {
+        std::string expected = "the extension ";
+        for (const Format& other : formats)
+            if (surface || !other.surface_only) expected += std::string(other.extension) + ", ";
         Complaint{path,
                   {},
                   "file name",
                   extension.empty() ? "no extension" : "the extension " + extension,
-                  surface ? "the extension .msh, .vtk, .vtu, .node, .ele, .obj or .stl"
-                          : "the extension .msh, .vtk, .vtu, .node or .ele",
-                  extension == ".obj" || extension == ".stl"
-                      ? "a body that deforms needs tetrahedra; a rigid body or a collider needs only a surface"
-                      : "export the mesh in one of these formats"}
+                  expected + ".node or .ele",
+                  known ? "a body that deforms needs tetrahedra; a rigid body or a collider needs only a surface"
+                        : "export the mesh in one of these formats"}
             .raise();
+    }
     FileReader reader(path);
-    if (extension == ".msh") return read_gmsh(reader);
-    if (extension == ".vtk") return read_vtk(reader);
-    if (extension == ".vtu") return read_vtu(reader);
-    return extension == ".obj" ? read_obj(reader) : read_stl(reader);
+    return format->read(reader);
+}
+
+/// Notes the elements with a volume that are not tetrahedra and therefore no part of the mesh.
+void note_left_out(RawMesh& mesh) {
+    static constexpr std::array<std::string_view, 6> flat{"points",         "lines",           "quadrilaterals",
+                                                          "flat triangles", "triangle strips", "polygons"};
+    std::string text;
+    for (const auto& [kind, count] : mesh.others)
+        if (std::ranges::find(flat, kind) == flat.end() && !kind.starts_with("triangles"))
+            text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
+    if (!text.empty()) mesh.notes.push_back(text + " were left out; only tetrahedra are used");
+}
+
+/// Reads a file of any format and divides its elements of second order into linear ones.
+RawMesh read_raw(const std::string& path, bool surface, std::vector<std::string>* notes) {
+    RawMesh raw = read_file(path, surface);
+    divide_second_order(raw);
+    if (!raw.tetrahedra.empty()) note_left_out(raw);
+    for (const std::string& note : raw.notes)
+        if (notes) notes->push_back(path + ": " + note);
+    return raw;
 }
 
 /// Nodes that are used, and their numbers among all nodes.
@@ -160,7 +187,7 @@ void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>
 }
 
 Mesh read(const std::string& path, std::vector<std::string>* notes) {
-    RawMesh raw = read_raw(path, false);
+    RawMesh raw = read_raw(path, false, notes);
     if (raw.tetrahedra.empty())
         Complaint{path,
                   {},
@@ -179,8 +206,8 @@ SurfaceMesh take_triangles(const std::string& path, RawMesh& raw) {
         Complaint{path,
                   {},
                   {},
-                  std::to_string(raw.curved_triangles) + " triangles of second or higher order",
-                  "linear triangles",
+                  std::to_string(raw.curved_triangles) + " triangles of third or higher order",
+                  "triangles of first or second order",
                   "export the surface with linear elements"}
             .raise();
     if (raw.triangles.empty())
@@ -200,12 +227,12 @@ SurfaceMesh take_triangles(const std::string& path, RawMesh& raw) {
 }  // namespace
 
 SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes) {
-    RawMesh raw = read_raw(path, true);
+    RawMesh raw = read_raw(path, true, notes);
     return raw.tetrahedra.empty() ? take_triangles(path, raw) : boundary(take_tetrahedra(path, raw, notes));
 }
 
 Mesh read_rigid(const std::string& path, std::vector<std::string>* notes) {
-    RawMesh raw = read_raw(path, true);
+    RawMesh raw = read_raw(path, true, notes);
     if (!raw.tetrahedra.empty()) return take_tetrahedra(path, raw, notes);
     SurfaceMesh surface = take_triangles(path, raw);
     return {.nodes = std::move(surface.nodes), .tetrahedra = {}, .triangles = std::move(surface.triangles)};

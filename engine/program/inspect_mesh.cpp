@@ -177,7 +177,7 @@ int report_surface(const InspectOptions& options, const SurfaceMesh& surface) {
 bool is_surface_file(const std::filesystem::path& file) {
     std::string ending = file.extension().string();
     std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return ending == ".obj" || ending == ".stl";
+    return ending == ".obj" || ending == ".ply" || ending == ".stl";
 }
 
 /// Reads the surface of a file whose tetrahedra cannot be read. Returns nothing if the file has no surface either.

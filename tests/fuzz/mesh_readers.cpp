@@ -56,6 +56,14 @@ void read_gmsh_bytes(FileBytes bytes) {
     use_file("mesh.msh", bytes);
 }
 
+void read_abaqus_bytes(FileBytes bytes) {
+    use_file("mesh.inp", bytes);
+}
+
+void read_medit_bytes(FileBytes bytes) {
+    use_file("mesh.mesh", bytes);
+}
+
 void read_vtk_bytes(FileBytes bytes) {
     use_file("mesh.vtk", bytes);
 }
@@ -66,6 +74,10 @@ void read_vtu_bytes(FileBytes bytes) {
 
 void read_obj_bytes(FileBytes bytes) {
     use_surface(folder().write("mesh.obj", text_of(bytes)).string());
+}
+
+void read_ply_bytes(FileBytes bytes) {
+    use_surface(folder().write("mesh.ply", text_of(bytes)).string());
 }
 
 void read_stl_bytes(FileBytes bytes) {

@@ -134,9 +134,9 @@ Mesh read(const std::string& path, std::vector<std::string>* notes = nullptr);
 /// `read_surface`. Throws SceneError.
 Mesh read_rigid(const std::string& path, std::vector<std::string>* notes = nullptr);
 
-/// Reads a triangle surface from a file in one of the formats of `read`, or in Wavefront .obj or .stl format. The
-/// surface of a tetrahedral mesh is its boundary. Polygons are split into triangles that share their first corner.
-/// `notes` as for `read`. Throws SceneError.
+/// Reads a triangle surface from a file in one of the formats of `read`, or in Wavefront .obj, .ply (ASCII
+/// and binary) or .stl format. The surface of a tetrahedral mesh is its boundary. Polygons are split into triangles
+/// that share their first corner. `notes` as for `read`. Throws SceneError.
 SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 /// Turns the inverted tetrahedra of a mesh that was not read from a file, as `read` does. `name` stands for the file in

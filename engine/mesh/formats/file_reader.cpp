@@ -1,6 +1,7 @@
 #include "engine/mesh/formats/file_reader.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -18,13 +19,25 @@ bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
 }
 
+}  // namespace
+
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
     while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
     return text;
 }
 
-}  // namespace
+std::string in_lower_case(std::string_view text) {
+    std::string lower(text);
+    std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return lower;
+}
+
+std::string in_upper_case(std::string_view text) {
+    std::string upper(text);
+    std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return upper;
+}
 
 std::string in_quotes(std::string_view text) {
     constexpr std::size_t longest = 60;
@@ -133,6 +146,37 @@ void FileReader::begin_binary(std::size_t size, const char* field) {
     last_was_binary_ = true;
     start_ = position_;
     if (size > remaining()) complain(field, "the end of the file", std::to_string(size) + " more bytes", incomplete);
+}
+
+Real FileReader::real(const NumberType& type, const char* field) {
+    if (!binary_) return parse_real(word(field), field);
+    if (type.kind == NumberKind::float32) return static_cast<Real>(binary<float>(field));
+    if (type.kind == NumberKind::float64) return binary<double>(field);
+    return static_cast<Real>(integer(type, field));
+}
+
+std::int64_t FileReader::integer(const NumberType& type, const char* field) {
+    if (!binary_) return parse_integer(word(field), field);
+    switch (type.kind) {
+        case NumberKind::int8:
+            return binary<std::int8_t>(field);
+        case NumberKind::uint8:
+            return binary<std::uint8_t>(field);
+        case NumberKind::int16:
+            return binary<std::int16_t>(field);
+        case NumberKind::uint16:
+            return binary<std::uint16_t>(field);
+        case NumberKind::int32:
+            return binary<std::int32_t>(field);
+        case NumberKind::uint32:
+            return binary<std::uint32_t>(field);
+        case NumberKind::int64:
+            return binary<std::int64_t>(field);
+        case NumberKind::uint64:
+            return static_cast<std::int64_t>(binary<std::uint64_t>(field));
+        default:
+            complain(field, "a floating-point type", "an integer type");
+    }
 }
 
 void FileReader::skip_bytes(std::size_t count, const char* field) {

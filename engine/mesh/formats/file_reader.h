@@ -13,6 +13,15 @@
 
 namespace skerry::mesh {
 
+/// Type of binary numbers, for formats in which a file names the types of its numbers.
+enum class NumberKind { bit, int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+struct NumberType {
+    NumberKind kind;
+    std::size_t size;  // [bytes]
+
+    bool is_real() const { return kind == NumberKind::float32 || kind == NumberKind::float64; }
+};
+
 class FileReader {
 public:
     /// Reads the whole file. Throws SceneError if it does not exist, is not a regular file or cannot be read.
@@ -79,6 +88,16 @@ public:
     /// binary numbers and `mark`. Returns false and does not move if there is no such occurrence.
     bool skip_behind(std::string_view mark);
 
+    // Numbers of formats that have a text form and a binary form.
+    // -----------------------------------------------------------------------------------------------------------------
+
+    /// Sets whether real() and integer() read binary numbers. Until the first call they read words of text.
+    void set_binary(bool binary) { binary_ = binary; }
+    /// Reads the next number. `type`: its type in a binary file, other than `bit`.
+    Real real(const NumberType& type, const char* field);
+    /// Reads the next number. Throws SceneError if it is not an integer.
+    std::int64_t integer(const NumberType& type, const char* field);
+
     // Checks.
     // -----------------------------------------------------------------------------------------------------------------
 
@@ -104,10 +123,17 @@ private:
     std::size_t start_ = 0;  // position of the last item read, for error messages
     bool last_was_binary_ = false;
     bool foreign_bytes_ = false;
+    bool binary_ = false;
     std::vector<std::string_view> words_;
 };
 
 /// Converts a word of the file for use in an error message: in quotes, shortened, and with printable characters only.
 std::string in_quotes(std::string_view text);
+
+/// The text without white space at both ends.
+std::string_view trimmed(std::string_view text);
+
+std::string in_lower_case(std::string_view text);
+std::string in_upper_case(std::string_view text);
 
 }  // namespace skerry::mesh

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -14,17 +15,30 @@
 
 namespace skerry::mesh {
 
+// Corners of the edges of a tetrahedron, in the order of its nodes of second order. The first three are those of a
+// triangle.
+constexpr std::array<std::array<std::size_t, 2>, 6> second_order_edges{
+    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+// Rows of RawMesh::middle and RawMesh::triangle_middle of linear elements.
+constexpr std::array<Index, 6> linear_tetrahedron{no_index, no_index, no_index, no_index, no_index, no_index};
+constexpr std::array<Index, 3> linear_triangle{no_index, no_index, no_index};
+
 /// Nodes and elements of a mesh file. Each element is a row of indices into `nodes`.
 struct RawMesh {
     std::vector<Vec3> nodes;
     std::vector<std::array<Index, 4>> tetrahedra;
+    // Nodes of second-order tetrahedra in the middle of `second_order_edges`. The list may be shorter than
+    // `tetrahedra`; the remaining ones are linear.
+    std::vector<std::array<Index, 6>> middle;
     std::vector<int> label;  // label of each tetrahedron; empty: no labels
     std::vector<std::array<Index, 3>> triangles;
-    std::size_t curved_triangles = 0;  // number of triangles of second or higher order
-    std::map<std::string, MeshSet> sets;
-    std::map<std::string, std::vector<Vec3>> vectors;  // of the tetrahedra
+    std::vector<std::array<Index, 3>> triangle_middle;  // as `middle`, for the triangles
+    std::size_t curved_triangles = 0;                   // number of triangles of third or higher order
+    std::map<std::string, MeshSet> sets;                // faces are the corners of triangles of any order
+    std::map<std::string, std::vector<Vec3>> vectors;   // of the tetrahedra
     // number of ignored elements of each kind, for example "hexahedra"
     std::map<std::string, std::size_t> others;
+    std::vector<std::string> notes;  // sentences for the user, without the name of the file
 };
 
 /// Describes the triangles and the ignored elements of a mesh, for example "12 triangles, 603 hexahedra".
@@ -48,14 +62,20 @@ private:
 std::optional<int> as_label(Real number);
 
 /// Throws SceneError if an element uses a node twice.
-template <std::size_t N>
-void require_different(const std::array<Index, N>& nodes, const FileReader& reader) {
-    for (std::size_t a = 0; a < N; ++a)
-        for (std::size_t b = a + 1; b < N; ++b)
-            if (nodes[a] == nodes[b])
-                reader.complain("nodes", "the same node twice", "an element whose nodes all differ",
-                                "remove this element or correct its nodes");
-}
+void require_different(std::span<const Index> nodes, const FileReader& reader);
+
+/// Adds a tetrahedron of first order (4 nodes) or second order (10 nodes: the corners, then the order of
+/// RawMesh::middle). Throws SceneError if a node occurs twice.
+void take_tetrahedron(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
+/// Adds a triangle of first order (3 nodes) or second order (6 nodes). Throws SceneError if a node occurs twice.
+void take_triangle(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
+
+/// Divides each tetrahedron of second order into eight linear ones and each triangle of second order into four, which
+/// together use all nodes. Parts have the labels, vectors and sets of the whole. Adds a note.
+void divide_second_order(RawMesh& mesh);
+
+/// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
+void add_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
 
 // Readers of the mesh file formats. All of them throw SceneError for invalid files.
 RawMesh read_gmsh(FileReader& reader);  // reads Gmsh file versions 1, 2 and 4.1
@@ -63,7 +83,10 @@ RawMesh read_vtk(FileReader& reader);   // reads legacy VTK files with unstructu
 RawMesh read_vtu(FileReader& reader);   // reads VTK XML files with unstructured grids
 // reads TetGen files .node and .ele of the same name; `path` may name either file
 RawMesh read_tetgen(const std::string& path);
+RawMesh read_abaqus(FileReader& reader);
+RawMesh read_medit(FileReader& reader);  // reads Medit files .mesh and .meshb
 RawMesh read_obj(FileReader& reader);
+RawMesh read_ply(FileReader& reader);
 RawMesh read_stl(FileReader& reader);
 
 }  // namespace skerry::mesh

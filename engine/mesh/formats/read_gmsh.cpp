@@ -11,20 +11,25 @@ namespace {
 // quadrangles, tetrahedra, hexahedra, prisms, pyramids and points.
 constexpr std::array<std::size_t, 32> nodes_of_type{0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                                     8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
-constexpr std::int64_t triangle_type = 2, tetrahedron_type = 4;
 
+bool is_tetrahedron(std::int64_t type) {
+    return type == 4 || type == 11;  // of first or second order
+}
+bool is_triangle(std::int64_t type) {
+    return type == 2 || type == 9;  // of first or second order
+}
 bool is_curved_tetrahedron(std::int64_t type) {
-    return type == 11 || (type >= 29 && type <= 31) || (type >= 71 && type <= 75);
+    return (type >= 29 && type <= 31) || (type >= 71 && type <= 75);
 }
 bool is_curved_triangle(std::int64_t type) {
-    return type == 9 || (type >= 20 && type <= 25);
+    return type >= 20 && type <= 25;
 }
 
 std::string kind_of(std::int64_t type) {
     constexpr std::array<std::int64_t, 5> lines{1, 8, 26, 27, 28}, hexahedra{5, 12, 17, 92, 93};
     constexpr std::array<std::int64_t, 3> quadrilaterals{3, 10, 16}, prisms{6, 13, 18}, pyramids{7, 14, 19};
     const auto is_in = [&](const auto& types) { return std::ranges::find(types, type) != types.end(); };
-    if (is_curved_triangle(type)) return "triangles of second or higher order";
+    if (is_curved_triangle(type)) return "triangles of third or higher order";
     if (type == 15) return "points";
     if (is_in(lines)) return "lines";
     if (is_in(quadrilaterals)) return "quadrilaterals";
@@ -38,15 +43,15 @@ std::int64_t dimension_of(std::int64_t type) {
     const std::string kind = kind_of(type);
     if (kind == "points") return 0;
     if (kind == "lines") return 1;
-    return type == triangle_type || is_curved_triangle(type) || kind == "quadrilaterals" ? 2 : 3;
+    return is_triangle(type) || is_curved_triangle(type) || kind == "quadrilaterals" ? 2 : 3;
 }
 
 }  // namespace
 
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader) {
     if (is_curved_tetrahedron(type))
-        reader.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order",
-                        "type 4, a linear tetrahedron",
+        reader.complain("type", std::to_string(type) + ", a tetrahedron of third or higher order",
+                        "type 4 or 11, a tetrahedron of first or second order",
                         "in Gmsh set Mesh.ElementOrder = 1, then create the mesh again");
     if (type == 92 || type == 93) return type == 92 ? 64 : 125;
     const std::size_t count = type > 0 && type < static_cast<std::int64_t>(nodes_of_type.size())
@@ -59,32 +64,29 @@ std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader) {
 void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const GmshTags& tags,
                        std::span<const std::int64_t> groups, const NodeNumbers& numbers, const FileReader& reader,
                        GmshMesh& mesh) {
-    std::array<Index, 4> rows{};
-    for (std::size_t a = 0; a < node_numbers.size(); ++a) {
-        const Index row = numbers.row(node_numbers[a], reader);
-        if (a < 4) rows[a] = row;
-    }
+    std::vector<Index>& rows = mesh.element_rows;
+    rows.clear();
+    for (const std::int64_t number : node_numbers) rows.push_back(numbers.row(number, reader));
+    if (type == 11) std::swap(rows[8], rows[9]);  // Gmsh lists the middle of edge 23 before that of edge 13
     // Version 2 writes a tetrahedron in several groups once for each group, one after the other.
-    const bool again = type == tetrahedron_type && !mesh.tetrahedra.empty() && mesh.tetrahedra.back() == rows &&
+    const bool again = is_tetrahedron(type) && !mesh.tetrahedra.empty() &&
+                       std::ranges::equal(mesh.tetrahedra.back(), std::span(rows).first(4)) &&
                        mesh.tags.back().elementary == tags.elementary && mesh.tags.back().physical != tags.physical;
     for (const std::int64_t group : groups) {
         MeshSet& set = mesh.groups[{dimension_of(type), group}];
-        if (type == tetrahedron_type)
+        if (is_tetrahedron(type))
             set.tetrahedra.push_back(static_cast<Index>(mesh.tetrahedra.size() - (again ? 1 : 0)));
-        else if (type == triangle_type)
+        else if (is_triangle(type))
             set.faces.push_back({rows[0], rows[1], rows[2]});
         else
-            for (const std::int64_t number : node_numbers) set.nodes.push_back(numbers.row(number, reader));
+            set.nodes.insert(set.nodes.end(), rows.begin(), rows.end());
     }
     if (again) return;
-    if (type == tetrahedron_type) {
-        require_different(rows, reader);
-        mesh.tetrahedra.push_back(rows);
+    if (is_tetrahedron(type)) {
+        take_tetrahedron(rows, reader, mesh);
         mesh.tags.push_back(tags);
-    } else if (type == triangle_type) {
-        const std::array<Index, 3> nodes{rows[0], rows[1], rows[2]};
-        require_different(nodes, reader);
-        mesh.triangles.push_back(nodes);
+    } else if (is_triangle(type)) {
+        take_triangle(rows, reader, mesh);
     } else {
         mesh.curved_triangles += is_curved_triangle(type);
         mesh.others[kind_of(type)] += 1;

@@ -27,6 +27,7 @@ struct GmshMesh : RawMesh {
     std::map<GmshEntity, std::string> group_names;  // names of physical groups that have one
     // numbers of elements by the name of a view of element data in which they have the value 1 and all others 0
     std::map<std::string, std::vector<std::int64_t>> flagged;
+    std::vector<Index> element_rows;  // nodes of the element that is being read
 };
 
 /// Reads the section $PhysicalNames, which is text in every file.
@@ -47,7 +48,8 @@ void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Gms
 void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, const GmshEntities& entities,
                          GmshMesh& mesh);
 
-/// Returns the number of nodes of an element type. Throws SceneError for unknown types and for curved tetrahedra.
+/// Returns the number of nodes of an element type. Throws SceneError for unknown types and for tetrahedra of third or
+/// higher order.
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader);
 
 /// Adds a tetrahedron or triangle to the mesh. Elements of other types are only counted. The nodes of the element must

@@ -41,11 +41,7 @@ RawMesh read_obj(FileReader& reader) {
             corners.clear();
             for (std::size_t i = 1; i < words.size(); ++i)
                 corners.push_back(parse_corner(reader, words[i], mesh.nodes.size()));
-            for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-                const std::array<Index, 3> nodes{corners[0], corners[i], corners[i + 1]};
-                require_different(nodes, reader);
-                mesh.triangles.push_back(nodes);
-            }
+            add_polygon(corners, reader, mesh);
         }
     }
     reader.set_section({});

@@ -86,30 +86,35 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
     require_end(reader, "nodes");
 }
 
+/// Place of each node of a row of the file .ele in the order of RawMesh::middle. With its option -o2 TetGen lists the
+/// nodes in the middle of the edges 23, 03, 01, 12, 13 and 20 after the corners (its tables edge2ver, orgpivot and
+/// destpivot).
+constexpr std::array<std::size_t, 10> tetgen_order{0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
+
 void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
     const auto [announced, corners, attributes, unused] = read_header(
         reader, 3, "a header of up to three numbers: count of tetrahedra, nodes per tetrahedron, count of attributes");
     (void)unused;
     const std::size_t count = reader.checked_count(announced, 10, "tetrahedra");
-    if (corners == 10)
-        reader.complain("nodes per tetrahedron", "10 (second-order tetrahedra)", "4 (linear tetrahedra)",
-                        "run tetgen without -o2");
-    if (corners != 4 && corners != 0) reader.complain("nodes per tetrahedron", std::to_string(corners), "4");
+    if (corners != 4 && corners != 10 && corners != 0)
+        reader.complain("nodes per tetrahedron", std::to_string(corners), "4 or 10");
+    const std::size_t node_count = corners == 10 ? 10 : 4;
     if (attributes < 0 || attributes > 1000) reader.complain("attributes", std::to_string(attributes), "0 to 1000");
     reader.set_section("tetrahedra");
     mesh.tetrahedra.reserve(count);
     bool labelled = attributes > 0;
     for (std::size_t i = 0; i < count; ++i) {
         reader.set_row("tetrahedron", i + 1, count);
-        const std::vector<std::string_view>& words = node_row_words(reader, "number and four nodes of a tetrahedron");
-        require_words(reader, words.size(), 5, 5 + static_cast<std::size_t>(attributes),
-                      "number, four nodes and attributes of a tetrahedron");
-        std::array<Index, 4> nodes;
-        for (std::size_t a = 0; a < 4; ++a) nodes[a] = numbers.row(reader.parse_integer(words[a + 1], "node"), reader);
-        require_different(nodes, reader);
-        mesh.tetrahedra.push_back(nodes);
+        const std::vector<std::string_view>& words = node_row_words(reader, "number and nodes of a tetrahedron");
+        require_words(reader, words.size(), 1 + node_count, 1 + node_count + static_cast<std::size_t>(attributes),
+                      "number, nodes and attributes of a tetrahedron");
+        std::array<Index, 10> nodes{};
+        for (std::size_t a = 0; a < node_count; ++a) {
+            nodes[tetgen_order[a]] = numbers.row(reader.parse_integer(words[a + 1], "node"), reader);
+        }
+        take_tetrahedron(std::span(nodes).first(node_count), reader, mesh);
         // with its option -A TetGen writes the number of the region as the last attribute
-        labelled = labelled && words.size() == 5 + static_cast<std::size_t>(attributes);
+        labelled = labelled && words.size() == 1 + node_count + static_cast<std::size_t>(attributes);
         if (!labelled) continue;
         const std::optional<int> number = as_label(reader.parse_real(words.back(), "attribute"));
         labelled = number.has_value();
@@ -129,13 +134,14 @@ void read_faces(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
     reader.set_section("faces");
     for (std::size_t i = 0; i < count && markers == 1; ++i) {
         reader.set_row("face", i + 1, count);
-        const std::vector<std::string_view>& words = node_row_words(reader, "number, three nodes and marker of a face");
-        // further numbers of a row are the neighbouring tetrahedra, which TetGen writes with its option -nn
-        require_words(reader, words.size(), 5, 7, "number, three nodes, marker and neighbours of a face");
+        const std::vector<std::string_view>& words = node_row_words(reader, "number, nodes and marker of a face");
+        // Further numbers of a row are the neighbouring tetrahedra, which TetGen writes with its option -nn. In a mesh
+        // of second order, three nodes in the middle of edges precede the marker.
+        require_words(reader, words.size(), 5, 10, "number, three or six nodes, marker and neighbours of a face");
         std::array<Index, 3> nodes;
         for (std::size_t a = 0; a < 3; ++a) nodes[a] = numbers.row(reader.parse_integer(words[a + 1], "node"), reader);
         require_different(nodes, reader);
-        add_marked(reader, words[4], "face_marker_", mesh).faces.push_back(nodes);
+        add_marked(reader, words[words.size() < 8 ? 4 : 7], "face_marker_", mesh).faces.push_back(nodes);
     }
     mesh.sets.erase(no_marker);
 }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,13 +10,6 @@
 // CONNECTIVITY.
 namespace skerry::mesh {
 namespace {
-
-enum class Kind { bit, int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
-
-struct NumberType {
-    Kind kind;
-    std::size_t size;  // [bytes]
-};
 
 class VtkReader {
 public:
@@ -50,6 +42,7 @@ private:
         const std::string_view format = reader_.filled_line("ASCII or BINARY");
         if (format != "ASCII" && format != "BINARY") reader_.complain("format", in_quotes(format), "ASCII or BINARY");
         binary_ = format == "BINARY";
+        reader_.set_binary(binary_);
         reader_.set_foreign_bytes(std::endian::native == std::endian::little);  // binary VTK files are big-endian
         const std::string_view key = reader_.word("DATASET");
         if (key != "DATASET") reader_.complain({}, in_quotes(key), "DATASET");
@@ -100,28 +93,27 @@ private:
         return *type;
     }
 
-    static std::optional<NumberType> type_of(std::string name) {
-        std::transform(name.begin(), name.end(), name.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    static std::optional<NumberType> type_of(std::string_view name) {
+        const std::string lower = in_lower_case(name);
         struct Name {
             const char* name;
             NumberType type;
         };
-        static constexpr std::array<Name, 14> names{{{"float", {Kind::float32, 4}},
-                                                     {"bit", {Kind::bit, 1}},
-                                                     {"double", {Kind::float64, 8}},
-                                                     {"int", {Kind::int32, 4}},
-                                                     {"unsigned_int", {Kind::uint32, 4}},
-                                                     {"long", {Kind::int64, 8}},
-                                                     {"unsigned_long", {Kind::uint64, 8}},
-                                                     {"vtktypeint64", {Kind::int64, 8}},
-                                                     {"vtkidtype", {Kind::int32, 4}},
-                                                     {"char", {Kind::int8, 1}},
-                                                     {"unsigned_char", {Kind::uint8, 1}},
-                                                     {"short", {Kind::int16, 2}},
-                                                     {"unsigned_short", {Kind::uint16, 2}},
-                                                     {"vtktypeint32", {Kind::int32, 4}}}};
-        const auto found = std::find_if(names.begin(), names.end(), [&](const Name& n) { return name == n.name; });
+        static constexpr std::array<Name, 14> names{{{"float", {NumberKind::float32, 4}},
+                                                     {"bit", {NumberKind::bit, 1}},
+                                                     {"double", {NumberKind::float64, 8}},
+                                                     {"int", {NumberKind::int32, 4}},
+                                                     {"unsigned_int", {NumberKind::uint32, 4}},
+                                                     {"long", {NumberKind::int64, 8}},
+                                                     {"unsigned_long", {NumberKind::uint64, 8}},
+                                                     {"vtktypeint64", {NumberKind::int64, 8}},
+                                                     {"vtkidtype", {NumberKind::int32, 4}},
+                                                     {"char", {NumberKind::int8, 1}},
+                                                     {"unsigned_char", {NumberKind::uint8, 1}},
+                                                     {"short", {NumberKind::int16, 2}},
+                                                     {"unsigned_short", {NumberKind::uint16, 2}},
+                                                     {"vtktypeint32", {NumberKind::int32, 4}}}};
+        const auto found = std::find_if(names.begin(), names.end(), [&](const Name& n) { return lower == n.name; });
         if (found == names.end()) return {};
         return found->type;
     }
@@ -129,37 +121,6 @@ private:
     /// Skips the line end between the counts and binary rows.
     void begin_rows() {
         if (binary_) reader_.line();
-    }
-
-    Real read_real(const NumberType& type, const char* field) {
-        if (!binary_) return reader_.parse_real(reader_.word(field), field);
-        if (type.kind == Kind::float32) return static_cast<Real>(reader_.binary<float>(field));
-        if (type.kind == Kind::float64) return reader_.binary<double>(field);
-        return static_cast<Real>(read_integer(type, field));
-    }
-
-    std::int64_t read_integer(const NumberType& type, const char* field) {
-        if (!binary_) return reader_.parse_integer(reader_.word(field), field);
-        switch (type.kind) {
-            case Kind::int8:
-                return reader_.binary<std::int8_t>(field);
-            case Kind::uint8:
-                return reader_.binary<std::uint8_t>(field);
-            case Kind::int16:
-                return reader_.binary<std::int16_t>(field);
-            case Kind::uint16:
-                return reader_.binary<std::uint16_t>(field);
-            case Kind::int32:
-                return reader_.binary<std::int32_t>(field);
-            case Kind::uint32:
-                return reader_.binary<std::uint32_t>(field);
-            case Kind::int64:
-                return reader_.binary<std::int64_t>(field);
-            case Kind::uint64:
-                return static_cast<std::int64_t>(reader_.binary<std::uint64_t>(field));
-            default:
-                reader_.complain(field, "a floating-point type", "an integer type");
-        }
     }
 
     void read_points() {
@@ -172,13 +133,13 @@ private:
         for (std::size_t i = 0; i < count; ++i) {
             reader_.set_row("point", i + 1, count);
             Vec3 x;
-            for (Real& value : x) value = reader_.finite(read_real(type, "position"), "position");
+            for (Real& value : x) value = reader_.finite(reader_.real(type, "position"), "position");
             mesh_.nodes.push_back(x);
         }
     }
 
     Index read_node(const NumberType& type) {
-        const std::int64_t node = read_integer(type, "node");
+        const std::int64_t node = reader_.integer(type, "node");
         if (node < 0 || node >= static_cast<std::int64_t>(mesh_.nodes.size()))
             reader_.complain(
                 "node", std::to_string(node),
@@ -198,13 +159,13 @@ private:
     }
 
     void read_old_cells(std::size_t cells, std::size_t size) {
-        constexpr NumberType type{Kind::int32, 4};
+        constexpr NumberType type{NumberKind::int32, 4};
         reader_.checked_count(static_cast<std::int64_t>(size), binary_ ? 4 : 2, "size");
         begin_rows();
         cells_.offset.assign(1, 0);
         for (std::size_t c = 0; c < cells; ++c) {
             reader_.set_row("cell", c + 1, cells);
-            const std::int64_t nodes = read_integer(type, "node count");
+            const std::int64_t nodes = reader_.integer(type, "node count");
             // Number of integers of the section that follow the counts and nodes read so far.
             const std::size_t left = size - std::min(size, cells_.offset.back() + c + 1);
             if (nodes < 0 || static_cast<std::uint64_t>(nodes) > left)
@@ -229,7 +190,7 @@ private:
         cells_.offset.clear();
         for (std::size_t i = 0; i < offsets; ++i) {
             reader_.set_row("offset", i + 1, offsets);
-            const std::int64_t offset = read_integer(offset_type, "offset");
+            const std::int64_t offset = reader_.integer(offset_type, "offset");
             const std::int64_t least = cells_.offset.empty() ? 0 : static_cast<std::int64_t>(cells_.offset.back());
             if (offset < least || offset > static_cast<std::int64_t>(size) || (cells_.offset.empty() && offset != 0))
                 reader_.complain("offset", std::to_string(offset),
@@ -264,7 +225,7 @@ private:
         begin_rows();
         for (std::size_t i = 0; i < count; ++i) {
             reader_.set_row("cell", i + 1, count);
-            cells_.type.push_back(read_integer({Kind::int32, 4}, "type"));
+            cells_.type.push_back(reader_.integer({NumberKind::int32, 4}, "type"));
         }
     }
 
@@ -272,8 +233,8 @@ private:
         read_cells(has_cells_);
         for (std::size_t c = 0; c + 1 < cells_.offset.size(); ++c) {
             reader_.set_row("polygon", c + 1, cells_.offset.size() - 1);
-            take_vtk_polygon(std::span(cells_.node).subspan(cells_.offset[c], cells_.offset[c + 1] - cells_.offset[c]),
-                             reader_, mesh_);
+            add_polygon(std::span(cells_.node).subspan(cells_.offset[c], cells_.offset[c + 1] - cells_.offset[c]),
+                        reader_, mesh_);
         }
         cells_.node.clear();
         cells_.offset.assign(1, 0);
@@ -318,10 +279,10 @@ private:
             const std::size_t count = read_count("count", 1);
             // a colour component is one byte in a binary file and a fraction in a text file
             return skip_array(keyword == "LOOKUP_TABLE" ? count : rows, keyword == "LOOKUP_TABLE" ? 4 : count,
-                              {Kind::uint8, 1});
+                              {NumberKind::uint8, 1});
         }
         const std::size_t coordinates = keyword == "TEXTURE_COORDINATES" ? read_count("dimension", 1) : 0;
-        const std::optional<NumberType> type = type_of(std::string(reader_.word("type")));
+        const std::optional<NumberType> type = type_of(reader_.word("type"));
         if (!type) return false;
         if (keyword == "SCALARS") return read_scalars(name, rows, of_cells, *type);
         if (keyword == "TEXTURE_COORDINATES") return skip_array(rows, coordinates, *type);
@@ -361,7 +322,7 @@ private:
                 continue;
             }
             const std::size_t components = read_count("components", 1), rows = read_count("rows", 1);
-            const std::optional<NumberType> type = type_of(std::string(reader_.word("type")));
+            const std::optional<NumberType> type = type_of(reader_.word("type"));
             if (!type) return false;
             begin_rows();
             if (rows == data_rows)
@@ -378,7 +339,7 @@ private:
         for (std::size_t i = 0; i < rows; ++i) {
             reader_.set_row("cell", i + 1, rows);
             Vec3& vector = vectors.emplace_back();
-            for (Real& entry : vector) entry = read_real(type, "vector");
+            for (Real& entry : vector) entry = reader_.real(type, "vector");
         }
         return true;
     }
@@ -388,8 +349,8 @@ private:
     bool read_array(const std::string& name, std::size_t rows, std::size_t components, bool of_cells,
                     const NumberType& type) {
         const bool labels = of_cells && cells_.label.empty() && is_vtk_label(name);
-        const bool real = type.kind == Kind::float32 || type.kind == Kind::float64;
-        if (of_cells && components == 3 && type.kind != Kind::bit) return read_vectors(name, rows, type);
+        const bool real = type.is_real();
+        if (of_cells && components == 3 && type.kind != NumberKind::bit) return read_vectors(name, rows, type);
         if (components != 1 || (real && !labels)) return skip_rows(rows, components, type);
         std::vector<int> numbers;
         bool whole = true;
@@ -397,11 +358,11 @@ private:
         for (std::size_t i = 0; i < rows; ++i) {
             reader_.set_row(of_cells ? "cell" : "point", i + 1, rows);
             std::optional<int> number;
-            if (binary_ && type.kind == Kind::bit) {
+            if (binary_ && type.kind == NumberKind::bit) {
                 if (i % 8 == 0) bits = reader_.binary<std::uint8_t>("bits");
                 number = static_cast<int>(bits >> (7 - i % 8) & 1u);
             } else {
-                number = as_label(read_real(type, labels ? "label" : "number"));
+                number = as_label(reader_.real(type, labels ? "label" : "number"));
             }
             whole = whole && number;
             numbers.push_back(number.value_or(0));
@@ -419,7 +380,7 @@ private:
     }
 
     bool skip_rows(std::size_t rows, std::size_t components, const NumberType& type) {
-        const bool bits = binary_ && type.kind == Kind::bit;
+        const bool bits = binary_ && type.kind == NumberKind::bit;
         const std::size_t count = bits ? (components * rows + 7) / 8 : components * rows;
         const std::size_t numbers =
             reader_.checked_count(static_cast<std::int64_t>(count), binary_ ? type.size : 2, "numbers");

@@ -12,29 +12,30 @@ struct CellKind {
     std::int64_t type;
     const char* name;
 };
-// Kinds of cells of VTK that are neither tetrahedra nor linear triangles.
-constexpr const char* curved_triangle = "triangles of second or higher order";
+// Kinds of cells of VTK that are neither tetrahedra nor triangles of first or second order.
+constexpr const char* curved_triangle = "triangles of third or higher order";
 constexpr CellKind other_kinds[] = {
-    {1, "points"},         {2, "points"},         {3, "lines"},          {4, "lines"},           {6, "triangle strips"},
-    {7, "polygons"},       {8, "quadrilaterals"}, {9, "quadrilaterals"}, {11, "hexahedra"},      {12, "hexahedra"},
-    {13, "prisms"},        {14, "pyramids"},      {21, "lines"},         {22, curved_triangle},  {23, "quadrilaterals"},
-    {25, "hexahedra"},     {26, "prisms"},        {27, "pyramids"},      {28, "quadrilaterals"}, {29, "hexahedra"},
-    {34, curved_triangle}, {42, "polyhedra"},     {68, "lines"},         {69, curved_triangle},  {70, "quadrilaterals"},
-    {72, "hexahedra"},     {73, "prisms"},        {74, "pyramids"},      {76, curved_triangle}};
+    {1, "points"},     {2, "points"},         {3, "lines"},           {4, "lines"},           {6, "triangle strips"},
+    {7, "polygons"},   {8, "quadrilaterals"}, {9, "quadrilaterals"},  {11, "hexahedra"},      {12, "hexahedra"},
+    {13, "prisms"},    {14, "pyramids"},      {21, "lines"},          {23, "quadrilaterals"}, {25, "hexahedra"},
+    {26, "prisms"},    {27, "pyramids"},      {28, "quadrilaterals"}, {29, "hexahedra"},      {34, curved_triangle},
+    {42, "polyhedra"}, {68, "lines"},         {69, curved_triangle},  {70, "quadrilaterals"}, {72, "hexahedra"},
+    {73, "prisms"},    {74, "pyramids"},      {76, curved_triangle}};
+
+/// True for tetrahedra of first order (10) and of second order (24, or 71 with ten nodes).
+bool is_tetrahedron(std::int64_t type) {
+    return type == 10 || type == 24 || type == 71;
+}
+
+/// True for triangles of first order (5) and of second order (22, or 69 with six nodes).
+bool is_triangle(std::int64_t type, std::size_t nodes) {
+    return type == 5 || type == 22 || (type == 69 && nodes == 6);
+}
 
 }  // namespace
 
 bool is_vtk_label(std::string_view name) {
     return name == "region" || name == "gmsh:physical" || name == "medit:ref" || name == "CellEntityIds";
-}
-
-void take_vtk_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh) {
-    if (nodes.size() < 3) reader.complain("node count", std::to_string(nodes.size()), "at least 3 nodes per polygon");
-    for (std::size_t a = 1; a + 1 < nodes.size(); ++a) {
-        const std::array<Index, 3> triangle{nodes[0], nodes[a], nodes[a + 1]};
-        require_different(triangle, reader);
-        mesh.triangles.push_back(triangle);
-    }
 }
 
 void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
@@ -43,20 +44,23 @@ void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
         const std::span<const Index> nodes =
             std::span(cells.node).subspan(cells.offset[c], cells.offset[c + 1] - cells.offset[c]);
         const std::int64_t type = cells.type[c];
-        if (type == 24 || type == 71 || type == 78)
-            reader.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order",
-                            "type 10, a linear tetrahedron", "export the mesh with linear elements");
-        if (type == 10) {
-            if (nodes.size() != 4) reader.complain("node count", std::to_string(nodes.size()), "4 for a tetrahedron");
-            const std::array<Index, 4> t{nodes[0], nodes[1], nodes[2], nodes[3]};
-            require_different(t, reader);
-            mesh.tetrahedra.push_back(t);
+        if (is_tetrahedron(type)) {
+            if (nodes.size() != (type == 10 ? 4 : 10))
+                reader.complain("node count", std::to_string(nodes.size()),
+                                type == 10 ? "4 for a tetrahedron" : "10 for a tetrahedron of second order",
+                                "tetrahedra of higher order are not supported");
+            take_tetrahedron(nodes, reader, mesh);
             if (!cells.label.empty()) mesh.label.push_back(cells.label[c]);
             for (const auto& [name, of_cell] : cells.vectors)
                 if (of_cell.size() == cells.type.size()) mesh.vectors[name].push_back(of_cell[c]);
-        } else if (type == 5) {
-            if (nodes.size() != 3) reader.complain("node count", std::to_string(nodes.size()), "3 for a triangle");
-            take_vtk_polygon(nodes, reader, mesh);
+        } else if (type == 78) {
+            reader.complain("type", "78, a Bezier tetrahedron", "type 10, 24 or 71, a tetrahedron of Lagrange type",
+                            "export the mesh with linear elements");
+        } else if (is_triangle(type, nodes.size())) {
+            if (nodes.size() != (type == 5 ? 3 : 6))
+                reader.complain("node count", std::to_string(nodes.size()),
+                                type == 5 ? "3 for a triangle" : "6 for a triangle of second order");
+            take_triangle(nodes, reader, mesh);
         } else {
             const auto* const kind = std::ranges::find(other_kinds, type, &CellKind::type);
             const bool known = kind != std::end(other_kinds);
@@ -89,7 +93,7 @@ void take_vtk_sets(const VtkCells& cells, RawMesh& mesh) {
                             [](MeshSet& set, std::size_t row) { set.nodes.push_back(static_cast<Index>(row)); });
     std::vector<Index> number;  // by cell: number of the tetrahedron
     Index tetrahedra = 0;
-    for (const std::int64_t type : cells.type) number.push_back(type == 10 ? tetrahedra++ : no_index);
+    for (const std::int64_t type : cells.type) number.push_back(is_tetrahedron(type) ? tetrahedra++ : no_index);
     for (const VtkArray& array : cells.cell_data)
         if (array.value.size() == cells.type.size())
             for_each_member(array, mesh, [&](MeshSet& set, std::size_t cell) {
@@ -97,7 +101,7 @@ void take_vtk_sets(const VtkCells& cells, RawMesh& mesh) {
                     std::span(cells.node).subspan(cells.offset[cell], cells.offset[cell + 1] - cells.offset[cell]);
                 if (number[cell] != no_index)
                     set.tetrahedra.push_back(number[cell]);
-                else if (cells.type[cell] == 5)
+                else if (is_triangle(cells.type[cell], nodes.size()))
                     set.faces.push_back({nodes[0], nodes[1], nodes[2]});
                 else
                     set.nodes.insert(set.nodes.end(), nodes.begin(), nodes.end());

@@ -29,9 +29,6 @@ struct VtkCells {
 /// True if cell data of this name are labels.
 bool is_vtk_label(std::string_view name);
 
-/// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
-void take_vtk_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
-
 /// Adds the sets that the data arrays describe to a mesh that already has its tetrahedra. See mesh::read for the rules.
 void take_vtk_sets(const VtkCells& cells, RawMesh& mesh);
 

@@ -435,7 +435,7 @@ class Mesh:
 
 
 def read_surface(path: Path) -> SurfaceMesh:
-    """Reads a triangle surface from a file in one of the formats of Mesh.read(), or from Wavefront .obj or .stl. The
+    """Reads a triangle surface from a file in one of the formats of Mesh.read(), or from .obj, .ply or .stl. The
     surface of a tetrahedral mesh is its boundary."""
     (nodes, triangles), notes = _core.read_surface(path_text(path, "path"))
     _warn(notes)

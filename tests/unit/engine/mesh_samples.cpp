@@ -7,39 +7,10 @@
 #include <cstring>
 #include <sstream>
 
+#include "mesh_sample_text.h"
 #include "skerry/error.h"
 
 namespace skerry::test {
-namespace {
-
-template <class T>
-void put(std::string& file, T value, bool swap) {
-    char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    if (swap) std::reverse(bytes, bytes + sizeof(T));
-    file.append(bytes, sizeof(T));
-}
-
-std::string text(const Vec3& x) {
-    std::ostringstream out;
-    out.precision(17);
-    out << x[0] << ' ' << x[1] << ' ' << x[2];
-    return out.str();
-}
-
-template <std::size_t N>
-std::string text(const std::array<Index, N>& nodes, int first_number) {
-    std::string line;
-    for (const Index n : nodes) line += ' ' + std::to_string(n + first_number);
-    return line;
-}
-
-int label_of(const Mesh& mesh, std::size_t tetrahedron) {
-    return mesh.label.empty() ? 1 : mesh.label[tetrahedron];
-}
-
-}  // namespace
-
 std::string gmsh1_file(const Mesh& mesh) {
     std::ostringstream out;
     out << "$NOD\n" << mesh.nodes.size() + 1 << '\n';
@@ -374,6 +345,34 @@ std::string obj_file(const SurfaceMesh& surface) {
     return file;
 }
 
+std::string ply_file(const SurfaceMesh& surface, Bytes bytes) {
+    const bool swap = bytes == Bytes::foreign, little = (std::endian::native == std::endian::little) != swap;
+    std::string file = "ply\nformat ";
+    file += bytes == Bytes::text ? "ascii" : little ? "binary_little_endian" : "binary_big_endian";
+    file += " 1.0\ncomment made by hand\nelement vertex " + std::to_string(surface.nodes.size()) +
+            "\nproperty double x\nproperty float64 y\nproperty float nx\nproperty double z\nproperty uchar red\n"
+            "element camera 1\nproperty list ushort int16 views\nelement face " +
+            std::to_string(surface.triangles.size()) +
+            "\nproperty uchar group\nproperty list uchar int vertex_indices\nend_header\n";
+    const auto number = [&]<class T>(T value) {
+        if (bytes == Bytes::text)
+            file += std::to_string(value) + ' ';
+        else
+            put(file, value, swap);
+    };
+    const auto end_row = [&] { file += bytes == Bytes::text ? "\n" : ""; };
+    for (const Vec3& x : surface.nodes) {
+        number(x[0]), number(x[1]), number(0.5f), number(x[2]), number(std::uint8_t{200}), end_row();
+    }
+    number(std::uint16_t{2}), number(std::int16_t{7}), number(std::int16_t{-8}), end_row();
+    for (const std::array<Index, 3>& t : surface.triangles) {
+        number(std::uint8_t{1}), number(std::uint8_t{3});
+        for (const Index n : t) number(static_cast<std::int32_t>(n));
+        end_row();
+    }
+    return file;
+}
+
 std::string stl_file(const SurfaceMesh& surface, bool binary) {
     constexpr bool swap = std::endian::native == std::endian::big;
     std::string file = binary ? "solid in name only" : "solid body\n";
@@ -421,7 +420,15 @@ std::vector<SampleFile> all_sample_files(const Mesh& mesh) {
             {"zero.ele", ele_file(mesh, 0)},
             {"one.node", node_file(mesh, 1)},
             {"one.ele", ele_file(mesh, 1)},
+            {"a.mesh", medit_file(mesh, 0, Bytes::text)},
+            {"1.meshb", medit_file(mesh, 2, Bytes::native)},
+            {"3.meshb", medit_file(mesh, 3, Bytes::foreign)},
+            {"4.meshb", medit_file(mesh, 4, Bytes::native)},
+            {"a.inp", abaqus_file(mesh)},
             {"a.obj", obj_file(surface)},
+            {"a.ply", ply_file(surface, Bytes::text)},
+            {"b.ply", ply_file(surface, Bytes::native)},
+            {"c.ply", ply_file(surface, Bytes::foreign)},
             {"a.stl", stl_file(surface, false)},
             {"b.stl", stl_file(surface, true)}};
 }

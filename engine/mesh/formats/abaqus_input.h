@@ -1,0 +1,33 @@
+// The keyword lines and data lines of an Abaqus input file.
+#pragma once
+
+#include <functional>
+
+#include "engine/mesh/formats/raw_mesh.h"
+
+namespace skerry::mesh {
+
+/// A keyword line such as "*ELEMENT, TYPE=C3D4, ELSET=BEAM", and the position of its data lines.
+struct AbaqusBlock {
+    std::string keyword;                           // upper case, without the asterisk
+    std::map<std::string, std::string> parameter;  // by its name in upper case; empty for a parameter without a value
+    std::size_t place = 0;                         // position of the keyword line in the file [bytes]
+    std::size_t first = 0, end = 0;                // positions of the data lines in the file [bytes]
+
+    bool has(const char* name) const { return parameter.contains(name); }
+    /// Value of a parameter; empty if it is missing.
+    std::string value(const char* name) const;
+};
+
+/// Reads all keyword lines.
+std::vector<AbaqusBlock> abaqus_blocks(FileReader& reader);
+
+/// Calls `take` with the fields of each row of a block. A row of fewer than `fields` fields continues in the next line
+/// if its line ends with a comma. Error messages name the block and the last line of the row.
+void for_each_abaqus_row(FileReader& reader, const AbaqusBlock& block, std::size_t fields,
+                         const std::function<void(const std::vector<std::string>&)>& take);
+
+/// Continues at the keyword line of a block, for an error message about it.
+void go_to_keyword(FileReader& reader, const AbaqusBlock& block);
+
+}  // namespace skerry::mesh

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <utility>
+
+#include "engine/mesh/formats/raw_mesh.h"
+
+namespace skerry::mesh {
+namespace {
+
+/// Nodes in the middle of edges, by the corners of the edge. The key holds the lower corner in its upper 32 bits.
+using MiddleNodes = std::unordered_map<std::uint64_t, Index>;
+
+std::uint64_t edge_key(Index a, Index b) {
+    const auto [lower, upper] = std::minmax(a, b);
+    return static_cast<std::uint64_t>(lower) << 32 | static_cast<std::uint64_t>(upper);
+}
+
+/// Adds the eight parts of a second-order tetrahedron: one at each corner, and four around the shortest diagonal of the
+/// octahedron between the nodes in the middle of the edges (S. Zhang, "Successive subdivisions of tetrahedra and
+/// multigrid methods on tetrahedral meshes", 1995).
+void add_parts(const std::vector<Vec3>& nodes, const std::array<Index, 4>& corner, const std::array<Index, 6>& middle,
+               std::vector<std::array<Index, 4>>& parts) {
+    const auto& [m01, m12, m20, m03, m13, m23] = middle;
+    const std::array<Index, 4> at_corners[] = {
+        {corner[0], m01, m20, m03}, {corner[1], m12, m01, m13}, {corner[2], m20, m12, m23}, {corner[3], m03, m23, m13}};
+    parts.insert(parts.end(), std::begin(at_corners), std::end(at_corners));
+    struct Diagonal {
+        Index first, last;
+        std::array<Index, 4> around;  // positive tetrahedra have both ends and two successive nodes of this ring
+    };
+    const std::array<Diagonal, 3> diagonals{
+        {{m01, m23, {m12, m20, m03, m13}}, {m12, m03, {m01, m13, m23, m20}}, {m20, m13, {m01, m12, m23, m03}}}};
+    const Diagonal& shortest = *std::ranges::min_element(diagonals, {}, [&](const Diagonal& d) {
+        return (nodes[static_cast<std::size_t>(d.first)] - nodes[static_cast<std::size_t>(d.last)]).squaredNorm();
+    });
+    for (std::size_t i = 0; i < 4; ++i)
+        parts.push_back({shortest.first, shortest.last, shortest.around[i], shortest.around[(i + 1) % 4]});
+}
+
+void add_parts(const std::array<Index, 3>& corner, const std::array<Index, 3>& middle,
+               std::vector<std::array<Index, 3>>& parts) {
+    const auto& [m01, m12, m20] = middle;
+    const std::array<Index, 3> all[] = {
+        {corner[0], m01, m20}, {corner[1], m12, m01}, {corner[2], m20, m12}, {m01, m12, m20}};
+    parts.insert(parts.end(), std::begin(all), std::end(all));
+}
+
+/// Divides the faces of sets that are faces of second-order tetrahedra.
+void divide_faces(const RawMesh& mesh, std::map<std::string, MeshSet>& sets) {
+    if (std::ranges::all_of(sets, [](const auto& item) { return item.second.faces.empty(); })) return;
+    MiddleNodes middle_of;
+    for (std::size_t t = 0; t < mesh.middle.size(); ++t)
+        for (std::size_t e = 0; e < 6 && mesh.middle[t][0] != no_index; ++e)
+            middle_of[edge_key(mesh.tetrahedra[t][second_order_edges[e][0]],
+                               mesh.tetrahedra[t][second_order_edges[e][1]])] = mesh.middle[t][e];
+    for (auto& [name, set] : sets) {
+        std::vector<std::array<Index, 3>> parts;
+        for (const std::array<Index, 3>& face : set.faces) {
+            std::array<Index, 3> middle{no_index, no_index, no_index};
+            for (std::size_t e = 0; e < 3; ++e)
+                if (const auto found = middle_of.find(edge_key(face[e], face[(e + 1) % 3])); found != middle_of.end())
+                    middle[e] = found->second;
+            if (std::ranges::count(middle, no_index) == 0)
+                add_parts(face, middle, parts);
+            else
+                parts.push_back(face);
+        }
+        set.faces = std::move(parts);
+    }
+}
+
+void divide_tetrahedra(RawMesh& mesh) {
+    divide_faces(mesh, mesh.sets);
+    std::vector<std::array<Index, 4>> parts;
+    std::vector<Index> first;  // number of the first part of each tetrahedron, then the number of all parts
+    mesh.middle.resize(mesh.tetrahedra.size(), linear_tetrahedron);
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+        first.push_back(static_cast<Index>(parts.size()));
+        if (mesh.middle[t] == linear_tetrahedron)
+            parts.push_back(mesh.tetrahedra[t]);
+        else
+            add_parts(mesh.nodes, mesh.tetrahedra[t], mesh.middle[t], parts);
+    }
+    first.push_back(static_cast<Index>(parts.size()));
+    const auto count_of = [&](std::size_t t) { return static_cast<std::size_t>(first[t + 1] - first[t]); };
+    const auto repeat = [&](auto& column) {
+        std::remove_reference_t<decltype(column)> repeated;
+        for (std::size_t t = 0; t < column.size(); ++t) repeated.insert(repeated.end(), count_of(t), column[t]);
+        column = std::move(repeated);
+    };
+    repeat(mesh.label);
+    for (auto& [name, vectors] : mesh.vectors) repeat(vectors);
+    for (auto& [name, set] : mesh.sets) {
+        std::vector<Index> members;
+        for (const Index t : set.tetrahedra)
+            for (Index part = first[static_cast<std::size_t>(t)]; part < first[static_cast<std::size_t>(t) + 1]; ++part)
+                members.push_back(part);
+        set.tetrahedra = std::move(members);
+    }
+    mesh.tetrahedra = std::move(parts);
+    mesh.middle.clear();
+}
+
+void divide_triangles(RawMesh& mesh) {
+    std::vector<std::array<Index, 3>> parts;
+    mesh.triangle_middle.resize(mesh.triangles.size(), linear_triangle);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (mesh.triangle_middle[t] == linear_triangle)
+            parts.push_back(mesh.triangles[t]);
+        else
+            add_parts(mesh.triangles[t], mesh.triangle_middle[t], parts);
+    }
+    mesh.triangles = std::move(parts);
+    mesh.triangle_middle.clear();
+}
+
+}  // namespace
+
+void divide_second_order(RawMesh& mesh) {
+    const std::size_t tetrahedra =
+        mesh.middle.size() - static_cast<std::size_t>(std::ranges::count(mesh.middle, linear_tetrahedron));
+    const std::size_t triangles = mesh.triangle_middle.size() -
+                                  static_cast<std::size_t>(std::ranges::count(mesh.triangle_middle, linear_triangle));
+    if (tetrahedra > 0) divide_tetrahedra(mesh);
+    if (triangles > 0) divide_triangles(mesh);
+    if (tetrahedra > 0)
+        mesh.notes.push_back(std::to_string(tetrahedra) +
+                             " tetrahedra of second order were divided into eight linear ones each");
+    else if (triangles > 0 && mesh.tetrahedra.empty())
+        mesh.notes.push_back(std::to_string(triangles) +
+                             " triangles of second order were divided into four linear ones each");
+}
+
+}  // namespace skerry::mesh
