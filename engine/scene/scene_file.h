@@ -125,6 +125,12 @@ struct RepeatEntry {
     Real jitter = 0;              // [m]
     int seed = 1;
 };
+/// A surface that is drawn in place of a body.
+struct VisualEntry {
+    FilePath file;
+    std::optional<Real> scale;
+    Place place;
+};
 struct BodyShapeEntry {
     std::optional<Sphere> sphere;
     std::optional<Capsule> capsule;
@@ -153,6 +159,7 @@ struct BodyEntry {
     ElementKind element = BodySettings{}.element;
     OneOrMore<PinEntry> pin;
     std::vector<SurfaceEntry> surfaces;
+    std::optional<VisualEntry> visual;
     Place place;
 };
 
