@@ -66,7 +66,10 @@ public:
     }
 
     FilledMesh run() {
-        for (const SurfaceFault& fault : result_.surface.faults) result_.notes.push_back(fault_text(fault));
+        const bool nested = shells_.has_regions() && !crossing();
+        for (const SurfaceFault& fault : result_.surface.faults)
+            if (!nested || fault.kind != SurfaceFaultKind::doubled_volumes)  // the notes on regions say this
+                result_.notes.push_back(fault_text(fault));
         const bool clean = result_.surface.can_be_filled();
         if (!clean || !keeps_triangles() || !fill_exactly()) fill_within_tolerance(clean);
         name_shells();

@@ -1,3 +1,7 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -30,10 +34,28 @@ std::filesystem::path cache_file(const std::filesystem::path& file, const FillSe
     return file.string() + text;
 }
 
+/// Lock on a file, which other processes wait for. The system releases it when this process ends.
+class FileLock {
+public:
+    explicit FileLock(const std::filesystem::path& file) : descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+        if (descriptor_ >= 0) flock(descriptor_, LOCK_EX);
+    }
+    ~FileLock() {
+        if (descriptor_ >= 0) close(descriptor_);
+    }
+    FileLock(const FileLock&) = delete;
+    FileLock& operator=(const FileLock&) = delete;
+
+private:
+    int descriptor_;
+};
+
 }  // namespace
 
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings, const FillProgress& progress,
                  std::vector<std::string>* notes) {
+    // The cases of a sweep fill a surface once: the others wait for the first one.
+    const FileLock lock(file);
     const std::filesystem::path cache = cache_file(file, settings);
     if (std::filesystem::exists(cache)) try {
             return read(cache.string());

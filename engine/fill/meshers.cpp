@@ -24,6 +24,7 @@ except ImportError as error:
     sys.exit(print(error, file=sys.stderr) or 3)
 nodes, triangles, edge = sys.stdin.readline().split()
 nodes, triangles = int(nodes), int(triangles)
+os.chdir("/proc")  # no files can be created there; fTetWild would write its input to a file
 numbers = numpy.array(sys.stdin.read().split())
 points = numbers[:3 * nodes].astype(float).reshape(-1, 3)
 faces = numbers[3 * nodes:].astype(numpy.int32).reshape(-1, 3)

@@ -56,6 +56,14 @@ void read_gmsh_bytes(FileBytes bytes) {
     use_file("mesh.msh", bytes);
 }
 
+void read_abaqus_bytes(FileBytes bytes) {
+    use_file("mesh.inp", bytes);
+}
+
+void read_medit_bytes(FileBytes bytes) {
+    use_file("mesh.mesh", bytes);
+}
+
 void read_vtk_bytes(FileBytes bytes) {
     use_file("mesh.vtk", bytes);
 }

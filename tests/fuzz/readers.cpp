@@ -5,7 +5,9 @@
 namespace skerry::test {
 
 std::span<const FileReaderCase> all_readers() {
-    static constexpr std::array<FileReaderCase, 14> readers{{{"gmsh", read_gmsh_bytes},
+    static constexpr std::array<FileReaderCase, 16> readers{{{"gmsh", read_gmsh_bytes},
+                                                             {"abaqus", read_abaqus_bytes},
+                                                             {"medit", read_medit_bytes},
                                                              {"vtk", read_vtk_bytes},
                                                              {"vtu", read_vtu_bytes},
                                                              {"obj", read_obj_bytes},

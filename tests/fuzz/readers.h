@@ -22,9 +22,9 @@ struct FileReaderCase {
     std::string_view name;  // also the name of its folder of found cases
     ReadBytes read;
 };
-/// gmsh, vtk, vtu, obj, ply, stl, tetgen (a .node and a .ele), body (a .vtk that is put into a world), collider (an
-/// .obj), scene, problem (FCLIB as bytes of HDF5), problem_values (FCLIB in valid HDF5 files with changed values),
-/// saved (World::from_bytes), saved_values (valid saved worlds with changed values, moved by a step).
+/// gmsh, abaqus, medit, vtk, vtu, obj, ply, stl, tetgen (a .node and a .ele), body (a .vtk that is put into a world),
+/// collider (an .obj), scene, problem (FCLIB as bytes of HDF5), problem_values (FCLIB in valid HDF5 files with changed
+/// values), saved (World::from_bytes), saved_values (valid saved worlds with changed values, moved by a step).
 std::span<const FileReaderCase> all_readers();
 
 /// Ends the program if a value that was read is not valid.
@@ -36,6 +36,8 @@ inline void expect_valid(bool good, const char* what) {
 
 // Readers by their names in all_readers.
 void read_gmsh_bytes(FileBytes bytes);
+void read_abaqus_bytes(FileBytes bytes);
+void read_medit_bytes(FileBytes bytes);
 void read_vtk_bytes(FileBytes bytes);
 void read_vtu_bytes(FileBytes bytes);
 void read_obj_bytes(FileBytes bytes);

@@ -22,7 +22,10 @@ void put(const fs::path& file, const std::string& content) {
 void put_meshes(const fs::path& folder, const std::string& name, const Mesh& mesh) {
     for (const SampleFile& file : all_sample_files(mesh)) {
         const std::string ending = fs::path(file.name).extension().string();
-        const std::string reader = ending == ".msh" ? "gmsh" : ending.substr(1);
+        const std::string reader = ending == ".msh"              ? "gmsh"
+                                   : ending == ".inp"            ? "abaqus"
+                                   : ending.starts_with(".mesh") ? "medit"
+                                                                 : ending.substr(1);
         if (ending != ".node" && ending != ".ele") put(folder / reader / (name + file.name), file.content);
         if (ending == ".vtk") put(folder / "body" / (name + file.name), file.content);
         if (ending == ".obj") put(folder / "collider" / (name + file.name), file.content);

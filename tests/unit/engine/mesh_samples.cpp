@@ -7,39 +7,10 @@
 #include <cstring>
 #include <sstream>
 
+#include "mesh_sample_text.h"
 #include "skerry/error.h"
 
 namespace skerry::test {
-namespace {
-
-template <class T>
-void put(std::string& file, T value, bool swap) {
-    char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    if (swap) std::reverse(bytes, bytes + sizeof(T));
-    file.append(bytes, sizeof(T));
-}
-
-std::string text(const Vec3& x) {
-    std::ostringstream out;
-    out.precision(17);
-    out << x[0] << ' ' << x[1] << ' ' << x[2];
-    return out.str();
-}
-
-template <std::size_t N>
-std::string text(const std::array<Index, N>& nodes, int first_number) {
-    std::string line;
-    for (const Index n : nodes) line += ' ' + std::to_string(n + first_number);
-    return line;
-}
-
-int label_of(const Mesh& mesh, std::size_t tetrahedron) {
-    return mesh.label.empty() ? 1 : mesh.label[tetrahedron];
-}
-
-}  // namespace
-
 std::string gmsh1_file(const Mesh& mesh) {
     std::ostringstream out;
     out << "$NOD\n" << mesh.nodes.size() + 1 << '\n';
@@ -449,6 +420,11 @@ std::vector<SampleFile> all_sample_files(const Mesh& mesh) {
             {"zero.ele", ele_file(mesh, 0)},
             {"one.node", node_file(mesh, 1)},
             {"one.ele", ele_file(mesh, 1)},
+            {"a.mesh", medit_file(mesh, 0, Bytes::text)},
+            {"1.meshb", medit_file(mesh, 2, Bytes::native)},
+            {"3.meshb", medit_file(mesh, 3, Bytes::foreign)},
+            {"4.meshb", medit_file(mesh, 4, Bytes::native)},
+            {"a.inp", abaqus_file(mesh)},
             {"a.obj", obj_file(surface)},
             {"a.ply", ply_file(surface, Bytes::text)},
             {"b.ply", ply_file(surface, Bytes::native)},

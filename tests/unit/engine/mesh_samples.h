@@ -37,6 +37,11 @@ std::string vtu_file(const Mesh& mesh, const VtuForm& form);
 std::string node_file(const Mesh& mesh, int first_number);
 std::string ele_file(const Mesh& mesh, int first_number);
 
+/// Medit file with an unused vertex, a triangle and a section that readers skip. `version`: of a binary file, 1 to 4.
+std::string medit_file(const Mesh& mesh, int version, Bytes bytes);
+/// Abaqus file with an unused node and a shell. The material of a tetrahedron with the label N is MN.
+std::string abaqus_file(const Mesh& mesh);
+
 std::string obj_file(const SurfaceMesh& surface);
 /// PLY file with a normal and a colour beside each position, and with an element that readers skip.
 std::string ply_file(const SurfaceMesh& surface, Bytes bytes);

@@ -1,0 +1,107 @@
+"""skerry fill, and surfaces as meshes of scenes, from outside."""
+import json
+import os
+import pathlib
+import sys
+import unittest
+
+from program_case import PROGRAM, SCENE, ProgramCase
+
+CUBE = """v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 1 1 1
+v 0 1 1
+f 1 4 3 2
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+"""
+OPEN_CUBE = "\n".join(CUBE.splitlines()[:-1]) + "\n"
+
+
+class FillTest(ProgramCase):
+    def setUp(self):
+        super().setUp()
+        self.cube = self.write("cube.obj", CUBE)
+        os.environ.pop("SKERRY_FILL_PYTHON", None)
+
+    def stub(self, commands):
+        """A program in place of the Python interpreter of fTetWild."""
+        program = self.write("stub", f"#!/bin/sh\n{commands}\n")
+        program.chmod(0o700)
+        os.environ["SKERRY_FILL_PYTHON"] = str(program)
+
+    def need_netgen(self):
+        if not (pathlib.Path(PROGRAM).parent / "skerry-fill").exists():
+            self.skipTest("skerry-fill is not built: it needs libnglib-dev")
+
+    def test_a_filled_surface_runs_in_the_scene_that_is_written_beside_it(self):
+        self.need_netgen()
+        out, scene = self.folder / "meshes" / "cube.msh", self.folder / "scenes" / "drop.json"
+        found = json.loads(self.skerry("fill", self.cube, out, "--scene", scene, "--material", "silicone_ecoflex_30",
+                                       "--json").stdout)
+        self.assertEqual((found["mesher"], found["exact"]), ("Netgen", True))
+        self.assertAlmostEqual(found["mesh"]["volume"], 1, places=12)
+        self.assertEqual(json.loads(self.skerry("inspect", out, "--json").stdout)["volume"], found["mesh"]["volume"])
+        facts = json.loads(self.skerry("inspect", scene, "--json").stdout)
+        self.assertEqual(facts["problems"], [])
+        self.assertEqual(facts["contacts_at_start"], 0)
+        # The engine rounds the position to three digits upwards.
+        self.assertAlmostEqual(json.loads(scene.read_text())["bodies"][0]["position"][2], 0.5, places=2)
+        self.skerry("run", scene, "--seconds", 0.05)
+        said = self.skerry("fill", self.cube, out).stdout
+        for part in ("Netgen", "volume", "the surface is unchanged", "quality", "stable with", "written"):
+            self.assertIn(part, said)
+
+    def test_a_surface_that_cannot_be_filled_leaves_no_file(self):
+        surface, out = self.write("open.obj", OPEN_CUBE), self.folder / "out.msh"
+        arguments = ["fill", surface, out, "--scene", self.folder / "out.json"]
+        self.stub("exec sleep 100")
+        self.assert_refused(*arguments, "--time-limit", 0.1, said=["open.obj", "time limit of 0.1 s"])
+        self.stub("kill -SEGV $$")
+        self.assert_refused(*arguments, said=["open.obj", "crashed"])
+        self.stub("echo 3 >&3")
+        self.assert_refused(*arguments, said=["not a valid mesh"])
+        self.stub("exit 3")
+        self.assert_refused(*arguments, said=["pip install wildmeshing"])
+        self.assert_refused(*arguments, "--tolerance", 0, said=["tolerance above 0"])
+
+    def test_wrong_arguments_are_refused(self):
+        self.assert_refused("fill", self.cube, self.folder / "out.vtk", said=["out.vtk", ".msh"])
+        self.assert_refused("fill", self.folder / "none.obj", self.folder / "out.msh", said=["none.obj"])
+        self.assert_refused("fill", self.cube, self.folder / "out.msh", "--material", "cheese", said=["cheese"])
+        self.assert_refused("fill", self.cube, self.cube.with_suffix(".msh"), "--scene",
+                            self.cube.with_suffix(".msh"), said=["--scene"])
+        self.skerry("fill", self.cube, code=2)
+        self.skerry("fill", self.cube, self.folder / "out.msh", "--edge", 0, code=2)
+
+    def scene_of(self, **mesh):
+        body = {"mesh": {"surface": "cube.obj", **mesh}, "material": "rubber", "positions": [[0, 0, 2], [5, 0, 2]]}
+        return self.write("surface.json", {**SCENE, "bodies": [body], "probes": []})
+
+    def test_a_scene_fills_a_surface_and_keeps_the_mesh_beside_it(self):
+        self.need_netgen()
+        facts = json.loads(self.skerry("inspect", self.scene_of(scale=0.1), "--json").stdout)
+        self.assertAlmostEqual(facts["body_kinds"][0]["mesh"]["volume"], 1e-3, places=12)
+        cache = list(self.folder.glob("cube.obj.*.msh"))
+        self.assertEqual(len(cache), 1)
+        changed = cache[0].stat().st_mtime_ns
+        self.skerry("run", self.scene_of(), "--seconds", 0.01)
+        self.assertEqual(cache[0].stat().st_mtime_ns, changed)
+        self.assertEqual(list(self.folder.glob("cube.obj.*.msh")), cache)
+
+    def test_keys_of_a_surface_need_a_surface(self):
+        box = {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}, "edge": 0.1}
+        body = {"mesh": box, "material": "rubber", "position": [0, 0, 2]}
+        self.assert_refused("inspect", self.write("edge.json", {**SCENE, "bodies": [body], "probes": []}),
+                            said=["bodies[0].mesh", '"surface"'])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
