@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "skerry/error.h"
 #include "systems/dynamics/elements/element_energy.h"
 
 namespace skerry {
@@ -90,6 +91,17 @@ std::vector<Vec3> DrawnSurface::vectors(const BodyFrame& body, std::span<const V
 
 std::vector<Real> DrawnSurface::values(const BodyFrame& body, std::span<const Real> of_nodes) const {
     return visual_ != nullptr ? visual_values(*body.visual, of_nodes) : gathered(node_, of_nodes);
+}
+
+void require_positive(const std::filesystem::path& file, const char* setting, Real value) {
+    if (value > 0 && std::isfinite(value)) return;
+    Complaint{.file = file.string(),
+              .object = "output",
+              .field = setting,
+              .found = std::to_string(value),
+              .expected = "a number above 0",
+              .hint = {}}
+        .raise();
 }
 
 std::vector<Vec3f> relative_to(const Vec3& origin, std::span<const Vec3> points) {

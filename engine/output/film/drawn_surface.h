@@ -31,6 +31,9 @@ private:
     std::vector<std::array<Index, 3>> triangles_;
 };
 
+/// Throws SceneError that names the file and the setting, unless the value of the setting is a positive number.
+void require_positive(const std::filesystem::path& file, const char* setting, Real value);
+
 using Vec3f = std::array<float, 3>;
 
 /// Converts points to floats relative to an origin, so that they are exact however far the body is from the origin of

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -23,12 +22,9 @@ namespace {
 
 /// Throws unless a film with these settings can be written to `file`. Returns the file.
 const std::filesystem::path& checked(const std::filesystem::path& file, const FilmSettings& settings) {
-    const auto require_positive = [&](const char* field, Real value) {
-        if (!(value > 0 && std::isfinite(value))) refuse_film(file, field, std::to_string(value), "a number above 0");
-    };
     require_extension(file, {".usd", ".usdc"});
-    require_positive("frame_step", settings.frame_step);
-    if (settings.color_max) require_positive("color_max", *settings.color_max);
+    require_positive(file, "frame_step", settings.frame_step);
+    if (settings.color_max) require_positive(file, "color_max", *settings.color_max);
     return file;
 }
 

@@ -23,7 +23,7 @@ namespace skerry {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using GltfJson = nlohmann::ordered_json;
 
 // Numbers of the specification of glTF.
 constexpr int type_float = 5126, type_uint32 = 5125, target_vertices = 34962, target_indices = 34963;
@@ -63,11 +63,11 @@ public:
         json_ = {{"asset", {{"version", "2.0"}, {"generator", "Skerry"}}},
                  {"scene", 0},
                  {"scenes", {{{"nodes", {0}}}}},
-                 {"nodes", Json::array({{{"name", "World"}, {"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}}})},
-                 {"meshes", Json::array()},
-                 {"materials", Json::array()},
-                 {"accessors", Json::array()},
-                 {"bufferViews", Json::array()}};
+                 {"nodes", GltfJson::array({{{"name", "World"}, {"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}}})},
+                 {"meshes", GltfJson::array()},
+                 {"materials", GltfJson::array()},
+                 {"accessors", GltfJson::array()},
+                 {"bufferViews", GltfJson::array()}};
     }
 
     void add(const GltfMesh& mesh) {
@@ -82,8 +82,8 @@ public:
 
     void write(const std::filesystem::path& file) {
         pad(binary_, '\0');
-        json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
-        std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+        json_["buffers"] = GltfJson::array({{{"byteLength", binary_.size()}}});
+        std::string text = json_.dump(-1, ' ', false, GltfJson::error_handler_t::replace);
         pad(text, ' ');
         constexpr std::uint32_t magic = 0x46546c67, version = 2, json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
         constexpr std::size_t headers = 12 + 8 + 8;
@@ -107,7 +107,7 @@ private:
     /// Appends bytes to the binary part, and returns the number of the view of these bytes.
     std::size_t view(std::string_view bytes, int target) {
         pad(binary_, '\0');
-        Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes.size()}};
+        GltfJson view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes.size()}};
         if (target != 0) view["target"] = target;
         binary_.append(bytes);
         json_["bufferViews"].push_back(std::move(view));
@@ -125,7 +125,7 @@ private:
         return json_["accessors"].size() - 1;
     }
 
-    Json primitives(const GltfMesh& mesh) {
+    GltfJson primitives(const GltfMesh& mesh) {
         // Vertices of glTF have one texture point each. A vertex with several is written several times.
         const bool textured = mesh.visual != nullptr && !mesh.visual->texture_corners.empty();
         std::map<std::pair<Index, Index>, std::uint32_t> numbers;
@@ -138,14 +138,14 @@ private:
                 if (is_new) vertices.push_back(vertex);
                 corners[material_of(mesh, t)].push_back(place->second);
             }
-        if (vertices.empty()) return Json::array();
+        if (vertices.empty()) return GltfJson::array();
         const auto expanded = [&](const auto& values) {
             std::decay_t<decltype(values)> all;
             for (const auto& [vertex, texture] : vertices) all.push_back(values[static_cast<std::size_t>(vertex)]);
             return all;
         };
         const std::vector<Vec3f> points = expanded(mesh.points);
-        Json attributes = {{"POSITION", array(points, "VEC3", type_float, target_vertices)},
+        GltfJson attributes = {{"POSITION", array(points, "VEC3", type_float, target_vertices)},
                            {"NORMAL", array(expanded(vertex_normals(mesh)), "VEC3", type_float, target_vertices)}};
         Vec3f lower = points.front(), upper = lower;
         for (const Vec3f& point : points)
@@ -153,7 +153,7 @@ private:
                 lower[axis] = std::min(lower[axis], point[axis]);
                 upper[axis] = std::max(upper[axis], point[axis]);
             }
-        Json& accessor = json_["accessors"][attributes["POSITION"].get<std::size_t>()];
+        GltfJson& accessor = json_["accessors"][attributes["POSITION"].get<std::size_t>()];
         accessor["min"] = lower;
         accessor["max"] = upper;
         if (textured) {
@@ -173,7 +173,7 @@ private:
             attributes["COLOR_0"] = array(colors, "VEC3", type_float, target_vertices);
             attributes[attribute_name()] = array(values, "SCALAR", type_float, target_vertices);
         }
-        Json all = Json::array();
+        GltfJson all = GltfJson::array();
         for (const auto& [material, indices] : corners)
             all.push_back({{"attributes", attributes},
                            {"indices", array(indices, "SCALAR", type_uint32, target_indices)},
@@ -201,12 +201,12 @@ private:
         const auto known = std::ranges::find(materials_, shown);
         if (known != materials_.end()) return static_cast<std::size_t>(known - materials_.begin());
         const auto& [r, g, b] = shown.color;
-        Json surface = {{"baseColorFactor", {r, g, b, shown.opacity}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}};
+        GltfJson surface = {{"baseColorFactor", {r, g, b, shown.opacity}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}};
         if (!shown.texture.empty()) {
             surface["baseColorTexture"] = {{"index", texture_number(shown.texture)}};
             surface["baseColorFactor"] = {1, 1, 1, shown.opacity};
         }
-        Json entry = {{"name", shown.name}, {"pbrMetallicRoughness", surface}};
+        GltfJson entry = {{"name", shown.name}, {"pbrMetallicRoughness", surface}};
         if (shown.opacity < 1) entry["alphaMode"] = "BLEND";
         json_["materials"].push_back(std::move(entry));
         materials_.push_back(std::move(shown));
@@ -225,7 +225,7 @@ private:
 
     FilmColor color_;
     Real top_;  // value at the upper end of the colours
-    Json json_;
+    GltfJson json_;
     std::string binary_;
     std::vector<VisualMaterial> materials_;
 };
@@ -234,6 +234,7 @@ private:
 
 void write_gltf(const World& world, const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max) {
     require_extension(file, {".glb"});
+    if (color_max) require_positive(file, "color_max", *color_max);
     const Frame frame = collect_frame(world, color == FilmColor::stress);
     std::vector<std::vector<Real>> quantity(frame.bodies.size());
     if (color != FilmColor::none) quantity = quantity_of_nodes(frame, color);

@@ -16,12 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._arrays import Reals, path_text, seconds
+from ._arrays import Reals, name_text, path_text, real, seconds
 from ._errors import scene_error
 
 if TYPE_CHECKING:
     from types import TracebackType
 
+    from ._settings import FilmColor
     from ._world import World
     from ._world.probes import Probe
 
@@ -348,3 +349,30 @@ class WorldOutput:
         finally:
             frames.end()
             writer.close()
+
+    @contextmanager
+    def usd(
+        self, path: Path, *, every: float = 1 / 60, color: FilmColor = "none", color_max: float | None = None
+    ) -> Iterator[None]:
+        """Writes a film in a `with` block, which Blender, Houdini and other programs open: a USD file (.usd or .usdc)
+        with a mesh for each body and each collider. every: time between frames [s]. color: quantity that the vertices
+        show, von Mises stress [Pa], speed [m/s] or contact pressure [Pa]; it is also a number at each vertex.
+        color_max: value at the upper end of the colours, which begin at zero; default: 99 % of the values are below it.
+
+        SceneError: the file cannot be written, or the world went back in time."""
+        world: World = self  # type: ignore[assignment]
+        step = seconds(every, "usd", "every", zero=False)
+        top = None if color_max is None else real(color_max, "color_max")
+        writer = _core.FilmWriter(path_text(path, "path"), step, name_text(color, "color"), top)
+        frames = _Frames(world, step, lambda: writer.add_frame(world._core))
+        try:
+            yield
+        finally:
+            frames.end()
+            writer.close()
+
+    def gltf(self, path: Path, *, color: FilmColor = "none", color_max: float | None = None) -> None:
+        """Writes the present state to a binary glTF file (.glb), with the colours of usd()."""
+        world: World = self  # type: ignore[assignment]
+        top = None if color_max is None else real(color_max, "color_max")
+        _core.write_gltf(world._core, path_text(path, "path"), name_text(color, "color"), top)

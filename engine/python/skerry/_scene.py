@@ -86,6 +86,7 @@ class Scene:
         *,
         csv: Path | None = None,
         page: Path | None = None,
+        usd: Path | None = None,
         vtk: Path | None = None,
         progress: bool = False,
     ) -> Recorder:
@@ -94,7 +95,8 @@ class Scene:
 
         until: time at which the run ends, as with `skerry run --seconds`, default: `seconds` of the scene [s].
         World.run() takes a duration instead. csv: file of the time series, written row by row. page: file of a page
-        that plays the run. vtk: folder of frames for ParaView. progress: writes the time to the standard error output.
+        that plays the run. usd: film of World.usd(). vtk: folder of frames for ParaView. progress: writes the time to
+        the standard error output.
 
         StepError: a step could not be completed; all outputs then end there."""
         world, end = self.world, self.seconds if until is None else seconds(until, "Scene.run", "until")
@@ -102,6 +104,8 @@ class Scene:
             if page is not None:
                 film = outputs.enter_context(world.record(title=self.name, every=self.frame_step))
                 outputs.callback(film.save, page)
+            if usd is not None:
+                outputs.enter_context(world.usd(usd, every=self.frame_step))
             if vtk is not None:
                 name = os.path.basename(os.path.normpath(vtk))
                 outputs.enter_context(

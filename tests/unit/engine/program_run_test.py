@@ -4,6 +4,7 @@ Called as: program_run_test.py PROGRAM SOURCE_FOLDER
 """
 import json
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -242,6 +243,17 @@ class ProgramRunTest(ProgramCase):
         done = self.skerry("run", endless, "--out", out, code=3)
         self.assertIn("none of the outputs can be written", done.stderr)
 
+    def test_a_film_that_finds_no_room_leaves_no_file_and_the_run_goes_on(self):
+        film, probes = self.folder / "film.usd", self.folder / "probes.csv"
+        scene = self.write("probed.json", {**SCENE, "probes": [{"name": "energy", "quantity": "energy"}]})
+        done = subprocess.run([PROGRAM, "run", scene, "--film", film, "--probes", probes], capture_output=True,
+                              text=True, timeout=300, check=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000)))
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("film.usd: output: found the error \"File too large\" while writing", done.stderr)
+        self.assertIn("NOT WRITTEN   --film", done.stdout)
+        self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["drop.json", "probed.json", "probes.csv"])
+
     def test_frames_of_an_earlier_run_make_room_and_nothing_else_does(self):
         out = self.folder / "out"
         self.skerry("run", self.scene, "--out", out, "--quiet")
@@ -294,8 +306,8 @@ class ProgramRunTest(ProgramCase):
 
     def test_an_interrupt_ends_a_run_within_a_frame_that_would_take_hours_and_what_there_is_is_whole(self):
         slow = self.write("slow.json", SLOW)
-        stats, page, out = (self.folder / name for name in ("stats.json", "page.html", "out"))
-        with subprocess.Popen([PROGRAM, "run", slow, "--stats", stats, "--page", page, "--out", out],
+        stats, page, out, film = (self.folder / name for name in ("stats.json", "page.html", "out", "film.usd"))
+        with subprocess.Popen([PROGRAM, "run", slow, "--stats", stats, "--page", page, "--out", out, "--film", film],
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             time.sleep(1.5)
             process.send_signal(signal.SIGINT)
@@ -308,6 +320,7 @@ class ProgramRunTest(ProgramCase):
         self.assertGreater(found["seconds_simulated"], 0)
         self.assertIn("stopped by a signal", stdout)
         self.assertTrue(page.exists())
+        self.assertTrue(film.read_bytes().startswith(b"PXR-USDC"))
         frames = sorted(path.name for path in out.glob("drop_bodies_*.vtu"))
         self.assertEqual(frames, ["drop_bodies_0000.vtu", "drop_bodies_0001.vtu"])
         for frame in frames:

@@ -111,7 +111,7 @@ class ProgramTest(ProgramCase):
     def test_output_that_cannot_be_written_is_refused_before_the_run(self):
         blocked = self.write("file", "") / "inside"
         endless = self.write("endless.json", {**SCENE, "seconds": 1e6})
-        for flag in ("--stats", "--out", "--page", "--trace", "--export-problems"):
+        for flag in ("--stats", "--out", "--page", "--film", "--gltf", "--trace", "--export-problems"):
             self.assert_refused("run", endless, flag, blocked, said=["file", "not a folder"])
         self.assert_refused("run", endless, "--stats", self.folder, said=["a folder"])
         # One bad output among good ones: the good ones do not appear either.
