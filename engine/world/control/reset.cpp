@@ -34,7 +34,8 @@ void forget_impulses(WorldState& world, std::size_t body) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
         if (joints.first[j] != static_cast<Index>(body) && joints.second[j] != static_cast<Index>(body)) continue;
         joints.impulse[j] = joints.moment[j] = Vec3::Zero();
-        joints.coordinate[j] = joints.mimic_impulse[j] = joints.step[j] = 0;
+        joints.coordinate[j] = joints.first_coordinate[j];  // with its revolutions
+        joints.mimic_impulse[j] = joints.step[j] = 0;
         joints.axis_impulse[j] = {};
     }
     TieTable& ties = model.ties;

@@ -60,11 +60,12 @@ class Joint(NamedObject):
     @property
     def state(self) -> JointState:
         """Present pose, motion, force and moment."""
-        values = self._core.joint_state(self._handle)
-        for name in ("first", "second"):
-            if values[name] is not None:
-                values[name] = self._world._body(values[name])
-        return JointState(**values)
+        return JointState(**self._with_bodies(self._core.joint_state(self._handle)))
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Arguments of World.add_joint() that add an equal joint in the present poses, without the mimic."""
+        return self._with_bodies(self._core.joint_settings(self._handle))
 
     @property
     def coordinate(self) -> float:
@@ -120,6 +121,13 @@ class Joint(NamedObject):
     def set_passive(self, passive: JointPassive) -> None:
         """Sets spring, damper and dry friction of a hinge or a slider."""
         self._core.set_passive(self._handle, checked(passive, "passive", JointPassive))
+
+    def _with_bodies(self, values: dict[str, Any]) -> dict[str, Any]:
+        """Values of the extension module with bodies in place of handles."""
+        for name in ("first", "second"):
+            if values[name] is not None:
+                values[name] = self._world._body(values[name])
+        return values
 
 
 def joint_label(kind: str, first: str, second: str | None) -> str:
