@@ -23,8 +23,7 @@ class JointState:
     second: the second body; None if the first body is joined to the world.
     point: point of the joint on the first body [m].
     axis: axis of the joint on the second body.
-    coordinate: angle of a hinge, counting full revolutions, or displacement of a slider; 0 when it was added [rad or
-        m].
+    coordinate: angle of a hinge, counting full revolutions, or displacement of a slider [rad or m].
     speed: rate of `coordinate` [rad/s or m/s].
     force: force at `point` [N].
     moment: moment [N m].
