@@ -86,6 +86,7 @@ struct JointTable {
     Column<Real> mimic_impulse;  // impulse of the mimic row along the axis in the last step [N s or N m s]
     // Joint coordinate at the start of the last step. The angle of a hinge includes complete revolutions.
     Column<Real> coordinate;
+    Column<Real> first_coordinate;  // joint coordinate when the joint was added [rad or m]
     // Impulse and angular impulse of the joint on the first body in the last step, in the joint frame of the second
     // body [N s, N m s].
     Column<Vec3> impulse, moment;
@@ -123,6 +124,7 @@ struct JointTable {
         visit("mimic", mimic, ColumnRole::state);
         visit("mimic_impulse", mimic_impulse, ColumnRole::state);
         visit("coordinate", coordinate, ColumnRole::state);
+        visit("first_coordinate", first_coordinate, ColumnRole::state);
         visit("impulse", impulse, ColumnRole::state);
         visit("moment", moment, ColumnRole::state);
         visit("impulse_axes", impulse_axes, ColumnRole::state);

@@ -298,6 +298,9 @@ nb::dict values_of(const CableSettings& settings) {
 nb::dict values_of(const TieSettings& settings) {
     return dict_of(settings);
 }
+nb::dict values_of(const JointSettings& settings) {
+    return dict_of(settings);
+}
 nb::dict values_of(const PipeSettings& settings) {
     return dict_of(settings);
 }

@@ -48,6 +48,7 @@ nb::dict values_of(const MaterialSettings& settings);
 nb::dict values_of(const SpringSettings& settings);
 nb::dict values_of(const CableSettings& settings);
 nb::dict values_of(const TieSettings& settings);
+nb::dict values_of(const JointSettings& settings);
 nb::dict values_of(const PipeSettings& settings);
 nb::dict values_of(const AnyLoad& settings);
 

@@ -1,7 +1,5 @@
 """A bar is pinned at one end and pulled at the other: first by a force, then by a clamp that moves."""
 
-import numpy as np
-
 import skerry as sk
 
 length, width = 0.5, 0.1  # [m]
@@ -14,20 +12,14 @@ bar = world.add_body(sk.Mesh.box((length, width, width), (10, 2, 2)), rubber)
 bar.attach(bar.select(where=lambda x: x[:, 0] < -length / 2 + 1e-9))
 right = bar.select(where=lambda x: x[:, 0] > length / 2 - 1e-9)
 
-# The force is spread evenly over the end: each triangle gives a third of its load to each of its nodes.
-triangles = bar.surface[np.isin(bar.surface, right).all(axis=1)]
-corners = bar.positions[triangles]
-areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-loads = np.zeros((bar.node_count, 3))
-np.add.at(loads[:, 0], triangles, (pull / width**2 * areas / 3)[:, None])
-bar.set_loads(loads)
+load = world.add_traction(bar, bar.faces(right), (pull / width**2, 0, 0))
 world.advance(1)
 strain = (bar.positions[right, 0].mean() - length / 2) / length
 hooke = pull / (young_modulus * width**2)
 print(f"{pull:g} N stretch the bar by {100 * strain:.4f} %, Hooke's law says {100 * hooke:.4f} %.")
 
 # Let go, hold the end in a clamp instead, and move that for a tenth of a second.
-bar.set_loads((0, 0, 0))
+load.remove()
 world.advance(1)
 clamp = bar.attach(right, motion=sk.Motion(velocity=(0.1, 0, 0)))
 world.advance(0.1)

@@ -151,3 +151,32 @@ def test_the_error_of_a_joint_without_load_is_relative_to_the_weight() -> None:
     world.advance(0.3)
     assert world.report().worst_error < 1e-6
     assert world.report().unconverged == 0
+
+
+def test_settings_of_a_joint_add_an_equal_one() -> None:
+    world, rod = rod_world(gravity=(0, 0, 0))
+    drum = world.add_body(sk.Sphere(radius=0.05), RUBBER, position=(-0.06, 0, 0), name="drum")
+    motor, passive = sk.Motor(speed=2.0, strength=1.0), sk.JointPassive(damping=0.01)
+    arguments = {"lower": -1.0, "upper": 9.0, "motor": motor, "passive": passive, "bodies_touch": True}
+    hinge = world.add_joint("hinge", rod, drum, axis=(0, 0, 1), coordinate=4.0, **arguments)
+    world.advance(0.1)
+    found, state = hinge.settings, hinge.state
+    assert {name: found[name] for name in arguments} == arguments
+    hinge.remove()
+    again = world.add_joint(**found)
+    for name in ("kind", "first", "second", "point", "axis", "coordinate", "speed"):
+        assert getattr(again.state, name) == pytest.approx(getattr(state, name), abs=1e-12), name
+    again.remove()
+    fixed = world.add_joint("fixed", rod, drum)
+    assert not fixed.settings["bodies_touch"]
+    world.add_joint(**fixed.settings)
+
+
+def test_reset_restores_the_revolutions_of_a_hinge() -> None:
+    world, rod = rod_world(gravity=(0, 0, 0))
+    motor = sk.Motor(speed=20.0, strength=1.0)
+    hinge = world.add_joint("hinge", rod, axis=(0, 0, 1), coordinate=4.0, motor=motor)
+    world.advance(0.5)
+    assert hinge.coordinate > 11
+    world.reset()
+    assert hinge.coordinate == pytest.approx(4.0)

@@ -45,7 +45,8 @@ def test_fields_act_on_all_bodies_or_on_one() -> None:
 def test_a_traction_acts_on_faces() -> None:
     world = sk.World(threads=1, gravity=(0, 0, 0))
     bar = world.add_body(sk.Mesh.box((0.2, 0.1, 0.1), (4, 2, 2)), RUBBER, dynamics="explicit")
-    right = bar.surface[(bar.positions[bar.surface][:, :, 0] > 0.0999).all(axis=1)]
+    right = bar.faces(bar.select(where=lambda x: x[:, 0] > 0.0999))
+    assert len(right) == 8
     load = world.add_traction(bar, right, (100, 0, 0))
     present = world.add_traction(bar, right, (100, 0, 0), present_area=True)
     bar.positions = 2 * bar.positions

@@ -52,6 +52,9 @@ def test_parts_of_a_body_are_selected_by_name_and_label() -> None:
     assert np.array_equal(np.unique(body.tetrahedra[:6]), body.select(label=3))
     body.add_set("top", body.select(above=0.4))
     assert list(body.sets) == ["ends", "top"] and len(body.faces("top")) == 8
+    assert np.array_equal(np.sort(body.faces(body.select(above=0.4)), axis=0), np.sort(body.faces("top"), axis=0))
+    with pytest.raises(sk.SceneError, match="part: found 2 nodes, which are not all nodes of a face"):
+        body.faces([0, 26])
     assert np.array_equal(
         body.select(set="top", where=lambda x: x[:, 0] > 0.4), body.select(above=0.4, where=lambda x: x[:, 0] > 0.4)
     )

@@ -2,9 +2,12 @@
 
 import pathlib
 import re
+import subprocess
 import sys
 
 import pytest
+
+import skerry as sk
 
 api = pytest.importorskip("mypy.api")
 
@@ -27,6 +30,15 @@ def test_the_examples_pass_strict_checks() -> None:
     pytest.importorskip("gymnasium")
     report = report_of(*map(str, (ROOT / "examples/python").glob("*.py")))
     assert not report, report
+
+
+def test_a_program_that_uses_every_name_passes_strict_checks(tmp_path: pathlib.Path) -> None:
+    program = ROOT / "tests/python/uses.py"
+    used = set(re.findall(r"\bsk\.(\w+)", program.read_text()))
+    assert not set(sk.__all__) - used
+    report = report_of(str(program))
+    assert not report, report
+    subprocess.run([sys.executable, "-W", "error", str(program), str(tmp_path)], check=True, timeout=120)
 
 
 def test_mypy_finds_the_mistakes_of_a_program() -> None:

@@ -110,6 +110,9 @@ public:
     JointHandle add(const JointSettings& joint);
     /// Returns the present pose and motion of a joint, and the joint's force and moment in the last step.
     JointState state(JointHandle joint) const;
+    /// Settings of an equal joint that is added now: point, axis and coordinate have their present values. They do not
+    /// contain the mimic.
+    JointSettings settings(JointHandle joint) const;
     /// Sets the motor of a hinge or a slider, or removes the motor if none is given. Setting a motor equal to the
     /// present one changes no bit of the state.
     void set_motor(JointHandle joint, const std::optional<JointMotor>& motor);

@@ -277,8 +277,9 @@ class Bucket:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurfaceMesh:
-    """A triangle surface. A collider with this shape is solid inside it; triangles are counter-clockwise as seen from
-    outside. Its arrays are copies of those given, and cannot be changed.
+    """A triangle surface. Triangles are counter-clockwise as seen from outside. A collider with this shape is solid
+    inside of a closed surface; a surface with a boundary, even a single triangle, stops bodies from both sides. The
+    arrays are copies of those given, and cannot be changed.
 
     nodes: positions of the nodes, shape (n, 3) [m].
     triangles: numbers of the nodes of each triangle, shape (k, 3).

@@ -37,6 +37,14 @@ nb::dict values_of(const JointState& state) {
     return values;
 }
 
+nb::dict settings_of_joint(World& world, const JointHandle& joint) {
+    const JointSettings settings = Joints(world).settings(joint);
+    nb::dict values = python::values_of(settings);
+    values["first"] = object_of(settings.first);
+    values["second"] = settings.second ? object_of(*settings.second) : nb::none();
+    return values;
+}
+
 nb::object motor_of(World& world, const JointHandle& joint) {
     const std::optional<JointMotor> motor = Joints(world).motor(joint);
     return motor ? object_of(*motor) : nb::none();
@@ -74,6 +82,7 @@ void bind_joints(WorldClass& type) {
     type.def("add_joint", &add_joint, nb::arg("first"), nb::arg("second").none(), nb::arg("given"))
         .def("joint_state",
              guarded([](World& world, const JointHandle& joint) { return values_of(Joints(world).state(joint)); }))
+        .def("joint_settings", guarded(settings_of_joint))
         .def("set_motor", &set_motor, nb::arg("joint"), nb::arg("motor").none())
         .def("set_passive", &set_passive, nb::arg("joint"), nb::arg("passive"))
         .def("set_mimic",

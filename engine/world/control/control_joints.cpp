@@ -258,7 +258,7 @@ JointHandle Joints::add(const JointSettings& joint) {
     table.leader[row] = no_index;
     table.mimic[row] = {};
     table.mimic_impulse[row] = 0;
-    table.coordinate[row] = joint.coordinate;
+    table.coordinate[row] = table.first_coordinate[row] = joint.coordinate;
     table.step[row] = 0;
     table.axis_impulse[row] = {};
     table.impulse[row] = table.moment[row] = Vec3::Zero();
@@ -439,6 +439,22 @@ JointLimits Joints::limits(JointHandle joint) const {
     if (model.joints.lower[row] != -infinity) limits.lower = model.joints.lower[row];
     if (model.joints.upper[row] != infinity) limits.upper = model.joints.upper[row];
     return limits;
+}
+
+JointSettings Joints::settings(JointHandle joint) const {
+    const JointState now = state(joint);
+    const JointLimits range = limits(joint);
+    return {.kind = now.kind,
+            .first = now.first,
+            .second = now.second,
+            .point = now.point,
+            .axis = now.axis,
+            .coordinate = now.coordinate,
+            .lower = range.lower,
+            .upper = range.upper,
+            .motor = motor(joint),
+            .passive = passive(joint),
+            .bodies_touch = now.second && world_->may_collide(now.first, *now.second)};
 }
 
 JointPassive Joints::passive(JointHandle joint) const {

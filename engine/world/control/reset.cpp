@@ -40,7 +40,8 @@ void forget_impulses(WorldState& world, std::size_t body) {
         if (own || (joints.leader[j] != no_index && joins(joints.leader[j]))) joints.mimic_impulse[j] = 0;
         if (!own) continue;
         joints.impulse[j] = joints.moment[j] = Vec3::Zero();
-        joints.coordinate[j] = joints.step[j] = 0;
+        joints.coordinate[j] = joints.first_coordinate[j];  // with its revolutions
+        joints.step[j] = 0;
         joints.axis_impulse[j] = {};
     }
     TieTable& ties = model.ties;

@@ -189,10 +189,18 @@ class Body(TouchingObject):
         """Removes a set. SceneError: the body has no such set; the message lists the sets that it has."""
         self._core.remove_set(self._handle, name_text(name, "name"))
 
-    def faces(self, name: str) -> Indices:
-        """Node numbers of the faces of a set, shape (k, 3): the listed faces, and those of the surface that belong to
-        listed tetrahedra or whose nodes are all listed. SceneError: there are none, or no such set."""
-        faces: Indices = self._core.set_faces(self._handle, name_text(name, "name"))
+    def faces(self, part: str | ArrayLike) -> Indices:
+        """Node numbers of faces of the surface, shape (k, 3). part: the name of a set, for its listed faces, and those
+        that belong to listed tetrahedra or whose nodes are all listed; or numbers of nodes (j,), or a truth value for
+        each node (n,), for the faces whose nodes are all chosen. SceneError: there are none, or no such set."""
+        if isinstance(part, str):
+            faces: Indices = self._core.set_faces(self._handle, name_text(part, "part"))
+            return faces
+        chosen = self._node_numbers(part)
+        faces = self.surface[np.isin(self.surface, chosen).all(axis=1)]
+        if not len(faces):
+            found = f"{len(chosen)} nodes, which are not all nodes of a face"
+            raise scene_error(self._label, "part", found, "all three nodes of at least one face of the surface")
         return faces
 
     def tetrahedra_of(self, name: str) -> Indices:

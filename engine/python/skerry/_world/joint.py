@@ -23,8 +23,7 @@ class JointState:
     second: the second body; None if the first body is joined to the world.
     point: point of the joint on the first body [m].
     axis: axis of the joint on the second body.
-    coordinate: angle of a hinge, counting full revolutions, or displacement of a slider; 0 when it was added [rad or
-        m].
+    coordinate: angle of a hinge, counting full revolutions, or displacement of a slider [rad or m].
     speed: rate of `coordinate` [rad/s or m/s].
     force: force at `point` [N].
     moment: moment [N m].
@@ -60,11 +59,12 @@ class Joint(NamedObject):
     @property
     def state(self) -> JointState:
         """Present pose, motion, force and moment."""
-        values = self._core.joint_state(self._handle)
-        for name in ("first", "second"):
-            if values[name] is not None:
-                values[name] = self._world._body(values[name])
-        return JointState(**values)
+        return JointState(**self._with_bodies(self._core.joint_state(self._handle)))
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Arguments of World.add_joint() that add an equal joint in the present poses, without the mimic."""
+        return self._with_bodies(self._core.joint_settings(self._handle))
 
     @property
     def coordinate(self) -> float:
@@ -120,6 +120,13 @@ class Joint(NamedObject):
     def set_passive(self, passive: JointPassive) -> None:
         """Sets spring, damper and dry friction of a hinge or a slider."""
         self._core.set_passive(self._handle, checked(passive, "passive", JointPassive))
+
+    def _with_bodies(self, values: dict[str, Any]) -> dict[str, Any]:
+        """Values of the extension module with bodies in place of handles."""
+        for name in ("first", "second"):
+            if values[name] is not None:
+                values[name] = self._world._body(values[name])
+        return values
 
 
 def joint_label(kind: str, first: str, second: str | None) -> str:

@@ -29,8 +29,8 @@ class PointProbe:
     """Position, displacement and velocity of a point of a body, which Body.probe() finds.
 
     body: body of the point.
-    node: nodes between which the point lies; -1 where the weight is 0.
-    weight: weight of each of these nodes.
+    node: numbers of four nodes between which the point lies; they may be equal.
+    weight: weight of each of these nodes; the sum is 1.
     origin: position from which the displacement is measured [m]; None: the position when the recorder is made.
     """
 
