@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <iostream>
 #include <optional>
 
@@ -12,6 +13,7 @@
 #include "engine/program/start_text.h"
 #include "engine/program/thin_part_text.h"
 #include "skerry/error.h"
+#include "skerry/surface_check.h"
 #include "systems/collision/build_surface.h"
 
 namespace skerry {
@@ -130,46 +132,122 @@ int report_mesh(const InspectOptions& options, const Mesh& mesh, const std::vect
     return exit_ok;
 }
 
+/// Returns the consequence of a fault of a surface, or the way to repair it.
+const char* advice_on(SurfaceFaultKind kind) {
+    using enum SurfaceFaultKind;
+    switch (kind) {
+        case flat_triangles:
+        case duplicate_triangles:
+        case duplicate_shells:
+            return "delete them; a rigid body refuses them";
+        case turned_triangles:
+            return "make the normals consistent; a rigid body refuses them";
+        case inside_out_shells:
+            return "its triangles are clockwise as seen from outside: a collider of this surface holds bodies inside, "
+                   "as a container; for a solid collider or a rigid body reverse the order of their nodes";
+        case holes:
+            return "close them; only a fixed or moving collider may have holes";
+        case branching_edges:
+        case pinched_nodes:
+            return "separate the parts, or delete walls inside the solid; contacts may fail there";
+        case one_sided_shells:
+            return "the surface has no inside; cut it and model its thickness";
+        case crossings:
+        case shell_crossings:
+        case overlaps:
+            return "unite the parts (a Boolean union) or move them apart";
+        case doubled_volumes:
+            return "delete the inner surface, or turn it if it bounds a void";
+        case flat_shells:
+            return "delete them, or give them a thickness";
+        case slivers:
+            return "remesh the surface, because they cause very short steps";
+        case thin_walls:
+            return "use shorter edges there, or a thicker wall";
+        case unlikely_size:
+            return "the program expects metres: set the scale of the mesh, for example 0.001";
+    }
+    return "";
+}
+
+/// Describes a shell, for example "320 triangles from triangle 0, closed, 0.51 m^3, a void in shell 1".
+std::string shell_text(const SurfaceReport& report, const SurfaceShell& shell) {
+    std::string text = grouped(shell.triangles) + (shell.triangles == 1 ? " triangle" : " triangles") +
+                       " from triangle " + std::to_string(shell.triangle) +
+                       (shell.closed ? ", closed, " + short_number(std::abs(shell.volume)) + " m^3" : ", open");
+    if (shell.around != no_index)
+        text +=
+            std::string(shell.volume < 0 ? ", a void in shell " : ", inside shell ") + std::to_string(shell.around + 1);
+    return report.shells.size() == 1 ? text : std::to_string(&shell - report.shells.data() + 1) + ": " + text;
+}
+
+Json surface_json(const InspectOptions& options, const SurfaceReport& report, const Problems& problems) {
+    Json shells = Json::array(), faults = Json::array();
+    for (const SurfaceShell& shell : report.shells)
+        shells.push_back({{"triangles", shell.triangles},
+                          {"triangle", shell.triangle},
+                          {"closed", shell.closed},
+                          {"volume", shell.volume},
+                          {"around", shell.around == no_index ? Json() : Json(shell.around)}});
+    for (const SurfaceFault& fault : report.faults)
+        faults.push_back({{"kind", name_of(fault.kind)},
+                          {"count", fault.count},
+                          {"triangle", fault.triangle},
+                          {"other", fault.other == no_index ? Json() : Json(fault.other)},
+                          {"place", vector_json(fault.place)},
+                          {"length", fault.length}});
+    const std::size_t closed = static_cast<std::size_t>(std::ranges::count(report.shells, true, &SurfaceShell::closed));
+    return {{"schema", "skerry.surface/1"},
+            {"file", options.file.string()},
+            {"nodes", report.nodes},
+            {"triangles", report.triangles},
+            {"lower", vector_json(report.lower)},
+            {"upper", vector_json(report.upper)},
+            {"area", report.area},
+            {"volume", closed > 0 ? Json(report.volume) : Json()},
+            {"edge", {{"min", report.min_edge}, {"mean", report.mean_edge}, {"max", report.max_edge}}},
+            {"merged", report.merged},
+            {"tolerance", report.tolerance},
+            {"closed_manifold", closed == report.shells.size() && !report.find(SurfaceFaultKind::branching_edges) &&
+                                    !report.find(SurfaceFaultKind::pinched_nodes)},
+            {"can_be_filled", report.can_be_filled()},
+            {"components", report.shells.size()},
+            {"shells", shells},
+            {"faults", faults},
+            {"problems", problems}};
+}
+
 /// Reports a surface of triangles, from which a collider or a rigid body can be made.
 int report_surface(const InspectOptions& options, const SurfaceMesh& surface) {
-    const MeshReport report = inspect({.nodes = surface.nodes, .tetrahedra = {}, .triangles = surface.triangles});
-    const Real area = mesh::area_of(surface);
+    const SurfaceReport report = mesh::check_surface(surface, mesh::default_weld, options.file.string());
     Problems problems;
-    if (!report.closed_manifold)
-        problems.push_back("the surface is not a closed manifold: " + report.boundary_fault +
-                           "; contacts may fail there, and the surface cannot be filled with tetrahedra");
-    else if (report.volume < 0)
-        problems.push_back(
-            "the triangles are clockwise as seen from outside: a collider of this surface holds bodies inside, as a "
-            "container; for a solid collider or a rigid body reverse the order of their nodes");
+    for (const SurfaceFault& fault : report.faults)
+        problems.push_back(mesh::fault_text(fault) + "; " + advice_on(fault.kind));
     if (options.json) {
-        const Json json = {{"schema", "skerry.surface/1"},
-                           {"file", options.file.string()},
-                           {"nodes", surface.nodes.size()},
-                           {"triangles", surface.triangles.size()},
-                           {"lower", vector_json(report.lower)},
-                           {"upper", vector_json(report.upper)},
-                           {"area", area},
-                           {"volume", report.closed_manifold ? Json(report.volume) : Json()},
-                           {"edge", {{"min", report.min_edge}, {"max", report.max_edge}}},
-                           {"closed_manifold", report.closed_manifold},
-                           {"components", report.components},
-                           {"problems", problems}};
-        std::cout << json.dump(1) << std::endl;
+        std::cout << surface_json(options, report, problems).dump(1) << std::endl;
         return exit_ok;
     }
+    constexpr std::size_t most_shells = 5;
     const Vec3 size = report.upper - report.lower;
-    std::cout << options.file.string() << ": a surface of " << grouped(surface.triangles.size()) << " triangles, "
-              << grouped(surface.nodes.size())
-              << " nodes (for colliders and rigid bodies; a body that deforms needs tetrahedra)\n"
+    std::cout << options.file.string() << ": a surface of " << grouped(report.triangles) << " triangles, "
+              << grouped(report.nodes) << " nodes\n"
               << "  size          " << short_number(size.x()) << " x " << short_number(size.y()) << " x "
-              << short_number(size.z()) << " m, area " << short_number(area) << " m^2"
-              << (report.closed_manifold ? ", volume " + short_number(report.volume) + " m^3" : "") << "\n"
-              << "  edges         " << with_unit(report.min_edge, "m") << " to " << with_unit(report.max_edge, "m")
-              << "\n"
-              << "  boundary      " << (report.closed_manifold ? "a closed manifold" : "not a closed manifold") << ", "
-              << grouped(report.components) << (report.components == 1 ? " part\n" : " parts\n");
+              << short_number(size.z()) << " m, area " << short_number(report.area) << " m^2"
+              << (report.volume > 0 ? ", volume " + short_number(report.volume) + " m^3" : "") << "\n"
+              << "  edges         mean " << with_unit(report.mean_edge, "m") << ", " << with_unit(report.min_edge, "m")
+              << " to " << with_unit(report.max_edge, "m") << "\n"
+              << "  welded        " << grouped(report.merged) << " nodes, up to " << with_unit(report.tolerance, "m")
+              << " apart\n";
+    for (std::size_t s = 0; s < std::min(report.shells.size(), most_shells); ++s)
+        std::cout << "  shell         " << shell_text(report, report.shells[s]) << "\n";
+    if (report.shells.size() > most_shells)
+        std::cout << "                and " << grouped(report.shells.size() - most_shells) << " more shells\n";
     print_problems(problems);
+    std::cout
+        << "  next          "
+        << (report.can_be_filled()
+                ? "the repaired surface bounds a solid, which can be filled with tetrahedra as it is: skerry fill\n"
+                : "not a surface to be filled as it is; skerry fill can enclose it within a tolerance\n");
     return exit_ok;
 }
 

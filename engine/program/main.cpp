@@ -59,6 +59,7 @@ files; use the same file and folder. --page, --film and --trace begin at the che
 
 const char* const inspect_examples = R"(Examples:
   skerry inspect bunny.msh                                 sizes, quality, problems, tetrahedra that limit the step
+  skerry inspect bunny.stl                                 shells, holes, crossings and other faults of a surface
   skerry inspect bunny.msh --repair better.msh             write a mesh of the same body with a longer step
   skerry inspect bunny.msh --repair better.msh --tolerance 0      new tetrahedra inside the unchanged surface
   skerry inspect scene.json --repair arm.msh --body arm    the mesh of the body "arm", with the step of its material

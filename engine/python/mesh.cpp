@@ -3,6 +3,7 @@
 
 #include <nanobind/stl/tuple.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <tuple>
@@ -11,6 +12,7 @@
 
 #include "engine/python/mesh_sets.h"
 #include "skerry/fill.h"
+#include "skerry/surface_check.h"
 
 namespace skerry::python {
 
@@ -127,6 +129,53 @@ nb::dict inspect_mesh(const Mesh& mesh) {
     return values;
 }
 
+nb::dict check_surface(const Vectors& nodes, const IndexRows<3>& triangles, Real tolerance) {
+    const auto points = span_of(nodes);
+    const auto rows = span_of(triangles);
+    const SurfaceMesh surface{{points.begin(), points.end()}, {rows.begin(), rows.end()}};
+    const SurfaceReport report = without_gil([&] { return mesh::check_surface(surface, tolerance); });
+    const auto tuple_of = [](const Vec3& v) { return nb::make_tuple(v.x(), v.y(), v.z()); };
+    const auto row_or_none = [](Index row) { return row == no_index ? nb::none() : nb::cast(row); };
+    nb::list faults, shells;
+    for (const SurfaceFault& fault : report.faults) {
+        nb::dict values;
+        values["kind"] = std::string(name_of(fault.kind));
+        values["count"] = fault.count;
+        values["triangle"] = fault.triangle;
+        values["other"] = row_or_none(fault.other);
+        values["place"] = tuple_of(fault.place);
+        values["length"] = fault.length;
+        values["text"] = mesh::fault_text(fault);
+        faults.append(values);
+    }
+    for (const SurfaceShell& shell : report.shells) {
+        nb::dict values;
+        values["triangles"] = shell.triangles;
+        values["triangle"] = shell.triangle;
+        values["closed"] = shell.closed;
+        values["volume"] = shell.volume;
+        values["around"] = row_or_none(shell.around);
+        shells.append(values);
+    }
+    nb::dict values;
+    values["faults"] = faults;
+    values["shells"] = shells;
+    values["can_be_filled"] = report.can_be_filled();
+    values["tolerance"] = std::max(report.tolerance, Real(0));
+    values["merged"] = report.merged;
+    values["lower"] = tuple_of(report.lower);
+    values["upper"] = tuple_of(report.upper);
+    values["area"] = report.area;
+    values["volume"] = report.volume;
+    values["min_edge"] = report.min_edge;
+    values["mean_edge"] = report.mean_edge;
+    values["max_edge"] = report.max_edge;
+    values["cleaned"] = arrays_of(report.cleaned);
+    values["number"] = array_of<Index>(std::span<const Index>(report.number));
+    values["shell"] = array_of<Index>(std::span<const Index>(report.shell));
+    return values;
+}
+
 }  // namespace
 
 void bind_mesh(nb::module_& module) {
@@ -169,6 +218,7 @@ void bind_mesh(nb::module_& module) {
         return arrays_of(surface);
     });
     module.def("inspect", &inspect_mesh);
+    module.def("check_surface", &check_surface);
 }
 
 }  // namespace skerry::python

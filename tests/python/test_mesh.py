@@ -273,3 +273,26 @@ def test_a_written_mesh_without_labels_returns_with_the_label_1(tmp_path: Path) 
         mesh = sk.Mesh(NODES, TETRAHEDRA, labels=labels)
         mesh.write(tmp_path / "two.msh")
         assert sk.Mesh.read(tmp_path / "two.msh") == sk.Mesh(NODES, TETRAHEDRA, labels=labels or [1, 1])
+
+
+def test_a_surface_check_finds_faults_and_shells() -> None:
+    ball = sk.Mesh.ball(0.5, 6).boundary()
+    count = len(ball.triangles)
+    report = sk.check_surface(ball)
+    assert report.faults == () and report.can_be_filled and len(report.shells) == 1
+    assert report.shells[0] == sk.SurfaceShell(
+        triangles=count, triangle=0, closed=True, volume=report.volume, around=None
+    )
+    # An inner shell, and a repeated triangle.
+    nested = sk.SurfaceMesh(
+        nodes=np.vstack([ball.nodes, 0.5 * ball.nodes]),
+        triangles=np.vstack([ball.triangles, ball.triangles[:, ::-1] + len(ball.nodes), ball.triangles[:1]]),
+    )
+    report = sk.check_surface(nested)
+    assert [fault.kind for fault in report.faults] == ["duplicate_triangles"]
+    assert report.faults[0].triangle == 2 * count and "1 repeated triangle at (" in report.faults[0].text
+    assert [shell.around for shell in report.shells] == [None, 0]
+    assert report.volume == pytest.approx(7 / 8 * report.shells[0].volume)
+    assert len(report.cleaned.triangles) == len(report.number) == len(report.shell) == 2 * count
+    with pytest.raises(sk.SceneError, match="triangle 0: node: found 7"):
+        sk.check_surface(sk.SurfaceMesh(nodes=np.zeros((3, 3)), triangles=[[0, 1, 7]]))

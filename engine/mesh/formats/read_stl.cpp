@@ -1,40 +1,22 @@
-#include <map>
+#include <utility>
 
 #include "engine/mesh/formats/raw_mesh.h"
+#include "skerry/surface_check.h"
 
 // Reader of STL files. STL repeats the positions of the corners for each triangle. Equal positions become one node;
 // triangles left with fewer than three different nodes are dropped.
 namespace skerry::mesh {
 namespace {
 
-class Welder {
-public:
-    explicit Welder(RawMesh& mesh) : mesh_(mesh) {}
-
-    void add(const std::array<Vec3, 3>& corners) {
-        std::array<Index, 3> nodes;
-        for (std::size_t a = 0; a < 3; ++a) nodes[a] = node(corners[a]);
-        if (nodes[0] != nodes[1] && nodes[1] != nodes[2] && nodes[2] != nodes[0])
-            mesh_.triangles.push_back(nodes);
-        else
-            mesh_.others["flat triangles"] += 1;
-    }
-
-private:
-    Index node(const Vec3& x) {
-        // -0 and 0 count as equal keys
-        const auto [place, added] = row_.try_emplace({x[0], x[1], x[2]}, static_cast<Index>(mesh_.nodes.size()));
-        if (added) mesh_.nodes.push_back(x);
-        return place->second;
-    }
-
-    RawMesh& mesh_;
-    std::map<std::array<Real, 3>, Index> row_;
-};
+void add_triangle(const std::array<Vec3, 3>& corners, SurfaceMesh& surface) {
+    const auto first = static_cast<Index>(surface.nodes.size());
+    surface.nodes.insert(surface.nodes.end(), corners.begin(), corners.end());
+    surface.triangles.push_back({first, first + 1, first + 2});
+}
 
 constexpr std::size_t header_bytes = 80, triangle_bytes = 50;
 
-void read_binary(FileReader& reader, Welder& welder) {
+void read_binary(FileReader& reader, SurfaceMesh& surface) {
     reader.set_foreign_bytes(std::endian::native == std::endian::big);  // STL files are little-endian
     reader.skip_bytes(header_bytes, "header");
     const std::size_t count = reader.checked_count(reader.binary<std::uint32_t>("count"), triangle_bytes, "count");
@@ -46,7 +28,7 @@ void read_binary(FileReader& reader, Welder& welder) {
             for (Real& value : x)
                 value = reader.finite(static_cast<Real>(reader.binary<float>("position")), "position");
         reader.skip_bytes(2, "attributes");
-        welder.add(corners);
+        add_triangle(corners, surface);
     }
 }
 
@@ -55,7 +37,7 @@ void require_word(FileReader& reader, const char* expected) {
         reader.complain({}, in_quotes(found), expected);
 }
 
-void read_ascii(FileReader& reader, Welder& welder) {
+void read_ascii(FileReader& reader, SurfaceMesh& surface) {
     while (!reader.at_end()) {
         reader.set_section("solid");
         const std::vector<std::string_view>& words = reader.words_of(reader.filled_line("solid"));
@@ -78,7 +60,7 @@ void read_ascii(FileReader& reader, Welder& welder) {
             }
             require_word(reader, "endloop");
             require_word(reader, "endfacet");
-            welder.add(corners);
+            add_triangle(corners, surface);
         }
         reader.line();  // skips the rest of the line, which repeats the name of the solid
     }
@@ -87,8 +69,7 @@ void read_ascii(FileReader& reader, Welder& welder) {
 }  // namespace
 
 RawMesh read_stl(FileReader& reader) {
-    RawMesh mesh;
-    Welder welder(mesh);
+    SurfaceMesh surface;
     // The header of a binary file may begin with "solid", like a text file. Therefore the file size decides: the size
     // of a binary file follows exactly from its number of triangles.
     const std::string_view bytes = reader.rest();
@@ -105,10 +86,16 @@ RawMesh read_stl(FileReader& reader) {
                         "an STL file: text that begins with \"solid\", or at least 84 bytes",
                         "check that the file is an STL file and complete");
     if (!text)
-        read_binary(reader, welder);
+        read_binary(reader, surface);
     else
-        read_ascii(reader, welder);
+        read_ascii(reader, surface);
     reader.set_section({});
+    SurfaceMesh welded = weld(surface, 0);
+    const std::size_t flat = surface.triangles.size() - welded.triangles.size();
+    RawMesh mesh;
+    mesh.nodes = std::move(welded.nodes);
+    mesh.triangles = std::move(welded.triangles);
+    if (flat > 0) mesh.others["flat triangles"] = flat;
     return mesh;
 }
 

@@ -98,7 +98,7 @@ SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std
 }
 
 SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance, const std::string& name) {
-    constexpr Real largest = 100, smallest = 1e-6;  // usual sizes of bodies [m]
+    constexpr Real largest = 20, smallest = 1e-6;  // usual sizes of bodies [m]
     SurfaceReport report = check_shells(surface, tolerance, name);
     if (report.cleaned.triangles.empty()) return report;
     find_crossings(report, rounding_distance(report));

@@ -57,6 +57,7 @@ from ._settings import (
     SurfaceMesh,
     TieKind,
 )
+from ._surface_check import SurfaceFault, SurfaceFaultKind, SurfaceReport, SurfaceShell, check_surface
 from ._sweep import sweep
 from ._world import (
     Anchor,
@@ -224,8 +225,12 @@ __all__ = [
     "SurfaceSet",
     "StressProbe",
     "Surface",
+    "SurfaceFault",
+    "SurfaceFaultKind",
     "SurfaceHit",
     "SurfaceMesh",
+    "SurfaceReport",
+    "SurfaceShell",
     "Tie",
     "TieKind",
     "TieProbe",
@@ -235,6 +240,7 @@ __all__ = [
     "World",
     "WorldReport",
     "__version__",
+    "check_surface",
     "contact_dtype",
     "hit_dtype",
     "load_robot",

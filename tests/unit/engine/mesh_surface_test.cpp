@@ -6,6 +6,8 @@
 #include "systems/geometry/passes_through.h"
 #include "tests/support/draws.h"
 #include "tests/support/surface_corpus.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/unit/engine/mesh_samples.h"
 
 namespace skerry::test::mesh_surface_test {
 
@@ -203,6 +205,32 @@ TEST_CASE("a million triangles are checked", "[unit][surface]") {
     CHECK(report.shells.size() == 1);
     // 2 pi^2 R r^2, less what the chords cut off: 1 - (2 pi / n)^2 / 6 for each of the two circles
     CHECK(report.volume == Approx(2 * std::numbers::pi * std::numbers::pi * 0.09).epsilon(0.01));
+}
+
+TEST_CASE("damaged files of surfaces are refused with their place, and quads and counting back are read",
+          "[unit][surface]") {
+    const TemporaryFolder folder;
+    const SurfaceMesh ball = ball_surface(0.5);
+    const std::string stl = stl_file(ball, true), text = stl_file(ball, false), obj = obj_file(ball);
+    const std::size_t vertex = text.find("vertex", text.size() / 2);
+    for (const auto& [name, content, expected] : std::vector<std::array<std::string, 3>>{
+             {"cut.stl", stl.substr(0, stl.size() / 2), "the file is incomplete"},
+             {"nan.stl", text.substr(0, vertex) + "vertex nan 0 0\n" + text.substr(text.find('\n', vertex)),
+              "found nan"},
+             {"empty.stl", "", "the end of the file"},
+             {"empty.obj", "", "no triangles"},
+             {"nan.obj", "v 0 nan 0\n" + obj, "line 1: position: found nan"},
+             {"cut.obj", obj.substr(0, obj.rfind(' ')), "2 corners"}}) {
+        CAPTURE(name);
+        CHECK_THROWS_WITH(mesh::read_surface(folder.write(name, content)), Contains(name) && Contains(expected));
+    }
+    const SurfaceMesh cube = mesh::read_surface(folder.write(
+        "cube.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 4 3 2 1\nf -4 -3 -2 -1\n"
+        "f 1 2 6 5\nf 2 3 7 6\nf -6/1 -5/2 -1/3 -2/4\nf 4//1 1//1 5//1 8//1\n"));
+    const SurfaceReport report = mesh::check_surface(cube);
+    CHECK(found_in(report).empty());
+    CHECK(report.volume == Approx(1));
 }
 
 }  // namespace skerry::test::mesh_surface_test

@@ -91,10 +91,10 @@ class ProgramInspectTest(ProgramCase):
         solid = self.folder / "solid.obj"
         solid.write_text(corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
         found = json.loads(self.skerry("inspect", solid, "--json").stdout)
-        self.assertEqual((found["triangles"], found["nodes"], found["closed_manifold"]), (4, 4, True))
+        self.assertEqual((found["triangles"], found["nodes"], found["can_be_filled"]), (4, 4, True))
         self.assertAlmostEqual(found["volume"], 1 / 6)
         self.assertAlmostEqual(found["area"], 1.5 + 3 ** 0.5 / 2)
-        self.assertEqual(found["problems"], [])
+        self.assertEqual((found["problems"], found["faults"], len(found["shells"])), ([], [], 1))
         self.assertIn("a surface of 4 triangles", self.skerry("inspect", solid).stdout)
         room = self.folder / "room.obj"
         room.write_text(corners + "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n")
@@ -102,7 +102,10 @@ class ProgramInspectTest(ProgramCase):
         sheet = self.folder / "sheet.stl"
         sheet.write_text("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
                          "endloop\nendfacet\nendsolid s\n")
-        self.assertIn("not a closed manifold: an edge between nodes", self.skerry("inspect", sheet).stdout)
+        self.assertRegex(self.skerry("inspect", sheet).stdout,
+                         r"problem       1 hole, the longest 3.41\d* m around at \(.*\) m, triangle 0; close")
+        faults = json.loads(self.skerry("inspect", sheet, "--json").stdout)["faults"]
+        self.assertEqual([fault["kind"] for fault in faults], ["holes"])
         in_gmsh = self.folder / "surface.msh"
         in_gmsh.write_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
                            "$Elements\n1\n1 2 0 1 2 3\n$EndElements\n")
