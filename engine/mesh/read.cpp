@@ -261,7 +261,7 @@ void read_materials(const std::string& path, const std::vector<std::string>& fil
 }  // namespace
 
 VisualSurface read_visual(const std::string& path, std::vector<std::string>* notes) {
-    RawMesh raw = read_raw(path, true);
+    RawMesh raw = read_raw(path, true, notes);
     VisualSurface visual = std::move(raw.visual);
     SurfaceMesh surface =
         raw.tetrahedra.empty() ? take_triangles(path, raw) : boundary(take_tetrahedra(path, raw, notes));
