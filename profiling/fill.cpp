@@ -58,9 +58,10 @@ int main(int argc, char** argv) {
     app.add_flag("--million", million, "also fill a surface of a million triangles with edges of 0.1 m");
     app.add_flag("--files-only", no_corpus, "leave the test surfaces out");
     CLI11_PARSE(app, argc, argv);
-    std::printf("| surface | faults | triangles | mesher | time [s] | tetrahedra | quality: worst, mean | volume error | "
-                "distance to mesh / tolerance | distance to surface / tolerance | step [s] |\n"
-                "|---|---|---:|---|---:|---:|---:|---:|---:|---:|---:|\n");
+    std::printf(
+        "| surface | faults | triangles | mesher | time [s] | tetrahedra | quality: worst, mean | volume error | "
+        "distance to mesh / tolerance | distance to surface / tolerance | step [s] |\n"
+        "|---|---|---:|---|---:|---:|---:|---:|---:|---:|---:|\n");
     if (!no_corpus)
         for (const test::CorpusSurface& of : test::surface_corpus())
             print_row(of.name, [&] { return mesh::fill(of.surface, of.name, settings); });

@@ -35,8 +35,7 @@ void append_region(const Mesh& region, std::vector<Index> node_of, int label, Me
 }
 
 /// Fills each region of the surface. The regions share the nodes of the shells between them.
-MesherResult fill_regions(const Shells& shells, Real largest_edge, const MesherSetup& setup,
-                          const std::string& which) {
+MesherResult fill_regions(const Shells& shells, Real largest_edge, const MesherSetup& setup, const std::string& which) {
     MesherResult all{.mesh = Mesh{.nodes = shells.nodes, .tetrahedra = {}}};
     for (std::size_t s = 0; s < shells.shell.size(); ++s) {
         if (shells.shell[s].cavity) continue;

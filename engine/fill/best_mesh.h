@@ -11,21 +11,21 @@
 namespace skerry::mesh {
 
 struct BestMeshTask {
-    SurfaceMesh surface{};         // closed manifold that does not cross itself
-    Real edge = 0;                 // wanted edge length of the tetrahedra [m]
-    Real tolerance = 0;            // largest movement of the surface; 0: it stays unchanged [m]
-    Real least_count = 0;          // smallest accepted number of tetrahedra; with fewer the mesh would be too coarse
-    bool all_cavities = false;     // see FillSettings::cavities
+    SurfaceMesh surface{};      // closed manifold that does not cross itself
+    Real edge = 0;              // wanted edge length of the tetrahedra [m]
+    Real tolerance = 0;         // largest movement of the surface; 0: it stays unchanged [m]
+    Real least_count = 0;       // smallest accepted number of tetrahedra; with fewer the mesh would be too coarse
+    bool all_cavities = false;  // see FillSettings::cavities
     MesherSetup setup{};
     std::function<Real(const Mesh&)> stable_step{};  // [s]
 };
 
 struct BestMesh {
     Mesh mesh;
-    Real step = 0;  // stable step; 0: no mesh was found [s]
+    Real step = 0;                           // stable step; 0: no mesh was found [s]
     std::size_t collapsed = 0, flipped = 0;  // numbers of surface edges that were collapsed or flipped
-    std::string failure{};  // reason why no mesh was found
-    bool missing = false;  // true if the mesher is not installed
+    std::string failure{};                   // reason why no mesh was found
+    bool missing = false;                    // true if the mesher is not installed
 };
 
 /// Least ratio of the stable steps of two meshes for which the surface of the second may differ.

@@ -1,21 +1,20 @@
 #include "skerry/fill.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "engine/fill/best_mesh.h"
 #include "engine/fill/explicit_body.h"
 #include "engine/mesh/repair/surface_distance.h"
 #include "engine/mesh/repair/surface_measures.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 
 namespace {
 
-// Edge length of surfaces that are not clean, if none is given, as a fraction of the diagonal of the bounding box. It is
-// the default of fTetWild.
+// Edge length of surfaces that are not clean, if none is given, as a fraction of the diagonal of the bounding box. It
+// is the default of fTetWild.
 constexpr Real default_edge = 0.05;
 // A clean surface is kept if the ratio of the wanted edge to its mean edge is between these values.
 constexpr Real least_ratio = 2.0 / 3, most_ratio = 1.5;
@@ -44,12 +43,6 @@ struct GivenSurface {
                1;
     }
 };
-
-std::string number(Real value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
 
 class Filling {
 public:
@@ -92,7 +85,7 @@ private:
 
     void check_settings() const {
         const auto require = [&](bool valid, const char* name, Real value, const char* expected) {
-            if (!valid) refuse(number(value), expected, {}, name);
+            if (!valid) refuse(short_text(value), expected, {}, name);
         };
         if (settings_.edge) require(*settings_.edge > 0, "edge", *settings_.edge, "a length above 0 m");
         require(settings_.tolerance >= 0 && settings_.tolerance < 1, "tolerance", settings_.tolerance,
@@ -124,8 +117,8 @@ private:
 
     /// Fills the surface as it is, or without needles and caps. Returns false if Netgen fails.
     bool fill_exactly() {
-        BestMesh best = best_mesh_of(whole_surface(shells_), settings_.edge.value_or(mean_edge(surface())),
-                                     result_.tolerance, 0);
+        BestMesh best =
+            best_mesh_of(whole_surface(shells_), settings_.edge.value_or(mean_edge(surface())), result_.tolerance, 0);
         if (best.step > 0) {
             take(std::move(best), "Netgen");
             return true;
@@ -142,9 +135,9 @@ private:
         result_.stable_step = best.step;
         result_.mesher = std::move(mesher);
         if (best.collapsed + best.flipped > 0)
-            result_.notes.push_back("very flat triangles of the surface were removed: " +
-                                    std::to_string(best.collapsed) + " edges collapsed, " +
-                                    std::to_string(best.flipped) + " flipped");
+            result_.notes.push_back(
+                "very flat triangles of the surface were removed: " + std::to_string(best.collapsed) +
+                " edges collapsed, " + std::to_string(best.flipped) + " flipped");
     }
 
     void fill_within_tolerance(bool clean) {
@@ -161,11 +154,10 @@ private:
         const Real step = stable_step(*filled.mesh);
         if (filled.mesh->label.empty() && !netgen_missing_) {
             const MeshReport report = inspect(*filled.mesh);
-            BestMesh best =
-                report.closed_manifold
-                    ? best_mesh_of(boundary(*filled.mesh), report.mean_edge, (1 - envelope_share) * result_.tolerance,
-                                   least_count * static_cast<Real>(report.tetrahedra))
-                    : BestMesh{};
+            BestMesh best = report.closed_manifold ? best_mesh_of(boundary(*filled.mesh), report.mean_edge,
+                                                                  (1 - envelope_share) * result_.tolerance,
+                                                                  least_count * static_cast<Real>(report.tetrahedra))
+                                                   : BestMesh{};
             if (best.step > step) {
                 take(std::move(best), "fTetWild and Netgen");
                 return;
@@ -183,7 +175,7 @@ private:
             hint = std::string(netgen_missing_ ? install_netgen : "") + (netgen_missing_ ? "; or " : "") +
                    install_ftetwild + ", and name its interpreter in SKERRY_FILL_PYTHON if it is not " + python;
         else if (filled.stopped)
-            hint = "a larger edge than " + number(edge) +
+            hint = "a larger edge than " + short_text(edge) +
                    " m or a larger tolerance takes less time and memory; or raise the limit";
         refuse(std::move(found), "tetrahedra inside the surface", std::move(hint));
     }
@@ -201,13 +193,11 @@ private:
         const auto faces = faces_of_shells(result_.mesh, shells_);
         for (std::size_t s = 0; s < shells; ++s) {
             const Shell& shell = shells_.shell[s];
-            const std::string name = files == shells
-                                         ? std::filesystem::path(given_.names[given_.file_of(shell.first_triangle)])
-                                               .stem()
-                                               .string()
-                                         : "shell_" + std::to_string(s + 1);
+            std::string name =
+                std::filesystem::path(given_.names[given_.file_of(shell.first_triangle)]).stem().string();
+            if (files != shells || result_.mesh.sets.contains(name)) name = "shell_" + std::to_string(s + 1);
             result_.mesh.sets[name].faces = faces[s];
-            result_.notes.push_back("set \"" + name + "\": a shell around " + number(shell.volume) + " m^3, " +
+            result_.notes.push_back("set \"" + name + "\": a shell around " + short_text(shell.volume) + " m^3, " +
                                     (shell.cavity ? std::string("an empty cavity")
                                      : result_.mesh.label.empty()
                                          ? std::string("filled")
@@ -221,8 +211,9 @@ private:
         const SurfaceMesh filled = without_unused_nodes({result_.mesh.nodes, faces_of_regions(result_.mesh)});
         result_.distance = surface_distance(surface(), filled);
         if (result_.distance.greatest() > result_.tolerance && !result_.exact)
-            result_.notes.push_back("the new surface is up to " + number(result_.distance.greatest()) +
-                                    " m from the given one, more than the tolerance of " + number(result_.tolerance) +
+            result_.notes.push_back("the new surface is up to " + short_text(result_.distance.greatest()) +
+                                    " m from the given one, more than the tolerance of " +
+                                    short_text(result_.tolerance) +
                                     " m: a hole was closed, or a part inside the body was removed");
         if (!result_.surface.can_be_filled()) return;
         Real volume = 0;

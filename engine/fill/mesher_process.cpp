@@ -16,7 +16,7 @@
 #include <system_error>
 #include <utility>
 
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 
@@ -29,7 +29,9 @@ constexpr int output = 3;                    // file descriptor to which the mes
 /// Temporary file without a name. The system removes it when this program ends, even after a crash.
 using NamelessFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-[[noreturn]] void refuse(const std::string& what) { throw std::system_error(errno, std::generic_category(), what); }
+[[noreturn]] void refuse(const std::string& what) {
+    throw std::system_error(errno, std::generic_category(), what);
+}
 
 NamelessFile nameless_file() {
     NamelessFile file(std::tmpfile(), std::fclose);
@@ -145,12 +147,6 @@ private:
     pid_t id_ = 0;
 };
 
-std::string amount(Real value, const char* unit) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.3g %s", value, unit);
-    return text;
-}
-
 MesherResult failed(std::string failure, bool missing = false, bool stopped = false) {
     return {.mesh = {}, .failure = std::move(failure), .missing = missing, .stopped = stopped};
 }
@@ -166,10 +162,10 @@ MesherResult run_mesher(const SurfaceMesh& surface, Real largest_edge, const Mes
     for (; !status; status = child.ended()) {
         const std::chrono::duration<Real> elapsed = std::chrono::steady_clock::now() - start;
         if (elapsed.count() > call.limits.seconds)
-            return failed("was stopped after the time limit of " + amount(call.limits.seconds, "s"), false, true);
+            return failed("was stopped after the time limit of " + short_text(call.limits.seconds) + " s", false, true);
         if (child.memory() > call.limits.bytes)
             return failed("was stopped because it needed more memory than the limit of " +
-                              amount(call.limits.bytes / 1e9, "GB"),
+                              short_text(call.limits.bytes / 1e9) + " GB",
                           false, true);
         if (call.wait) call.wait();
         usleep(poll_interval);
@@ -178,12 +174,10 @@ MesherResult run_mesher(const SurfaceMesh& surface, Real largest_edge, const Mes
         const std::string message = last_line(messages.get());
         return message.empty() ? text : text + " (" + message + ")";
     };
-    if (WIFSIGNALED(*status))
-        return failed(with_message(std::string("crashed: ") + strsignal(WTERMSIG(*status))));
+    if (WIFSIGNALED(*status)) return failed(with_message(std::string("crashed: ") + strsignal(WTERMSIG(*status))));
     const int code = WEXITSTATUS(*status);
-    if (code == exit_not_started || code == exit_missing)
-        return failed(with_message("could not be started"), true);
-    if (code != 0) return failed(with_message("found no tetrahedra (exit code " + std::to_string(code) + ")"));
+    if (code == exit_not_started || code == exit_missing) return failed(with_message("could not be started"), true);
+    if (code != 0) return failed(with_message("found no tetrahedra, exit code " + std::to_string(code)));
     MesherResult result{.mesh = read_mesh(out.get())};
     if (!result.mesh) result.failure = "wrote a file that is not a valid mesh";
     return result;

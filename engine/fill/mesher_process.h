@@ -1,5 +1,5 @@
-// Runs a mesher, a separate program that fills a surface with tetrahedra. If the mesher crashes, hangs or needs too much
-// memory, only its process ends.
+// Runs a mesher, a separate program that fills a surface with tetrahedra. If the mesher crashes, hangs or needs too
+// much memory, only its process ends.
 #pragma once
 
 #include <functional>

@@ -2,13 +2,13 @@
 
 #include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <system_error>
 
 #include "engine/mesh/repair/surface_measures.h"
+#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 
@@ -25,8 +25,8 @@ except ImportError as error:
 nodes, triangles, edge = sys.stdin.readline().split()
 nodes, triangles = int(nodes), int(triangles)
 os.chdir("/proc")  # no files can be created there; fTetWild would write its input to a file
-numbers = numpy.array(sys.stdin.read().split())
-points = numbers[:3 * nodes].astype(float).reshape(-1, 3)
+numbers = numpy.fromstring(sys.stdin.read(), sep=" ")
+points = numbers[:3 * nodes].reshape(-1, 3)
 faces = numbers[3 * nodes:].astype(numpy.int32).reshape(-1, 3)
 diagonal = numpy.linalg.norm(points.max(axis=0) - points.min(axis=0))
 mesher = wildmeshing.Tetrahedralizer(
@@ -35,6 +35,8 @@ mesher.set_log_level(6)
 mesher.set_mesh(points, faces)
 mesher.tetrahedralize()
 points, tetrahedra = mesher.get_tet_mesh(manifold_surface=True, correct_surface_orientation=True)[:2]
+if len(tetrahedra) == 0:
+    sys.exit("the surface encloses no volume")
 used, tetrahedra = numpy.unique(tetrahedra, return_inverse=True)
 points, tetrahedra = points[used], tetrahedra.reshape(-1, 4)
 with os.fdopen(3, "w") as out:
@@ -47,12 +49,6 @@ os._exit(0)
 std::string value_of(const char* variable) {
     const char* value = std::getenv(variable);
     return value ? value : "";
-}
-
-std::string exact_text(Real value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.17g", value);
-    return text;
 }
 
 std::function<void()> waiting(const MesherSetup& setup, const std::string& doing) {
@@ -94,7 +90,7 @@ MesherResult fill_by_netgen(const SurfaceMesh& surface, Real largest_edge, const
 MesherResult fill_by_ftetwild(const SurfaceMesh& surface, Real edge, Real envelope, const MesherSetup& setup) {
     return run_mesher(surface, edge,
                       {.command = {python_program(setup.python), "-c", ftetwild_script,
-                                   exact_text(envelope / box_diagonal(surface))},
+                                   short_text(envelope / box_diagonal(surface), 17)},
                        .limits = setup.limits,
                        .wait = waiting(setup, "filling the surface by fTetWild")});
 }

@@ -44,9 +44,8 @@ Json starter_scene(const FillOptions& options, const MaterialSettings& given, co
     const Real rounding = std::pow(10, std::ceil(std::log10(height)) - 3);
     // Time of six falls, enough for the body to come to rest.
     const Real seconds = std::ceil(60 * std::sqrt(2 * fall / gravity)) / 10;
-    Json material{{"young_modulus", given.young_modulus},
-                  {"poisson_ratio", given.poisson_ratio},
-                  {"density", given.density}};
+    Json material{
+        {"young_modulus", given.young_modulus}, {"poisson_ratio", given.poisson_ratio}, {"density", given.density}};
     if (!options.material.empty()) material = {{"like", options.material}};
     const std::string name = options.surfaces.front().stem().string();
     Json body{{"name", name},
@@ -86,8 +85,8 @@ Json fill_json(const FillOptions& options, const mesh::FilledMesh& filled, const
 void print_text(const FillOptions& options, const mesh::FilledMesh& filled, const MeshReport& report,
                 const Problems& problems, double seconds) {
     const mesh::SurfaceDistance& distance = filled.distance;
-    std::cout << options.mesh.string() << ": " << grouped(report.tetrahedra) << " tetrahedra, "
-              << grouped(report.nodes) << " nodes\n"
+    std::cout << options.mesh.string() << ": " << grouped(report.tetrahedra) << " tetrahedra, " << grouped(report.nodes)
+              << " nodes\n"
               << summary_line("surface", grouped(filled.surface.triangles) + " triangles, mean edge " +
                                              with_unit(filled.surface.mean_edge, "m"))
               << summary_line("filled by", filled.mesher + " in " + duration_text(seconds));
@@ -98,17 +97,17 @@ void print_text(const FillOptions& options, const mesh::FilledMesh& filled, cons
     if (filled.exact)
         std::cout << summary_line("distance", "0, the surface is unchanged");
     else
-        std::cout << summary_line("distance", "from the surface to the mesh up to " + with_unit(distance.from_first, "m") +
-                                                  ", mean " + with_unit(distance.mean_from_first, "m"))
+        std::cout << summary_line("distance", "from the surface to the mesh up to " +
+                                                  with_unit(distance.from_first, "m") + ", mean " +
+                                                  with_unit(distance.mean_from_first, "m"))
                   << summary_line("", "from the mesh to the surface up to " + with_unit(distance.from_second, "m") +
                                           ", mean " + with_unit(distance.mean_from_second, "m") + "; tolerance " +
                                           with_unit(filled.tolerance, "m"));
     std::cout << summary_line("quality", "mean " + short_number(report.mean_quality) + ", worst " +
                                              short_number(report.min_quality) + " (1: regular tetrahedron)")
               << summary_line("step", with_unit(filled.stable_step, "s") + " is stable with " +
-                                          (options.material.empty()
-                                               ? "the default material, 1e5 Pa and 1000 kg/m^3"
-                                               : "the material " + in_quotes(options.material)));
+                                          (options.material.empty() ? "the default material, 1e5 Pa and 1000 kg/m^3"
+                                                                    : "the material " + in_quotes(options.material)));
     if (!report.labels.empty()) std::cout << summary_line("labels", labels_text(report));
     print_notes(filled.notes);
     print_problems(problems);

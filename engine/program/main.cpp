@@ -347,7 +347,8 @@ void add_fill(CLI::App& app, FillOptions& options) {
     command
         .add_option_function<Real>(
             "--edge", [&options](const Real& edge) { options.settings.edge = edge; },
-            "edge length of the tetrahedra and of their surface [m]; default: the triangles of a surface without faults "
+            "edge length of the tetrahedra and of their surface [m]; default: the triangles of a surface without "
+            "faults "
             "are kept, and other surfaces get a twentieth of the diagonal of the bounding box")
         ->check(positive_number);
     command

@@ -71,13 +71,13 @@ public:
     }
 
     RepairedMesh run() {
-        mesh::BestMesh best = mesh::best_mesh(
-            {.surface = surface_,
-             .edge = result_.before.mesh.mean_edge,
-             .tolerance = result_.tolerance,
-             .least_count = least_count * static_cast<Real>(mesh_.tetrahedra.size()),
-             .setup = {.progress = progress_},
-             .stable_step = [this](const Mesh& mesh) { return step_of(mesh, inspect(mesh), of_); }});
+        mesh::BestMesh best =
+            mesh::best_mesh({.surface = surface_,
+                             .edge = result_.before.mesh.mean_edge,
+                             .tolerance = result_.tolerance,
+                             .least_count = least_count * static_cast<Real>(mesh_.tetrahedra.size()),
+                             .setup = {.progress = progress_},
+                             .stable_step = [this](const Mesh& mesh) { return step_of(mesh, inspect(mesh), of_); }});
         take(std::move(best));
         return std::move(result_);
     }

@@ -149,7 +149,7 @@ struct ScenePlan {
     Settings settings;
     Tuning tuning{};  // set by tests and measurements, not by scene files
     std::vector<std::pair<std::string, MaterialSettings>> materials;
-    // one mesh for each mesh file or filled surface, and for each entry of "bodies" without a file; copies of a body share the mesh
+    // one mesh for each mesh file, filled surface and entry of "bodies" without a file; copies of a body share the mesh
     std::vector<Mesh> meshes;
     std::vector<std::filesystem::path> mesh_files;  // file of each mesh or filled surface; else empty
     std::vector<std::string> notes;                 // remarks about mesh files that were corrected on reading

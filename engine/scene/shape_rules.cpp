@@ -101,8 +101,9 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
                  {.meaning = "path of a Gmsh .msh, VTK .vtk or .vtu, or TetGen .node/.ele file, relative to the folder "
                              "of the scene; rigid bodies and colliders also take .obj, .ply and .stl"})
             .key("surface", &MeshEntry::surface,
-                 {.meaning = "path of a surface, for example .obj, .ply or .stl, relative to the folder of the scene. It is "
-                             "filled with tetrahedra as by `skerry fill`, and the mesh is kept in a file beside it"})
+                 {.meaning =
+                      "path of a surface, for example .obj, .ply or .stl, relative to the folder of the scene. It is "
+                      "filled with tetrahedra as by `skerry fill`, and the mesh is kept in a file beside it"})
             .key("edge", &MeshEntry::edge,
                  {.meaning = "with \"surface\": edge length of the tetrahedra, before scaling; default: the triangles "
                              "of a surface without faults are kept",

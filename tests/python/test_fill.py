@@ -28,11 +28,11 @@ def joined(*surfaces: sk.SurfaceMesh) -> sk.SurfaceMesh:
     )
 
 
-
 def test_a_hole_is_closed_and_the_rest_stays_within_the_tolerance(tmp_path: Path) -> None:
     whole = ball(0.5)
     above = (whole.nodes[whole.triangles][:, :, 2] > 0.45).any(axis=1)
-    lines = [f"v {x} {y} {z}" for x, y, z in whole.nodes] + [f"f {a} {b} {c}" for a, b, c in whole.triangles[~above] + 1]
+    lines = [f"v {x} {y} {z}" for x, y, z in whole.nodes]
+    lines += [f"f {a} {b} {c}" for a, b, c in whole.triangles[~above] + 1]
     (tmp_path / "open.obj").write_text("\n".join(lines) + "\n")
     with pytest.warns(sk.Doubt) as doubts:
         mesh = sk.Mesh.fill(tmp_path / "open.obj", edge=0.15, tolerance=5e-3)

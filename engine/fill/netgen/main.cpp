@@ -1,7 +1,7 @@
 // skerry-fill: reads a closed surface from standard input and writes tetrahedra that fill the surface to a file.
-// mesh::fill and `skerry inspect --repair` start it. It is a separate program for two reasons. First, `skerry` then does not link
-// Netgen (LGPL) and the libraries that Debian's build of Netgen loads (CAD libraries, Tcl, Python and MPI). Second, if
-// Netgen crashes on a surface, only this process ends.
+// mesh::fill and `skerry inspect --repair` start it. It is a separate program for two reasons. First, `skerry` then
+// does not link Netgen (LGPL) and the libraries that Debian's build of Netgen loads (CAD libraries, Tcl, Python and
+// MPI). Second, if Netgen crashes on a surface, only this process ends.
 //
 // engine/fill/mesher_process.h describes the formats of the input and of the output.
 #include <cstdio>

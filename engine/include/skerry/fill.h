@@ -70,9 +70,9 @@ using FillProgress = std::function<void(const std::string&)>;
 /// If shells are nested, regions have the labels 1, 2, ..., beginning with the region of the largest shell. The faces
 /// of each shell are a set: with the name of the file if each file has one shell, otherwise shell_1, shell_2, ...
 ///
-/// Shells that repeat another shell are dropped, with a note. Another note says so if the new surface is farther from the
-/// given one than the tolerance, as where a hole was closed. Throws SceneError that names the file if a file cannot be
-/// read, a mesher is not installed, or no mesher fills the surface within the limits.
+/// Shells that repeat another shell are dropped, with a note. Another note says so if the new surface is farther from
+/// the given one than the tolerance, as where a hole was closed. Throws SceneError that names the file if a file cannot
+/// be read, a mesher is not installed, or no mesher fills the surface within the limits.
 FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSettings& settings = {},
                 const FillProgress& progress = {});
 
@@ -82,10 +82,10 @@ FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillS
 
 /// Reads the mesh that fills a surface file from the cache file beside it, or else fills the surface and writes the
 /// cache file. The name of the cache file contains a hash of the surface file, `edge`, `tolerance` and `cavities`; the
-/// stable steps of meshes are compared for the default material. If the file cannot be written, the mesh is returned all
-/// the same. `notes`: gets the notes of the filling.
-Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings = {}, const FillProgress& progress = {},
-                 std::vector<std::string>* notes = nullptr);
+/// stable steps of meshes are compared for the default material. If the file cannot be written, the mesh is returned
+/// all the same. `notes`: gets the notes of the filling.
+Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings = {},
+                 const FillProgress& progress = {}, std::vector<std::string>* notes = nullptr);
 
 }  // namespace skerry::mesh
 #pragma GCC visibility pop

@@ -3,7 +3,8 @@
 from ._core import version as __version__
 from ._errors import BusyError, Doubt, SceneError, StepError
 from ._materials import KnownFriction, NamedMaterials, materials, mooney_rivlin, ogden, orthotropic
-from ._mesh import Mesh, MeshReport, read_surface
+from ._mesh import Mesh, read_surface
+from ._mesh_report import MeshReport
 from ._problem import Problem, ProblemError, Solution, StepProblem, problem_error, solve
 from ._recorder import Film, Page, Recorder
 from ._results import (

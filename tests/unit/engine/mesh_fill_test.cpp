@@ -39,7 +39,8 @@ std::filesystem::path stub(const TemporaryFolder& folder, const std::string& nam
 }
 
 /// The surface of one tetrahedron, and the commands of a mesher that fills it.
-const SurfaceMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+const SurfaceMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                              {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
 const char* const fill_tetrahedron = "printf '4 1\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n0 1 2 3\\n' >&3";
 
 /// Path of the program skerry-fill in the build folder of this test program.
@@ -195,10 +196,10 @@ TEST_CASE("if Netgen fails or is missing, fTetWild fills the surface, with a not
 
 TEST_CASE("a surface of a scene is filled again only after a change of the surface or of the settings") {
     const TemporaryFolder folder;
-    const Variable netgen("SKERRY_FILL",
-                          stub(folder, "fill", "echo run >> " + (folder.path() / "runs").string() + "\n" +
-                                                   std::string(fill_tetrahedron))
-                              .string());
+    const Variable netgen(
+        "SKERRY_FILL",
+        stub(folder, "fill", "echo run >> " + (folder.path() / "runs").string() + "\n" + std::string(fill_tetrahedron))
+            .string());
     const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
     const std::filesystem::path file = folder.write("part.obj", obj);
     const auto runs_of = [&](const mesh::FillSettings& settings) {
