@@ -32,11 +32,23 @@ Path: TypeAlias = str | os.PathLike[str]
 
 _LABEL_NAMES = ("region", "gmsh:physical", "medit:ref", "CellEntityIds")
 """Names of cell data that hold labels, as in files."""
-_LINEAR_TETRAHEDRON, _CURVED_TETRAHEDRA = 4, (11, 29, 30, 31)  # element types of Gmsh
-_LINEAR_TRIANGLE = 2
-_VTK_TRIANGLE, _VTK_TETRAHEDRON, _VTK_CURVED = 5, 10, (24, 71)
-_VTK_NAMES = {_VTK_TRIANGLE: "triangle", _VTK_TETRAHEDRON: "tetra"}
+_GMSH_KINDS = {4: "tetra", 11: "tetra10", 2: "triangle", 9: "triangle6"}
+_GMSH_CURVED = (29, 30, 31)
+"""Element types of Gmsh of tetrahedra and triangles, and of tetrahedra of higher order."""
+_VTK_TETRAHEDRON = 10
+_VTK_NAMES = {5: "triangle", _VTK_TETRAHEDRON: "tetra", 22: "triangle6", 24: "tetra10", 71: "VTK_LAGRANGE_TETRAHEDRON"}
 _KINDS: Mapping[str, Literal["face", "tetrahedron"]] = {"triangle": "face", "tetra": "tetrahedron"}
+_HIGHER_ORDER = ("tetra20", "tetra35", "VTK_LAGRANGE_TETRAHEDRON")
+_NODES = {"tetra": 4, "tetra10": 10, "triangle": 3, "triangle6": 6}
+_TRIANGLE_PARTS = np.array([[0, 3, 5], [1, 4, 3], [2, 5, 4], [3, 4, 5]])
+"""Places of the nodes of the four parts of a triangle of second order."""
+_TETRAHEDRON_PARTS = np.array(
+    [
+        [(0, 4, 6, 7), (1, 5, 4, 8), (2, 6, 5, 9), (3, 7, 9, 8)] + [(a, b, ring[k - 1], ring[k]) for k in (1, 2, 3, 0)]
+        for a, b, ring in ((4, 9, (5, 6, 7, 8)), (5, 7, (4, 8, 9, 6)), (6, 8, (4, 5, 9, 7)))
+    ]
+)
+"""Places of the nodes of the eight parts of a tetrahedron of second order, for each choice of the diagonal a b."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,13 +155,17 @@ class Mesh:
 
     @staticmethod
     def read(path: Path) -> Mesh:
-        """Reads a mesh from Gmsh .msh (1, 2.2, 4.1), VTK .vtk or .vtu, or TetGen .node and .ele.
+        """Reads a mesh from Gmsh .msh (1, 2.2, 4.1), VTK .vtk or .vtu, TetGen .node and .ele, Medit .mesh and .meshb,
+        or Abaqus .inp.
 
-        Only linear tetrahedra are used, and unused nodes are dropped. Labels are physical groups (Gmsh), the cell data
-        region, gmsh:physical, medit:ref or CellEntityIds (VTK), or the last attribute (TetGen). Sets are physical
-        groups by name, or surface_N and the like without one (Gmsh); arrays NAME of zeros and ones, and NAME_N for each
-        number N of other arrays of whole numbers (VTK); node_marker_N and face_marker_N (TetGen). Inverted tetrahedra
-        are turned, with a warning Doubt. SceneError: the file cannot be read, or has no tetrahedra."""
+        Tetrahedra of second order are divided into eight linear ones each. Other elements and unused nodes are dropped.
+        Labels are physical groups (Gmsh), the cell data region, gmsh:physical, medit:ref or CellEntityIds (VTK), the
+        last attribute (TetGen), references (Medit), or numbers of the materials of solid sections (Abaqus). Sets are
+        physical groups by name, or surface_N and the like without one (Gmsh); arrays NAME of zeros and ones, and NAME_N
+        for each number N of other arrays of whole numbers (VTK); node_marker_N and face_marker_N (TetGen); node_ref_N
+        and face_ref_N (Medit); sets and surfaces by name, after INSTANCE and a dot (Abaqus). Inverted tetrahedra are
+        turned. A warning Doubt tells what was divided, dropped or turned. SceneError: the file cannot be read, or has
+        no tetrahedra."""
         core, notes = _core.read_mesh(path_text(path, "path"))
         _warn(notes)
         return Mesh._of(core)
@@ -214,39 +230,27 @@ class Mesh:
     def from_meshio(mesh: Any) -> Mesh:
         """Mesh of a meshio.Mesh. Labels are the first cell data named region, gmsh:physical, medit:ref or
         CellEntityIds that hold whole numbers. Sets are point sets, cell sets, physical groups with a name, and data of
-        whole numbers by the rules of read(). Cells that are not tetrahedra and unused nodes are dropped."""
+        whole numbers by the rules of read(). Tetrahedra of second order are divided as by read(). Cells that are not
+        tetrahedra and unused nodes are dropped."""
         require_attributes(mesh, "mesh", "a meshio.Mesh", "cells", "cell_data", "points")
-        blocks = [number for number, block in enumerate(mesh.cells) if block.type == "tetra"]
-        curved = sum(len(block.data) for block in mesh.cells if block.type in ("tetra10", "tetra20", "tetra35"))
-        _require_linear("meshio mesh", curved)
-        rows = [np.asarray(mesh.cells[number].data) for number in blocks]
-        data = {name: [np.asarray(mesh.cell_data[name][number]) for number in blocks] for name in mesh.cell_data}
-        labels = _first_labels({name: np.concatenate(values) for name, values in data.items() if values})
-        parts = Parts()
-        for name, nodes in getattr(mesh, "point_sets", {}).items():
-            parts.add_nodes(name, nodes)
-        for name, values in getattr(mesh, "point_data", {}).items():
-            for of_set, members in sets_of_numbers(name, np.asarray(values)).items():
-                parts.add_nodes(of_set, np.flatnonzero(members))
-        numbers = {
-            name: sets_of_numbers(name, np.concatenate([np.ravel(block) for block in values]))
-            for name, values in mesh.cell_data.items()
-            if name not in _LABEL_NAMES and all(np.ndim(block) == 1 for block in values) and len(values)
-        }
-        first = first_cell = 0
+        blocks = [(block.type, np.asarray(block.data)) for block in mesh.cells]
+        named = []
         for number, block in enumerate(mesh.cells):
-            of_block: dict[str, NDArray[np.bool_]] = {}
-            cells = np.asarray(block.data)
-            for sets in numbers.values():
-                of_block |= {name: members[first_cell : first_cell + len(cells)] for name, members in sets.items()}
-            for name, blocks in getattr(mesh, "cell_sets", {}).items():
-                if blocks[number] is not None:
-                    of_block[name] = np.isin(np.arange(len(cells)), blocks[number])
-            of_block |= _named_groups(mesh, number, block.dim if hasattr(block, "dim") else None)
-            parts.add_block(_KINDS.get(block.type, "node"), cells, first, of_block)
-            first += len(cells) if block.type == "tetra" else 0
-            first_cell += len(cells)
-        return _mesh_of_used_nodes("meshio mesh", mesh.points, rows, labels, parts.arrays())
+            sets = {
+                name: np.isin(np.arange(len(block.data)), of_block[number])
+                for name, of_block in getattr(mesh, "cell_sets", {}).items()
+                if of_block[number] is not None
+            }
+            named.append(sets | _named_groups(mesh, number, block.dim if hasattr(block, "dim") else None))
+        return _mesh_of_blocks(
+            "meshio mesh",
+            mesh.points,
+            blocks,
+            {name: [np.asarray(values) for values in data] for name, data in mesh.cell_data.items()},
+            named,
+            getattr(mesh, "point_data", {}),
+            getattr(mesh, "point_sets", {}),
+        )
 
     def to_meshio(self) -> Any:
         """The mesh as a meshio.Mesh. Labels become the cell data gmsh:physical. Needs the package meshio."""
@@ -256,27 +260,19 @@ class Mesh:
 
     @staticmethod
     def from_pyvista(grid: Any) -> Mesh:
-        """Mesh of a pyvista.UnstructuredGrid. Labels and sets are found as by from_meshio(). Cells that are not
-        tetrahedra and unused nodes are dropped."""
+        """Mesh of a pyvista.UnstructuredGrid. Labels and sets are found, and cells divided or dropped, as by
+        from_meshio()."""
         require_attributes(grid, "grid", "a pyvista.UnstructuredGrid", "celltypes", "cells_dict", "cell_data", "points")
-        kinds = np.asarray(grid.celltypes)
-        _require_linear("PyVista grid", int(np.isin(kinds, _VTK_CURVED).sum()))
-        chosen = kinds == _VTK_TETRAHEDRON
-        rows = [np.asarray(grid.cells_dict[_VTK_TETRAHEDRON])] if chosen.any() else []
-        labels = _first_labels({name: np.asarray(grid.cell_data[name])[chosen] for name in grid.cell_data})
-        parts, cells_of = Parts(), dict(grid.cells_dict)
-        for name in getattr(grid, "point_data", {}):
-            for of_set, members in sets_of_numbers(name, np.asarray(grid.point_data[name])).items():
-                parts.add_nodes(of_set, np.flatnonzero(members))
-        for name in grid.cell_data:
-            if name in _LABEL_NAMES:
-                continue
-            for of_set, members in sets_of_numbers(name, np.asarray(grid.cell_data[name])).items():
-                for kind, cells in cells_of.items():
-                    name_of_kind = _VTK_NAMES.get(int(kind), "")
-                    members_of_kind = {of_set: members[kinds == kind]}
-                    parts.add_block(_KINDS.get(name_of_kind, "node"), np.asarray(cells), 0, members_of_kind)
-        return _mesh_of_used_nodes("PyVista grid", grid.points, rows, labels, parts.arrays())
+        kinds, cells = np.asarray(grid.celltypes), dict(grid.cells_dict)
+        return _mesh_of_blocks(
+            "PyVista grid",
+            grid.points,
+            [(_VTK_NAMES.get(int(kind), str(kind)), np.asarray(of_kind)) for kind, of_kind in cells.items()],
+            {name: [np.asarray(grid.cell_data[name])[kinds == kind] for kind in cells] for name in grid.cell_data},
+            [{} for _ in cells],
+            getattr(grid, "point_data", {}),
+            {},
+        )
 
     def to_pyvista(self) -> Any:
         """The mesh as a pyvista.UnstructuredGrid. Labels become the cell data region. Needs the package pyvista."""
@@ -290,32 +286,32 @@ class Mesh:
     def from_gmsh(model: Any) -> Mesh:
         """Mesh of the current model of Gmsh: Mesh.from_gmsh(gmsh.model). The label of a tetrahedron is the number of
         its physical group (the first, if its volume is in several), and 0 outside of all groups; if no tetrahedron is
-        in a group, it is the number of its volume. Sets are the physical groups, as by read()."""
+        in a group, it is the number of its volume. Sets are the physical groups, and tetrahedra of second order are
+        divided, as by read()."""
         require_attributes(model, "model", "gmsh.model", "mesh", "getEntities", "getPhysicalGroupsForEntity")
         tags, positions, _ = model.mesh.getNodes()
         place = np.zeros(int(max(tags, default=0)) + 1, dtype=np.int64)
         place[np.asarray(tags, dtype=np.int64)] = np.arange(len(tags))
+        points = np.reshape(positions, (-1, 3))
         rows, groups, volumes, curved = [], [], [], 0
         for _, volume in model.getEntities(3):
             kinds, _, nodes = model.mesh.getElements(3, volume)
-            curved += sum(
-                len(of_kind) for kind, of_kind in zip(kinds, nodes, strict=True) if kind in _CURVED_TETRAHEDRA
-            )
             for kind, of_kind in zip(kinds, nodes, strict=True):
-                if kind != _LINEAR_TETRAHEDRON:
+                curved += len(of_kind) if kind in _GMSH_CURVED else 0
+                if kind not in _GMSH_KINDS:
                     continue
-                rows.append(place[np.asarray(of_kind, dtype=np.int64)].reshape(-1, 4))
+                rows.append(_gmsh_cells(kind, place[np.asarray(of_kind, dtype=np.int64)], points))
                 group = next(iter(model.getPhysicalGroupsForEntity(3, volume)), 0)
                 groups.append(np.full(len(rows[-1]), group))
                 volumes.append(np.full(len(rows[-1]), volume))
-        _require_linear("Gmsh model", curved)
+        _require_low_order("Gmsh model", curved)
         labels = groups if any(np.any(group) for group in groups) else volumes
         return _mesh_of_used_nodes(
             "Gmsh model",
-            np.reshape(positions, (-1, 3)),
+            points,
             rows,
             np.concatenate(labels) if labels else None,
-            _gmsh_groups(model, place, np.concatenate(volumes) if volumes else np.empty(0)),
+            _gmsh_groups(model, place, points, np.concatenate(volumes) if volumes else np.empty(0)),
         )
 
     # Contents.
@@ -410,11 +406,69 @@ def _warn(notes: list[str]) -> None:
         warnings.warn(note, Doubt, stacklevel=3)
 
 
-def _require_linear(object: str, curved: int) -> None:
+def _require_low_order(object: str, curved: int) -> None:
     if curved:
         raise scene_error(
-            object, "cells", f"{curved} curved tetrahedra", "linear ones", "make a mesh of the first order"
+            object,
+            "cells",
+            f"{curved} tetrahedra of third or higher order",
+            "tetrahedra of first or second order",
+            "make a mesh of the first order",
         )
+
+
+def _divided(kind: str, cells: NDArray[Any], points: NDArray[Any]) -> tuple[str, NDArray[Any]]:
+    """Divides cells of second order (in the order of VTK) into linear ones, as read() does. Returns other cells as they
+    are."""
+    if kind == "triangle6":
+        return "triangle", cells[:, _TRIANGLE_PARTS].reshape(-1, 3)
+    if kind == "tetra10":
+        diagonals = points[cells[:, _TETRAHEDRON_PARTS[:, 4, 0]]] - points[cells[:, _TETRAHEDRON_PARTS[:, 4, 1]]]
+        parts = _TETRAHEDRON_PARTS[np.argmin((diagonals**2).sum(axis=2), axis=1)]
+        return "tetra", cells[np.arange(len(cells))[:, None, None], parts].reshape(-1, 4)
+    return kind, cells
+
+
+def _mesh_of_blocks(
+    object: str,
+    points: ArrayLike,
+    blocks: list[tuple[str, NDArray[Any]]],
+    data: Mapping[str, list[NDArray[Any]]],
+    named: list[dict[str, NDArray[np.bool_]]],
+    point_data: Mapping[str, Any],
+    point_sets: Mapping[str, Any],
+) -> Mesh:
+    """Mesh of the cells of another package. `blocks`: kind (as in meshio) and nodes of cells. `data`: for each name an
+    array for each block. `named`: for each block the members of named sets."""
+    _require_low_order(object, sum(len(cells) for kind, cells in blocks if kind in _HIGHER_ORDER))
+    positions = real_array(points, f"{object}: points", ("n", 3))
+    parts = Parts()
+    for name, nodes in point_sets.items():
+        parts.add_nodes(name, nodes)
+    for name, values in point_data.items():
+        for of_set, members in sets_of_numbers(name, np.asarray(values)).items():
+            parts.add_nodes(of_set, np.flatnonzero(members))
+    numbers: dict[str, NDArray[np.bool_]] = {}
+    for name, values in data.items():
+        if name not in _LABEL_NAMES and values and all(np.ndim(of_block) == 1 for of_block in values):
+            numbers |= sets_of_numbers(name, np.concatenate(values))
+    rows: list[NDArray[Any]] = []
+    of_rows: dict[str, list[NDArray[Any]]] = {}
+    first = first_cell = 0
+    for number, (kind, cells) in enumerate(blocks):
+        linear, divided = _divided(kind, cells, positions)
+        count = len(divided) // max(len(cells), 1)
+        members = {name: of_all[first_cell : first_cell + len(cells)] for name, of_all in numbers.items()}
+        repeated = {name: np.repeat(of_block, count) for name, of_block in (members | named[number]).items()}
+        parts.add_block(_KINDS.get(linear, "node"), divided, first, repeated)
+        first_cell += len(cells)
+        if linear == "tetra":
+            first += len(divided)
+            rows.append(divided)
+            for name, values in data.items():
+                of_rows.setdefault(name, []).append(np.repeat(values[number], count, axis=0))
+    labels = _first_labels({name: np.concatenate(values) for name, values in of_rows.items()})
+    return _mesh_of_used_nodes(object, positions, rows, labels, parts.arrays())
 
 
 def _first_labels(data: Mapping[str, NDArray[Any]]) -> NDArray[np.int32] | None:
@@ -471,7 +525,18 @@ def _named_groups(mesh: Any, number: int, dimension: int | None) -> dict[str, ND
     }
 
 
-def _gmsh_groups(model: Any, place: NDArray[np.int64], volumes: NDArray[Any]) -> dict[str, list[NDArray[Any]]]:
+def _gmsh_cells(kind: int, nodes: NDArray[np.int64], points: NDArray[Any]) -> NDArray[Any]:
+    """Linear cells of the elements of a type of Gmsh in _GMSH_KINDS."""
+    name = _GMSH_KINDS[kind]
+    cells = nodes.reshape(-1, _NODES[name])
+    if name == "tetra10":
+        cells = cells[:, [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]]  # the middles of the last two edges change places
+    return _divided(name, cells, points)[1]
+
+
+def _gmsh_groups(
+    model: Any, place: NDArray[np.int64], points: NDArray[Any], volumes: NDArray[Any]
+) -> dict[str, list[NDArray[Any]]]:
     """Physical groups of a Gmsh model. `place`: number of each node by tag. `volumes`: volume of each tetrahedron."""
     parts = Parts()
     for dimension, tag in model.getPhysicalGroups():
@@ -487,7 +552,10 @@ def _gmsh_groups(model: Any, place: NDArray[np.int64], volumes: NDArray[Any]) ->
             kinds, _, nodes = model.mesh.getElements(dimension, entity)
             for kind, of_kind in zip(kinds, nodes, strict=True):
                 cells = place[np.asarray(of_kind, dtype=np.int64)]
-                parts.add_cells(name, "face" if kind == _LINEAR_TRIANGLE else "node", cells, 0)
+                if kind in _GMSH_KINDS:
+                    parts.add_cells(name, "face", _gmsh_cells(kind, cells, points), 0)
+                else:
+                    parts.add_cells(name, "node", cells, 0)
     return parts.arrays()
 
 
