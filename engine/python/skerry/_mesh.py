@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from types import MappingProxyType
-from typing import Any, Literal, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,31 +24,27 @@ from ._arrays import (
     real_array,
     require_attributes,
 )
+from ._cells import (
+    GMSH_CURVED,
+    GMSH_KINDS,
+    HIGHER_ORDER,
+    KINDS,
+    LABEL_NAMES,
+    VTK_NAMES,
+    VTK_TETRAHEDRON,
+    face_keys,
+    first_labels,
+    gmsh_cells,
+    gmsh_groups,
+    linear_cells,
+    named_groups,
+    require_low_order,
+)
 from ._errors import Doubt, import_package, scene_error
 from ._sets import MeshSet, Parts, SetsLike, set_of, sets_arrays, sets_of_numbers
 from ._settings import SurfaceMesh
 
 Path: TypeAlias = str | os.PathLike[str]
-
-_LABEL_NAMES = ("region", "gmsh:physical", "medit:ref", "CellEntityIds")
-"""Names of cell data that hold labels, as in files."""
-_GMSH_KINDS = {4: "tetra", 11: "tetra10", 2: "triangle", 9: "triangle6"}
-_GMSH_CURVED = (29, 30, 31)
-"""Element types of Gmsh of tetrahedra and triangles, and of tetrahedra of higher order."""
-_VTK_TETRAHEDRON = 10
-_VTK_NAMES = {5: "triangle", _VTK_TETRAHEDRON: "tetra", 22: "triangle6", 24: "tetra10", 71: "VTK_LAGRANGE_TETRAHEDRON"}
-_KINDS: Mapping[str, Literal["face", "tetrahedron"]] = {"triangle": "face", "tetra": "tetrahedron"}
-_HIGHER_ORDER = ("tetra20", "tetra35", "VTK_LAGRANGE_TETRAHEDRON")
-_NODES = {"tetra": 4, "tetra10": 10, "triangle": 3, "triangle6": 6}
-_TRIANGLE_PARTS = np.array([[0, 3, 5], [1, 4, 3], [2, 5, 4], [3, 4, 5]])
-"""Places of the nodes of the four parts of a triangle of second order."""
-_TETRAHEDRON_PARTS = np.array(
-    [
-        [(0, 4, 6, 7), (1, 5, 4, 8), (2, 6, 5, 9), (3, 7, 9, 8)] + [(a, b, ring[k - 1], ring[k]) for k in (1, 2, 3, 0)]
-        for a, b, ring in ((4, 9, (5, 6, 7, 8)), (5, 7, (4, 8, 9, 6)), (6, 8, (4, 5, 9, 7)))
-    ]
-)
-"""Places of the nodes of the eight parts of a tetrahedron of second order, for each choice of the diagonal a b."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -241,7 +237,7 @@ class Mesh:
                 for name, of_block in getattr(mesh, "cell_sets", {}).items()
                 if of_block[number] is not None
             }
-            named.append(sets | _named_groups(mesh, number, block.dim if hasattr(block, "dim") else None))
+            named.append(sets | named_groups(mesh, number, block.dim if hasattr(block, "dim") else None))
         return _mesh_of_blocks(
             "meshio mesh",
             mesh.points,
@@ -267,7 +263,7 @@ class Mesh:
         return _mesh_of_blocks(
             "PyVista grid",
             grid.points,
-            [(_VTK_NAMES.get(int(kind), str(kind)), np.asarray(of_kind)) for kind, of_kind in cells.items()],
+            [(VTK_NAMES.get(int(kind), str(kind)), np.asarray(of_kind)) for kind, of_kind in cells.items()],
             {name: [np.asarray(grid.cell_data[name])[kinds == kind] for kind in cells] for name in grid.cell_data},
             [{} for _ in cells],
             getattr(grid, "point_data", {}),
@@ -277,7 +273,7 @@ class Mesh:
     def to_pyvista(self) -> Any:
         """The mesh as a pyvista.UnstructuredGrid. Labels become the cell data region. Needs the package pyvista."""
         pyvista = import_package("pyvista")
-        grid = pyvista.UnstructuredGrid({_VTK_TETRAHEDRON: self.tetrahedra}, self.nodes)
+        grid = pyvista.UnstructuredGrid({VTK_TETRAHEDRON: self.tetrahedra}, self.nodes)
         if self.labels is not None:
             grid.cell_data["region"] = self.labels
         return grid
@@ -297,21 +293,21 @@ class Mesh:
         for _, volume in model.getEntities(3):
             kinds, _, nodes = model.mesh.getElements(3, volume)
             for kind, of_kind in zip(kinds, nodes, strict=True):
-                curved += len(of_kind) if kind in _GMSH_CURVED else 0
-                if kind not in _GMSH_KINDS:
+                curved += len(of_kind) if kind in GMSH_CURVED else 0
+                if kind not in GMSH_KINDS:
                     continue
-                rows.append(_gmsh_cells(kind, place[np.asarray(of_kind, dtype=np.int64)], points))
+                rows.append(gmsh_cells(kind, place[np.asarray(of_kind, dtype=np.int64)], points))
                 group = next(iter(model.getPhysicalGroupsForEntity(3, volume)), 0)
                 groups.append(np.full(len(rows[-1]), group))
                 volumes.append(np.full(len(rows[-1]), volume))
-        _require_low_order("Gmsh model", curved)
+        require_low_order("Gmsh model", curved)
         labels = groups if any(np.any(group) for group in groups) else volumes
         return _mesh_of_used_nodes(
             "Gmsh model",
             points,
             rows,
             np.concatenate(labels) if labels else None,
-            _gmsh_groups(model, place, points, np.concatenate(volumes) if volumes else np.empty(0)),
+            gmsh_groups(model, place, points, np.concatenate(volumes) if volumes else np.empty(0)),
         )
 
     # Contents.
@@ -406,29 +402,6 @@ def _warn(notes: list[str]) -> None:
         warnings.warn(note, Doubt, stacklevel=3)
 
 
-def _require_low_order(object: str, curved: int) -> None:
-    if curved:
-        raise scene_error(
-            object,
-            "cells",
-            f"{curved} tetrahedra of third or higher order",
-            "tetrahedra of first or second order",
-            "make a mesh of the first order",
-        )
-
-
-def _divided(kind: str, cells: NDArray[Any], points: NDArray[Any]) -> tuple[str, NDArray[Any]]:
-    """Divides cells of second order (in the order of VTK) into linear ones, as read() does. Returns other cells as they
-    are."""
-    if kind == "triangle6":
-        return "triangle", cells[:, _TRIANGLE_PARTS].reshape(-1, 3)
-    if kind == "tetra10":
-        diagonals = points[cells[:, _TETRAHEDRON_PARTS[:, 4, 0]]] - points[cells[:, _TETRAHEDRON_PARTS[:, 4, 1]]]
-        parts = _TETRAHEDRON_PARTS[np.argmin((diagonals**2).sum(axis=2), axis=1)]
-        return "tetra", cells[np.arange(len(cells))[:, None, None], parts].reshape(-1, 4)
-    return kind, cells
-
-
 def _mesh_of_blocks(
     object: str,
     points: ArrayLike,
@@ -440,7 +413,7 @@ def _mesh_of_blocks(
 ) -> Mesh:
     """Mesh of the cells of another package. `blocks`: kind (as in meshio) and nodes of cells. `data`: for each name an
     array for each block. `named`: for each block the members of named sets."""
-    _require_low_order(object, sum(len(cells) for kind, cells in blocks if kind in _HIGHER_ORDER))
+    require_low_order(object, sum(len(cells) for kind, cells in blocks if kind in HIGHER_ORDER))
     positions = real_array(points, f"{object}: points", ("n", 3))
     parts = Parts()
     for name, nodes in point_sets.items():
@@ -450,34 +423,25 @@ def _mesh_of_blocks(
             parts.add_nodes(of_set, np.flatnonzero(members))
     numbers: dict[str, NDArray[np.bool_]] = {}
     for name, values in data.items():
-        if name not in _LABEL_NAMES and values and all(np.ndim(of_block) == 1 for of_block in values):
+        if name not in LABEL_NAMES and values and all(np.ndim(of_block) == 1 for of_block in values):
             numbers |= sets_of_numbers(name, np.concatenate(values))
     rows: list[NDArray[Any]] = []
     of_rows: dict[str, list[NDArray[Any]]] = {}
     first = first_cell = 0
     for number, (kind, cells) in enumerate(blocks):
-        linear, divided = _divided(kind, cells, positions)
-        count = len(divided) // max(len(cells), 1)
-        members = {name: of_all[first_cell : first_cell + len(cells)] for name, of_all in numbers.items()}
-        repeated = {name: np.repeat(of_block, count) for name, of_block in (members | named[number]).items()}
-        parts.add_block(_KINDS.get(linear, "node"), divided, first, repeated)
+        linear, pieces = linear_cells(kind, cells, positions)
+        count = len(pieces) // max(len(cells), 1)
+        of_block = {name: of_all[first_cell : first_cell + len(cells)] for name, of_all in numbers.items()}
+        of_parts = {name: np.repeat(chosen, count) for name, chosen in (of_block | named[number]).items()}
+        parts.add_block(KINDS.get(linear, "node"), pieces, first, of_parts)
         first_cell += len(cells)
         if linear == "tetra":
-            first += len(divided)
-            rows.append(divided)
+            first += len(pieces)
+            rows.append(pieces)
             for name, values in data.items():
                 of_rows.setdefault(name, []).append(np.repeat(values[number], count, axis=0))
-    labels = _first_labels({name: np.concatenate(values) for name, values in of_rows.items()})
+    labels = first_labels({name: np.concatenate(values) for name, values in of_rows.items()})
     return _mesh_of_used_nodes(object, positions, rows, labels, parts.arrays())
-
-
-def _first_labels(data: Mapping[str, NDArray[Any]]) -> NDArray[np.int32] | None:
-    """The first array of cell data that holds labels."""
-    for name in _LABEL_NAMES:
-        values = data.get(name)
-        if values is not None and values.ndim == 1 and np.array_equal(values, values.astype(np.int32)):
-            return values.astype(np.int32)
-    return None
 
 
 def _mesh_of_used_nodes(
@@ -500,66 +464,14 @@ def _mesh_of_used_nodes(
     number = np.full(len(nodes), -1, dtype=np.int32)
     number[used] = np.arange(len(used))
     corners = np.sort(tetrahedra, axis=1).astype(np.int64)
-    known = np.unique(np.concatenate([_face_keys(np.delete(corners, k, axis=1), len(used)) for k in range(4)]))
+    known = np.unique(np.concatenate([face_keys(np.delete(corners, k, axis=1), len(used)) for k in range(4)]))
     kept = {}
     for name, (of_nodes, faces, of_tetrahedra) in sets.items():
         numbered = number[np.asarray(of_nodes, dtype=np.int64)]
         triangles = number[np.asarray(faces, dtype=np.int64).reshape(-1, 3)]
         triangles = triangles[np.all(triangles >= 0, axis=1)]
-        triangles = triangles[np.isin(_face_keys(np.sort(triangles, axis=1).astype(np.int64), len(used)), known)]
+        triangles = triangles[np.isin(face_keys(np.sort(triangles, axis=1).astype(np.int64), len(used)), known)]
         part = MeshSet(nodes=numbered[numbered >= 0], faces=triangles, tetrahedra=of_tetrahedra)
         if len(numbered[numbered >= 0]) + len(triangles) + len(of_tetrahedra):
             kept[name] = part
     return Mesh(nodes[used], tetrahedra, labels=labels, sets=kept)
-
-
-def _named_groups(mesh: Any, number: int, dimension: int | None) -> dict[str, NDArray[np.bool_]]:
-    """Members of the named physical groups of Gmsh in a block of cells of a meshio.Mesh."""
-    groups = mesh.cell_data.get("gmsh:physical")
-    if groups is None:
-        return {}
-    return {
-        name: np.asarray(groups[number]) == group[0]
-        for name, group in getattr(mesh, "field_data", {}).items()
-        if len(group) == 2 and group[1] == dimension
-    }
-
-
-def _gmsh_cells(kind: int, nodes: NDArray[np.int64], points: NDArray[Any]) -> NDArray[Any]:
-    """Linear cells of the elements of a type of Gmsh in _GMSH_KINDS."""
-    name = _GMSH_KINDS[kind]
-    cells = nodes.reshape(-1, _NODES[name])
-    if name == "tetra10":
-        cells = cells[:, [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]]  # the middles of the last two edges change places
-    return _divided(name, cells, points)[1]
-
-
-def _gmsh_groups(
-    model: Any, place: NDArray[np.int64], points: NDArray[Any], volumes: NDArray[Any]
-) -> dict[str, list[NDArray[Any]]]:
-    """Physical groups of a Gmsh model. `place`: number of each node by tag. `volumes`: volume of each tetrahedron."""
-    parts = Parts()
-    for dimension, tag in model.getPhysicalGroups():
-        name = model.getPhysicalName(dimension, tag)
-        if not name and dimension == 3:
-            continue
-        name = name or f"{('point', 'curve', 'surface')[dimension]}_{tag}"
-        entities = model.getEntitiesForPhysicalGroup(dimension, tag)
-        if dimension == 3:
-            parts.add_cells(name, "tetrahedron", np.flatnonzero(np.isin(volumes, entities)), 0)
-            continue
-        for entity in entities:
-            kinds, _, nodes = model.mesh.getElements(dimension, entity)
-            for kind, of_kind in zip(kinds, nodes, strict=True):
-                cells = place[np.asarray(of_kind, dtype=np.int64)]
-                if kind in _GMSH_KINDS:
-                    parts.add_cells(name, "face", _gmsh_cells(kind, cells, points), 0)
-                else:
-                    parts.add_cells(name, "node", cells, 0)
-    return parts.arrays()
-
-
-def _face_keys(nodes: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """One number for each face. `nodes`: ascending node numbers of the faces, shape (k, 3)."""
-    keys: NDArray[np.int64] = (nodes[:, 0] * count + nodes[:, 1]) * count + nodes[:, 2]
-    return keys
