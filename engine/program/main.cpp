@@ -309,7 +309,7 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
     command.footer(inspect_examples);
     command
         .add_option("FILE", options.file,
-                    "mesh file (.msh, .vtk, .vtu, .node, .ele), surface (.obj, .ply, .stl) or scene file (.json)")
+                    "mesh file (.msh, .inp, .mesh, .vtk, .vtu, .node, .ele), surface (.obj, .ply, .stl) or scene file (.json)")
         ->required();
     add_set(command, options.assignments);
     command.add_flag("--json", options.json, "print the result as JSON");

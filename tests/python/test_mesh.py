@@ -170,6 +170,47 @@ def test_a_meshio_mesh_comes_and_goes(tmp_path: Path) -> None:
     assert sk.Mesh.read(tmp_path / "a.msh") == mesh
 
 
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("a.msh", {"file_format": "gmsh22", "binary": False}),
+        ("b.msh", {"file_format": "gmsh22", "binary": True}),
+        ("a.vtk", {"file_format": "vtk42"}),
+        ("b.vtk", {"file_format": "vtk51"}),
+        ("a.vtu", {}),
+        ("a.mesh", {}),
+        ("a.meshb", {}),
+        ("a.inp", {}),
+    ],
+)
+def test_files_that_meshio_writes_are_read(tmp_path: Path, name: str, options: dict[str, Any]) -> None:
+    meshio = pytest.importorskip("meshio")
+    box = sk.Mesh.box((1.0, 1.1, 1.2), (1, 2, 2))
+    skin = box.boundary().triangles  # in the numbers of the mesh, because all nodes are on the boundary
+    labels = np.arange(len(box.tetrahedra)) % 3 + 1
+    names = ("gmsh:physical", "gmsh:geometrical") if name.endswith(".msh") else ("medit:ref",)
+    data = {of: [labels, np.full(len(skin), 5)] for of in names}
+    given = meshio.Mesh(box.nodes, [("tetra", box.tetrahedra), ("triangle", skin)], cell_data=data)
+    meshio.write(tmp_path / name, given, **options)
+    mesh = sk.Mesh.read(tmp_path / name)
+    np.testing.assert_array_equal(mesh.nodes, box.nodes)
+    np.testing.assert_array_equal(mesh.tetrahedra, box.tetrahedra)
+    if name != "a.inp":  # meshio writes no materials
+        np.testing.assert_array_equal(mesh.labels, labels)
+    if ".mesh" in name:
+        np.testing.assert_array_equal(np.sort(mesh.sets["face_ref_5"].faces), np.sort(skin))
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_a_surface_that_meshio_writes_as_ply_is_read(tmp_path: Path, binary: bool) -> None:
+    meshio = pytest.importorskip("meshio")
+    skin = sk.Mesh.ball(0.1, 4).boundary()
+    meshio.write(tmp_path / "a.ply", meshio.Mesh(skin.nodes, [("triangle", skin.triangles)]), binary=binary)
+    read = sk.read_surface(tmp_path / "a.ply")
+    np.testing.assert_array_equal(read.nodes, skin.nodes)
+    np.testing.assert_array_equal(read.triangles, skin.triangles)
+
+
 def test_a_meshio_mesh_loses_what_is_not_a_tetrahedron() -> None:
     meshio = pytest.importorskip("meshio")
     points = [[9, 9, 9], *NODES]
@@ -182,8 +223,51 @@ def test_a_meshio_mesh_loses_what_is_not_a_tetrahedron() -> None:
     assert sk.Mesh.from_meshio(meshio.Mesh(points, cells, cell_data=data)) == sk.Mesh(NODES, TETRAHEDRA, labels=[7, 9])
     with pytest.raises(sk.SceneError, match="meshio mesh: cells: found no tetrahedra"):
         sk.Mesh.from_meshio(meshio.Mesh(points, cells[:1]))
-    with pytest.raises(sk.SceneError, match="found 1 curved tetrahedra, expected linear ones"):
-        sk.Mesh.from_meshio(meshio.Mesh(np.zeros((10, 3)), [("tetra10", [range(10)])]))
+    with pytest.raises(sk.SceneError, match="found 1 tetrahedra of third or higher order, expected"):
+        sk.Mesh.from_meshio(meshio.Mesh(np.zeros((20, 3)), [("tetra20", [range(20)])]))
+
+
+def _second_order(mesh: sk.Mesh) -> tuple[Any, Any, Any]:
+    """Nodes, tetrahedra and boundary triangles of second order of a mesh whose nodes are all on the boundary."""
+    nodes = [*mesh.nodes]
+    number: dict[tuple[int, int], int] = {}
+
+    def middle(a: int, b: int) -> int:
+        if (min(a, b), max(a, b)) not in number:
+            number[min(a, b), max(a, b)] = len(nodes)
+            nodes.append((mesh.nodes[a] + mesh.nodes[b]) / 2 + 0.003)
+        return number[min(a, b), max(a, b)]
+
+    edges = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
+    cells = [[*t, *(middle(t[a], t[b]) for a, b in edges)] for t in mesh.tetrahedra]
+    faces = [[*t, *(middle(t[a], t[b]) for a, b in edges[:3])] for t in mesh.boundary().triangles]
+    return np.array(nodes), np.array(cells), np.array(faces)
+
+
+@pytest.mark.parametrize("name", ["a.msh", "a.vtk", "a.vtu", "a.inp"])
+def test_cells_of_second_order_are_divided_alike_in_files_and_meshio_meshes(tmp_path: Path, name: str) -> None:
+    meshio = pytest.importorskip("meshio")
+    nodes, cells, faces = _second_order(sk.Mesh.box((1.0, 1.1, 1.2), (1, 2, 2)))
+    labels = np.arange(len(cells)) % 3 + 1
+    part = np.arange(len(cells)) % 2
+    data = {"gmsh:physical": [labels, np.full(len(faces), 5)], "gmsh:geometrical": [labels, np.full(len(faces), 5)]}
+    if name != "a.msh":
+        data |= {"part": [part, np.ones(len(faces), dtype=int)]}
+    given = meshio.Mesh(nodes, [("tetra10", cells), ("triangle6", faces)], cell_data=data)
+    meshio.write(tmp_path / name, given, **({"file_format": "gmsh22", "binary": False} if name == "a.msh" else {}))
+    with pytest.warns(sk.Doubt, match=f"{len(cells)} tetrahedra of second order were divided"):
+        mesh = sk.Mesh.read(tmp_path / name)
+    converted = sk.Mesh.from_meshio(given)
+    np.testing.assert_array_equal(mesh.nodes, nodes)
+    np.testing.assert_array_equal(mesh.tetrahedra, converted.tetrahedra)
+    np.testing.assert_array_equal(converted.labels, np.repeat(labels, 8))
+    report = converted.inspect()
+    assert report.inverted == 0 and report.closed_manifold and report.boundary_triangles == 4 * len(faces)
+    if name != "a.inp":  # meshio writes no cell data
+        np.testing.assert_array_equal(mesh.labels, converted.labels)
+    if name in ("a.vtk", "a.vtu"):
+        assert dict(mesh.sets) == dict(converted.sets)
+        assert np.shape(mesh.sets["part"].faces) == (4 * len(faces), 3)
 
 
 def test_a_pyvista_grid_comes_and_goes() -> None:
@@ -192,6 +276,9 @@ def test_a_pyvista_grid_comes_and_goes() -> None:
     grid = mesh.to_pyvista()
     assert grid.compute_cell_sizes()["Volume"].sum() == pytest.approx(mesh.volume)
     assert sk.Mesh.from_pyvista(grid) == mesh
+    nodes, cells, _ = _second_order(mesh)
+    curved = pyvista.UnstructuredGrid({24: cells}, nodes)
+    assert sk.Mesh.from_pyvista(curved) == sk.Mesh.from_meshio(pyvista.to_meshio(curved))
     with pytest.raises(sk.SceneError, match="PyVista grid: cells: found no tetrahedra"):
         sk.Mesh.from_pyvista(pyvista.ImageData(dimensions=(2, 2, 2)).cast_to_unstructured_grid())
 

@@ -7,7 +7,7 @@ import sys
 import warnings
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, Literal, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,20 +23,28 @@ from ._arrays import (
     real_array,
     require_attributes,
 )
+from ._cells import (
+    GMSH_CURVED,
+    GMSH_KINDS,
+    HIGHER_ORDER,
+    KINDS,
+    LABEL_NAMES,
+    VTK_NAMES,
+    VTK_TETRAHEDRON,
+    face_keys,
+    first_labels,
+    gmsh_cells,
+    gmsh_groups,
+    linear_cells,
+    named_groups,
+    require_low_order,
+)
 from ._errors import Doubt, import_package, scene_error
 from ._mesh_report import MeshReport
 from ._sets import MeshSet, Parts, SetsLike, set_of, sets_arrays, sets_of_numbers
 from ._settings import SurfaceMesh
 
 Path: TypeAlias = str | os.PathLike[str]
-
-_LABEL_NAMES = ("region", "gmsh:physical", "medit:ref", "CellEntityIds")
-"""Names of cell data that hold labels, as in files."""
-_LINEAR_TETRAHEDRON, _CURVED_TETRAHEDRA = 4, (11, 29, 30, 31)  # element types of Gmsh
-_LINEAR_TRIANGLE = 2
-_VTK_TRIANGLE, _VTK_TETRAHEDRON, _VTK_CURVED = 5, 10, (24, 71)
-_VTK_NAMES = {_VTK_TRIANGLE: "triangle", _VTK_TETRAHEDRON: "tetra"}
-_KINDS: Mapping[str, Literal["face", "tetrahedron"]] = {"triangle": "face", "tetra": "tetrahedron"}
 
 
 class Mesh:
@@ -81,13 +89,17 @@ class Mesh:
 
     @staticmethod
     def read(path: Path) -> Mesh:
-        """Reads a mesh from Gmsh .msh (1, 2.2, 4.1), VTK .vtk or .vtu, or TetGen .node and .ele.
+        """Reads a mesh from Gmsh .msh (1, 2.2, 4.1), VTK .vtk or .vtu, TetGen .node and .ele, Medit .mesh and .meshb,
+        or Abaqus .inp.
 
-        Only linear tetrahedra are used, and unused nodes are dropped. Labels are physical groups (Gmsh), the cell data
-        region, gmsh:physical, medit:ref or CellEntityIds (VTK), or the last attribute (TetGen). Sets are physical
-        groups by name, or surface_N and the like without one (Gmsh); arrays NAME of zeros and ones, and NAME_N for each
-        number N of other arrays of whole numbers (VTK); node_marker_N and face_marker_N (TetGen). Inverted tetrahedra
-        are turned, with a warning Doubt. SceneError: the file cannot be read, or has no tetrahedra."""
+        Tetrahedra of second order are divided into eight linear ones each. Other elements and unused nodes are dropped.
+        Labels are physical groups (Gmsh), the cell data region, gmsh:physical, medit:ref or CellEntityIds (VTK), the
+        last attribute (TetGen), references (Medit), or numbers of the materials of solid sections (Abaqus). Sets are
+        physical groups by name, or surface_N and the like without one (Gmsh); arrays NAME of zeros and ones, and NAME_N
+        for each number N of other arrays of whole numbers (VTK); node_marker_N and face_marker_N (TetGen); node_ref_N
+        and face_ref_N (Medit); sets and surfaces by name, after INSTANCE and a dot (Abaqus). Inverted tetrahedra are
+        turned. A warning Doubt tells what was divided, dropped or turned. SceneError: the file cannot be read, or has
+        no tetrahedra."""
         core, notes = _core.read_mesh(path_text(path, "path"))
         _warn(notes)
         return Mesh._of(core)
@@ -192,39 +204,27 @@ class Mesh:
     def from_meshio(mesh: Any) -> Mesh:
         """Mesh of a meshio.Mesh. Labels are the first cell data named region, gmsh:physical, medit:ref or
         CellEntityIds that hold whole numbers. Sets are point sets, cell sets, physical groups with a name, and data of
-        whole numbers by the rules of read(). Cells that are not tetrahedra and unused nodes are dropped."""
+        whole numbers by the rules of read(). Tetrahedra of second order are divided as by read(). Cells that are not
+        tetrahedra and unused nodes are dropped."""
         require_attributes(mesh, "mesh", "a meshio.Mesh", "cells", "cell_data", "points")
-        blocks = [number for number, block in enumerate(mesh.cells) if block.type == "tetra"]
-        curved = sum(len(block.data) for block in mesh.cells if block.type in ("tetra10", "tetra20", "tetra35"))
-        _require_linear("meshio mesh", curved)
-        rows = [np.asarray(mesh.cells[number].data) for number in blocks]
-        data = {name: [np.asarray(mesh.cell_data[name][number]) for number in blocks] for name in mesh.cell_data}
-        labels = _first_labels({name: np.concatenate(values) for name, values in data.items() if values})
-        parts = Parts()
-        for name, nodes in getattr(mesh, "point_sets", {}).items():
-            parts.add_nodes(name, nodes)
-        for name, values in getattr(mesh, "point_data", {}).items():
-            for of_set, members in sets_of_numbers(name, np.asarray(values)).items():
-                parts.add_nodes(of_set, np.flatnonzero(members))
-        numbers = {
-            name: sets_of_numbers(name, np.concatenate([np.ravel(block) for block in values]))
-            for name, values in mesh.cell_data.items()
-            if name not in _LABEL_NAMES and all(np.ndim(block) == 1 for block in values) and len(values)
-        }
-        first = first_cell = 0
+        blocks = [(block.type, np.asarray(block.data)) for block in mesh.cells]
+        named = []
         for number, block in enumerate(mesh.cells):
-            of_block: dict[str, NDArray[np.bool_]] = {}
-            cells = np.asarray(block.data)
-            for sets in numbers.values():
-                of_block |= {name: members[first_cell : first_cell + len(cells)] for name, members in sets.items()}
-            for name, blocks in getattr(mesh, "cell_sets", {}).items():
-                if blocks[number] is not None:
-                    of_block[name] = np.isin(np.arange(len(cells)), blocks[number])
-            of_block |= _named_groups(mesh, number, block.dim if hasattr(block, "dim") else None)
-            parts.add_block(_KINDS.get(block.type, "node"), cells, first, of_block)
-            first += len(cells) if block.type == "tetra" else 0
-            first_cell += len(cells)
-        return _mesh_of_used_nodes("meshio mesh", mesh.points, rows, labels, parts.arrays())
+            sets = {
+                name: np.isin(np.arange(len(block.data)), of_block[number])
+                for name, of_block in getattr(mesh, "cell_sets", {}).items()
+                if of_block[number] is not None
+            }
+            named.append(sets | named_groups(mesh, number, block.dim if hasattr(block, "dim") else None))
+        return _mesh_of_blocks(
+            "meshio mesh",
+            mesh.points,
+            blocks,
+            {name: [np.asarray(values) for values in data] for name, data in mesh.cell_data.items()},
+            named,
+            getattr(mesh, "point_data", {}),
+            getattr(mesh, "point_sets", {}),
+        )
 
     def to_meshio(self) -> Any:
         """The mesh as a meshio.Mesh. Labels become the cell data gmsh:physical. Needs the package meshio."""
@@ -234,32 +234,24 @@ class Mesh:
 
     @staticmethod
     def from_pyvista(grid: Any) -> Mesh:
-        """Mesh of a pyvista.UnstructuredGrid. Labels and sets are found as by from_meshio(). Cells that are not
-        tetrahedra and unused nodes are dropped."""
+        """Mesh of a pyvista.UnstructuredGrid. Labels and sets are found, and cells divided or dropped, as by
+        from_meshio()."""
         require_attributes(grid, "grid", "a pyvista.UnstructuredGrid", "celltypes", "cells_dict", "cell_data", "points")
-        kinds = np.asarray(grid.celltypes)
-        _require_linear("PyVista grid", int(np.isin(kinds, _VTK_CURVED).sum()))
-        chosen = kinds == _VTK_TETRAHEDRON
-        rows = [np.asarray(grid.cells_dict[_VTK_TETRAHEDRON])] if chosen.any() else []
-        labels = _first_labels({name: np.asarray(grid.cell_data[name])[chosen] for name in grid.cell_data})
-        parts, cells_of = Parts(), dict(grid.cells_dict)
-        for name in getattr(grid, "point_data", {}):
-            for of_set, members in sets_of_numbers(name, np.asarray(grid.point_data[name])).items():
-                parts.add_nodes(of_set, np.flatnonzero(members))
-        for name in grid.cell_data:
-            if name in _LABEL_NAMES:
-                continue
-            for of_set, members in sets_of_numbers(name, np.asarray(grid.cell_data[name])).items():
-                for kind, cells in cells_of.items():
-                    name_of_kind = _VTK_NAMES.get(int(kind), "")
-                    members_of_kind = {of_set: members[kinds == kind]}
-                    parts.add_block(_KINDS.get(name_of_kind, "node"), np.asarray(cells), 0, members_of_kind)
-        return _mesh_of_used_nodes("PyVista grid", grid.points, rows, labels, parts.arrays())
+        kinds, cells = np.asarray(grid.celltypes), dict(grid.cells_dict)
+        return _mesh_of_blocks(
+            "PyVista grid",
+            grid.points,
+            [(VTK_NAMES.get(int(kind), str(kind)), np.asarray(of_kind)) for kind, of_kind in cells.items()],
+            {name: [np.asarray(grid.cell_data[name])[kinds == kind] for kind in cells] for name in grid.cell_data},
+            [{} for _ in cells],
+            getattr(grid, "point_data", {}),
+            {},
+        )
 
     def to_pyvista(self) -> Any:
         """The mesh as a pyvista.UnstructuredGrid. Labels become the cell data region. Needs the package pyvista."""
         pyvista = import_package("pyvista")
-        grid = pyvista.UnstructuredGrid({_VTK_TETRAHEDRON: self.tetrahedra}, self.nodes)
+        grid = pyvista.UnstructuredGrid({VTK_TETRAHEDRON: self.tetrahedra}, self.nodes)
         if self.labels is not None:
             grid.cell_data["region"] = self.labels
         return grid
@@ -268,32 +260,32 @@ class Mesh:
     def from_gmsh(model: Any) -> Mesh:
         """Mesh of the current model of Gmsh: Mesh.from_gmsh(gmsh.model). The label of a tetrahedron is the number of
         its physical group (the first, if its volume is in several), and 0 outside of all groups; if no tetrahedron is
-        in a group, it is the number of its volume. Sets are the physical groups, as by read()."""
+        in a group, it is the number of its volume. Sets are the physical groups, and tetrahedra of second order are
+        divided, as by read()."""
         require_attributes(model, "model", "gmsh.model", "mesh", "getEntities", "getPhysicalGroupsForEntity")
         tags, positions, _ = model.mesh.getNodes()
         place = np.zeros(int(max(tags, default=0)) + 1, dtype=np.int64)
         place[np.asarray(tags, dtype=np.int64)] = np.arange(len(tags))
+        points = np.reshape(positions, (-1, 3))
         rows, groups, volumes, curved = [], [], [], 0
         for _, volume in model.getEntities(3):
             kinds, _, nodes = model.mesh.getElements(3, volume)
-            curved += sum(
-                len(of_kind) for kind, of_kind in zip(kinds, nodes, strict=True) if kind in _CURVED_TETRAHEDRA
-            )
             for kind, of_kind in zip(kinds, nodes, strict=True):
-                if kind != _LINEAR_TETRAHEDRON:
+                curved += len(of_kind) if kind in GMSH_CURVED else 0
+                if kind not in GMSH_KINDS:
                     continue
-                rows.append(place[np.asarray(of_kind, dtype=np.int64)].reshape(-1, 4))
+                rows.append(gmsh_cells(kind, place[np.asarray(of_kind, dtype=np.int64)], points))
                 group = next(iter(model.getPhysicalGroupsForEntity(3, volume)), 0)
                 groups.append(np.full(len(rows[-1]), group))
                 volumes.append(np.full(len(rows[-1]), volume))
-        _require_linear("Gmsh model", curved)
+        require_low_order("Gmsh model", curved)
         labels = groups if any(np.any(group) for group in groups) else volumes
         return _mesh_of_used_nodes(
             "Gmsh model",
-            np.reshape(positions, (-1, 3)),
+            points,
             rows,
             np.concatenate(labels) if labels else None,
-            _gmsh_groups(model, place, np.concatenate(volumes) if volumes else np.empty(0)),
+            gmsh_groups(model, place, points, np.concatenate(volumes) if volumes else np.empty(0)),
         )
 
     # Contents.
@@ -388,20 +380,46 @@ def _warn(notes: list[str]) -> None:
         warnings.warn(note, Doubt, stacklevel=3)
 
 
-def _require_linear(object: str, curved: int) -> None:
-    if curved:
-        raise scene_error(
-            object, "cells", f"{curved} curved tetrahedra", "linear ones", "make a mesh of the first order"
-        )
-
-
-def _first_labels(data: Mapping[str, NDArray[Any]]) -> NDArray[np.int32] | None:
-    """The first array of cell data that holds labels."""
-    for name in _LABEL_NAMES:
-        values = data.get(name)
-        if values is not None and values.ndim == 1 and np.array_equal(values, values.astype(np.int32)):
-            return values.astype(np.int32)
-    return None
+def _mesh_of_blocks(
+    object: str,
+    points: ArrayLike,
+    blocks: list[tuple[str, NDArray[Any]]],
+    data: Mapping[str, list[NDArray[Any]]],
+    named: list[dict[str, NDArray[np.bool_]]],
+    point_data: Mapping[str, Any],
+    point_sets: Mapping[str, Any],
+) -> Mesh:
+    """Mesh of the cells of another package. `blocks`: kind (as in meshio) and nodes of cells. `data`: for each name an
+    array for each block. `named`: for each block the members of named sets."""
+    require_low_order(object, sum(len(cells) for kind, cells in blocks if kind in HIGHER_ORDER))
+    positions = real_array(points, f"{object}: points", ("n", 3))
+    parts = Parts()
+    for name, nodes in point_sets.items():
+        parts.add_nodes(name, nodes)
+    for name, values in point_data.items():
+        for of_set, members in sets_of_numbers(name, np.asarray(values)).items():
+            parts.add_nodes(of_set, np.flatnonzero(members))
+    numbers: dict[str, NDArray[np.bool_]] = {}
+    for name, values in data.items():
+        if name not in LABEL_NAMES and values and all(np.ndim(of_block) == 1 for of_block in values):
+            numbers |= sets_of_numbers(name, np.concatenate(values))
+    rows: list[NDArray[Any]] = []
+    of_rows: dict[str, list[NDArray[Any]]] = {}
+    first = first_cell = 0
+    for number, (kind, cells) in enumerate(blocks):
+        linear, pieces = linear_cells(kind, cells, positions)
+        count = len(pieces) // max(len(cells), 1)
+        of_block = {name: of_all[first_cell : first_cell + len(cells)] for name, of_all in numbers.items()}
+        of_parts = {name: np.repeat(chosen, count) for name, chosen in (of_block | named[number]).items()}
+        parts.add_block(KINDS.get(linear, "node"), pieces, first, of_parts)
+        first_cell += len(cells)
+        if linear == "tetra":
+            first += len(pieces)
+            rows.append(pieces)
+            for name, values in data.items():
+                of_rows.setdefault(name, []).append(np.repeat(values[number], count, axis=0))
+    labels = first_labels({name: np.concatenate(values) for name, values in of_rows.items()})
+    return _mesh_of_used_nodes(object, positions, rows, labels, parts.arrays())
 
 
 def _mesh_of_used_nodes(
@@ -424,52 +442,14 @@ def _mesh_of_used_nodes(
     number = np.full(len(nodes), -1, dtype=np.int32)
     number[used] = np.arange(len(used))
     corners = np.sort(tetrahedra, axis=1).astype(np.int64)
-    known = np.unique(np.concatenate([_face_keys(np.delete(corners, k, axis=1), len(used)) for k in range(4)]))
+    known = np.unique(np.concatenate([face_keys(np.delete(corners, k, axis=1), len(used)) for k in range(4)]))
     kept = {}
     for name, (of_nodes, faces, of_tetrahedra) in sets.items():
         numbered = number[np.asarray(of_nodes, dtype=np.int64)]
         triangles = number[np.asarray(faces, dtype=np.int64).reshape(-1, 3)]
         triangles = triangles[np.all(triangles >= 0, axis=1)]
-        triangles = triangles[np.isin(_face_keys(np.sort(triangles, axis=1).astype(np.int64), len(used)), known)]
+        triangles = triangles[np.isin(face_keys(np.sort(triangles, axis=1).astype(np.int64), len(used)), known)]
         part = MeshSet(nodes=numbered[numbered >= 0], faces=triangles, tetrahedra=of_tetrahedra)
         if len(numbered[numbered >= 0]) + len(triangles) + len(of_tetrahedra):
             kept[name] = part
     return Mesh(nodes[used], tetrahedra, labels=labels, sets=kept)
-
-
-def _named_groups(mesh: Any, number: int, dimension: int | None) -> dict[str, NDArray[np.bool_]]:
-    """Members of the named physical groups of Gmsh in a block of cells of a meshio.Mesh."""
-    groups = mesh.cell_data.get("gmsh:physical")
-    if groups is None:
-        return {}
-    return {
-        name: np.asarray(groups[number]) == group[0]
-        for name, group in getattr(mesh, "field_data", {}).items()
-        if len(group) == 2 and group[1] == dimension
-    }
-
-
-def _gmsh_groups(model: Any, place: NDArray[np.int64], volumes: NDArray[Any]) -> dict[str, list[NDArray[Any]]]:
-    """Physical groups of a Gmsh model. `place`: number of each node by tag. `volumes`: volume of each tetrahedron."""
-    parts = Parts()
-    for dimension, tag in model.getPhysicalGroups():
-        name = model.getPhysicalName(dimension, tag)
-        if not name and dimension == 3:
-            continue
-        name = name or f"{('point', 'curve', 'surface')[dimension]}_{tag}"
-        entities = model.getEntitiesForPhysicalGroup(dimension, tag)
-        if dimension == 3:
-            parts.add_cells(name, "tetrahedron", np.flatnonzero(np.isin(volumes, entities)), 0)
-            continue
-        for entity in entities:
-            kinds, _, nodes = model.mesh.getElements(dimension, entity)
-            for kind, of_kind in zip(kinds, nodes, strict=True):
-                cells = place[np.asarray(of_kind, dtype=np.int64)]
-                parts.add_cells(name, "face" if kind == _LINEAR_TRIANGLE else "node", cells, 0)
-    return parts.arrays()
-
-
-def _face_keys(nodes: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """One number for each face. `nodes`: ascending node numbers of the faces, shape (k, 3)."""
-    keys: NDArray[np.int64] = (nodes[:, 0] * count + nodes[:, 1]) * count + nodes[:, 2]
-    return keys
