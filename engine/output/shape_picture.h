@@ -14,8 +14,8 @@ struct PlanePatch {
     Real half_size = 1;          // [m]
 };
 
-/// Returns the part of all planes to display, with its centre in world coordinates: a square around the bodies. Its edge
-/// is twice the diagonal of the bounding box of all bodies. Returns nothing if there are no bodies.
+/// Returns the part of all planes to display, with its centre in world coordinates: a square around the bodies. Its
+/// edge is twice the diagonal of the bounding box of all bodies. Returns nothing if there are no bodies.
 std::optional<PlanePatch> patch_around(std::span<const BodyFrame> bodies);
 
 /// Returns a triangle mesh of a shape in the frame of the shape. Triangles are counter-clockwise as seen from outside.

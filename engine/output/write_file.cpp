@@ -108,8 +108,7 @@ FileReplacement::~FileReplacement() {
 }
 
 std::fstream& FileReplacement::seekable_stream() {
-    if (target_.takes_bytes)
-        complain(file_, "a pipe or a terminal", "a regular file", "choose another path");
+    if (target_.takes_bytes) complain(file_, "a pipe or a terminal", "a regular file", "choose another path");
     return stream_;
 }
 

@@ -194,9 +194,10 @@ void add_outputs(CLI::App& command, RunOptions& options) {
     add_choice<FilmColor>(command, "--film-color", options.film_color,
                           "quantity that the colours of --film and --gltf show: von Mises stress, speed or contact "
                           "pressure; default: none, each body has its own colour");
-    add_number(command, "--film-max", options.film_max,
-               "value at the upper end of these colours, which begin at zero [Pa, m/s]; default: 99 % of the values are "
-               "below it");
+    add_number(
+        command, "--film-max", options.film_max,
+        "value at the upper end of these colours, which begin at zero [Pa, m/s]; default: 99 % of the values are "
+        "below it");
     add_number(command, "--frames-per-second", options.frames_per_second,
                "number of frames of output per simulated second");
     add_count(command, "--export-every", options.problems_every, 1,

@@ -88,8 +88,8 @@ void bind_scene(nb::module_& module) {
             "__init__",
             [](FilmWriter* self, const std::string& file, Real frame_step, const std::string& color,
                std::optional<Real> color_max) {
-                new (self) FilmWriter(
-                    file, {.frame_step = frame_step, .color = film_color(color), .color_max = color_max});
+                new (self)
+                    FilmWriter(file, {.frame_step = frame_step, .color = film_color(color), .color_max = color_max});
             },
             nb::arg(), nb::arg(), nb::arg(), nb::arg().none())
         .def("add_frame",

@@ -23,7 +23,8 @@ def far_world(**settings: Any) -> sk.World:
     """A spinning rigid box and a rubber ball, far from the origin, between a floor and a paddle that moves."""
     world = sk.World(**{"threads": 1, **settings})
     world.add_collider(sk.Plane(point=FAR), name="floor")
-    world.add_collider(sk.Box((0.1, 0.1, 0.1)), position=FAR + (1, 0, 1), velocity=(0, 0.5, 0), name="paddle")
+    motion = sk.Motion(velocity=(0, 0.5, 0))
+    world.add_collider(sk.Box((0.1, 0.1, 0.1)), position=FAR + (1, 0, 1), motion=motion, name="paddle")
     world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=FAR + (0, 0, 0.06), name="ball")
     world.add_body(
         sk.Mesh.box((0.1, 0.2, 0.3), (2, 2, 2)),
@@ -67,7 +68,7 @@ def test_a_film_has_the_positions_of_the_world_far_from_the_origin(tmp_path: Pat
     assert UsdGeom.GetStageUpAxis(stage) == "Z" and UsdGeom.GetStageMetersPerUnit(stage) == 1
     assert [prim.GetName() for prim in stage.GetDefaultPrim().GetChildren()] == [
         "Looks",
-        *(body.name for body in world.bodies),
+        *world.bodies,
         "floor",
         "paddle",
     ]
@@ -114,18 +115,17 @@ def test_velocities_and_the_motion_of_the_transform_are_those_of_the_nodes(tmp_p
 @pytest.mark.parametrize("color", ["stress", "speed", "contact"])
 def test_colors_show_the_quantity_that_the_vertices_also_have_as_numbers(color: Any, tmp_path: Path) -> None:
     world, ball, floor = ball_world()
-    world.run(0.5)
-    world.measure_forces()
-    world.advance(0.01)
+    world.run(0.06)
     with world.usd(tmp_path / "a.usdc", every=0.01, color=color):
         pass
     stage = Usd.Stage.Open(str(tmp_path / "a.usdc"))
     name = {"stress": "von_mises", "speed": "speed", "contact": "contact_pressure"}[color]
-    found, surface = value(stage, f"ball.primvars:{name}", 50), np.unique(ball.surface)
+    found, surface = value(stage, f"ball.primvars:{name}", 6), np.unique(ball.surface)
     if color == "speed":
         np.testing.assert_allclose(found, np.linalg.norm(ball.velocities, axis=1)[surface], rtol=1e-6)
     if color == "stress":
-        deviator = ball.node_stress - np.trace(ball.node_stress, axis1=1, axis2=2)[:, None, None] * np.eye(3) / 3
+        stress = ball.stress("nodes")
+        deviator = stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] * np.eye(3) / 3
         np.testing.assert_allclose(found, np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2)))[surface], rtol=1e-6)
     if color == "contact":
         corners = np.asarray(ball.positions)[ball.surface]
@@ -133,10 +133,11 @@ def test_colors_show_the_quantity_that_the_vertices_also_have_as_numbers(color: 
         of_node = np.zeros(ball.node_count)
         of_node[surface] = found
         force = (of_node[ball.surface].mean(axis=1) * areas).sum()
-        assert force == pytest.approx(sum(abs(c.force @ c.normal) for c in world.contacts), rel=1e-5)
-    low, high = value(stage, "World.userProperties:color_range".removeprefix("World"), 0)
+        normal_forces = np.abs((world.contacts["force"] * world.contacts["normal"]).sum(axis=1))
+        assert force == pytest.approx(normal_forces.sum(), rel=1e-5) and force > 0
+    low, high = stage.GetDefaultPrim().GetAttribute("userProperties:color_range").Get()
     assert low == 0 and 0.5 * found.max() < high <= found.max() * (1 + 1e-6)
-    colors = value(stage, "ball.primvars:displayColor", 50)
+    colors = value(stage, "ball.primvars:displayColor", 6)
     np.testing.assert_allclose(colors[found >= high], [[0.9301, 0.7230, 0.0865]] * (found >= high).sum(), atol=1e-3)
 
 
@@ -144,12 +145,12 @@ def test_bodies_that_come_and_go_are_hidden_in_other_frames(tmp_path: Path) -> N
     world, ball, _ = ball_world()
     with world.usd(tmp_path / "a.usd", every=0.01):
         world.run(0.02, dt=0.01)
-        world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(1, 0, 1), name="ball")
+        world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(1, 0, 1), name="later")
         world.run(0.03, dt=0.01)
         ball.remove()
         world.run(0.02, dt=0.01)
     stage = Usd.Stage.Open(str(tmp_path / "a.usd"))
-    for name, frames in (("ball", range(6)), ("ball_1", range(3, 8))):
+    for name, frames in (("ball", range(6)), ("later", range(3, 8))):
         shown = UsdGeom.Imageable(stage.GetPrimAtPath(f"/World/{name}"))
         assert [frame for frame in range(8) if shown.ComputeVisibility(frame) == "inherited"] == list(frames)
         sizes = [np.ptp(world_points(stage, name, frame), axis=0).max() for frame in range(8)]
@@ -158,13 +159,13 @@ def test_bodies_that_come_and_go_are_hidden_in_other_frames(tmp_path: Path) -> N
 
 def test_names_become_valid_and_unique(tmp_path: Path) -> None:
     world = sk.World(threads=1)
-    for number, name in enumerate(["2 balls", "a.b", "a/b", "", "Kugel ü", "Looks"]):
+    for number, name in enumerate(["2 balls", "a.b", "a/b", "Kugel ü", "Looks"]):
         world.add_body(sk.Mesh.ball(0.05, 2), RUBBER, position=(number, 0, 0), name=name)
     with world.usd(tmp_path / "a.usd"):
         pass
     stage = Usd.Stage.Open(str(tmp_path / "a.usd"))
     names = [prim.GetName() for prim in stage.GetDefaultPrim().GetChildren()]
-    assert names[:4] == ["Looks", "_2_balls", "a_b", "a_b_1"] and names[5:] == ["Kugel___", "Looks_1"]
+    assert names == ["Looks", "_2_balls", "a_b", "a_b_1", "Kugel___", "Looks_1"]
 
 
 def test_a_film_has_the_same_bytes_for_any_number_of_threads(tmp_path: Path) -> None:
@@ -186,7 +187,6 @@ def test_a_film_of_a_failed_run_shows_it_up_to_the_failure(tmp_path: Path) -> No
 
 def test_wrong_films_are_refused_and_leave_no_file(tmp_path: Path) -> None:
     world, _, _ = ball_world()
-    saved = world.copy()
     (tmp_path / "file").write_text("")
     for path, options, message in (
         ("a.abc", {}, r"a\.abc: output: found the extension \.abc, expected \.usd or \.usdc"),
@@ -197,13 +197,7 @@ def test_wrong_films_are_refused_and_leave_no_file(tmp_path: Path) -> None:
     ):
         with pytest.raises(sk.SceneError, match=message), world.usd(tmp_path / path, **options):  # type: ignore[arg-type]
             pass
-    with pytest.raises(sk.SceneError, match="time of the frame: found 0.000000 s, expected a time after"):
-        with world.usd(tmp_path / "back.usd"):
-            world.advance(0.1)
-            world.reset(saved)
-            world.advance(0)
-            world.reset(saved)
-    assert [file.name for file in tmp_path.iterdir() if file.name != "back.usd"] == ["file"]
+    assert [file.name for file in tmp_path.iterdir()] == ["file"]
 
 
 OBJ = """mtllib skin.mtl
@@ -279,11 +273,12 @@ def test_a_gltf_file_has_the_state_of_the_world(tmp_path: Path) -> None:
     world, ball, _ = ball_world()
     world.run(0.1)
     world.gltf(tmp_path / "a.glb", color="speed")
-    found = pyvista.read(tmp_path / "a.glb")["World"]
-    mesh = found["ball"]["ball_0"] if "ball" in found.keys() else found[0]
+    found = pyvista.read(tmp_path / "a.glb")
+    mesh = found[0][0].combine()
+    triangles = mesh.cells.reshape(-1, 4)[:, 1:]
     # x, y and z of the world are x, -z and y of glTF
     points = mesh.points[:, [0, 2, 1]] * (1, -1, 1)
-    np.testing.assert_allclose(points, vertices(ball), atol=1e-7)
+    np.testing.assert_allclose(points[triangles], np.asarray(ball.positions)[ball.surface], atol=1e-7)
 
 
 def test_a_gltf_file_has_the_materials_of_a_visual_surface(tmp_path: Path) -> None:

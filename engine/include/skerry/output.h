@@ -1,4 +1,5 @@
-// Output of a run: a time series for ParaView, an HTML page that plays the run in a browser, a film, and a state as glTF.
+// Output of a run: a time series for ParaView, an HTML page that plays the run in a browser, a film, and a state as
+// glTF.
 #pragma once
 
 #include <array>
@@ -89,7 +90,8 @@ struct FilmSettings {
 /// or contact pressure [Pa]. Frames are written at once to a temporary file. The film is complete or does not exist.
 class FilmWriter {
 public:
-    /// Throws SceneError if the file cannot be written, if its extension is not .usd or .usdc, or if a setting is wrong.
+    /// Throws SceneError if the file cannot be written, if its extension is not .usd or .usdc, or if a setting is
+    /// wrong.
     FilmWriter(const std::filesystem::path& file, const FilmSettings& settings);
     ~FilmWriter();
     /// Throws SceneError if the time is not later than that of the previous frame, or if the frame cannot be written.

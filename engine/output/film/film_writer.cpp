@@ -93,7 +93,8 @@ public:
     void add_frame(const World& world) override { writer_->add_frame(world); }
     void close(const World&) override { color_max_ = writer_->close(); }
     std::string written() const override {
-        std::string text = file_.string() + " (film; open it in Blender with File > Import > Universal Scene Description";
+        std::string text =
+            file_.string() + " (film; open it in Blender with File > Import > Universal Scene Description";
         if (settings_.color != FilmColor::none) {
             const Quantity quantity = quantity_of(settings_.color);
             char range[100];

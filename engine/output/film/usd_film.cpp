@@ -181,9 +181,7 @@ CrateSpec UsdFilm::prim(const char* type, std::string name) {
 }
 
 CrateSpec UsdFilm::attribute(const char* name, const char* type, CrateValue value) {
-    return {.kind = SpecKind::attribute,
-            .name = name,
-            .fields = {{"typeName", file_.token(type)}, {"default", value}}};
+    return {.kind = SpecKind::attribute, .name = name, .fields = {{"typeName", file_.token(type)}, {"default", value}}};
 }
 
 CrateSpec UsdFilm::uniform(const char* name, const char* type, CrateValue value) {
@@ -232,8 +230,7 @@ void UsdFilm::put_colors(const Object& object, std::size_t number, CrateSpec& me
     }
     const std::string quantity = std::string("primvars:") + quantity_of(settings_.color).name;
     mesh.children.push_back(primvar(animated(object, name, type, values), "vertex"));
-    mesh.children.push_back(
-        primvar(animated(object, quantity.c_str(), "float[]", object.quantity.values), "vertex"));
+    mesh.children.push_back(primvar(animated(object, quantity.c_str(), "float[]", object.quantity.values), "vertex"));
 }
 
 /// Adds texture coordinates, and the materials of single triangles.
@@ -257,10 +254,10 @@ void UsdFilm::put_materials(Object& object, const VisualSurface& surface) {
             if (surface.material[face] == static_cast<Index>(m)) faces.push_back(static_cast<std::int32_t>(face));
         if (faces.empty()) continue;
         CrateSpec subset = prim("GeomSubset", "material_" + std::to_string(m));
-        subset.children = {uniform("elementType", "token", file_.token("face")),
-                           uniform("familyName", "token", file_.token("materialBind")),
-                           attribute("indices", "int[]",
-                                     file_.array(CrateType::int32, std::span<const std::int32_t>(faces)))};
+        subset.children = {
+            uniform("elementType", "token", file_.token("face")),
+            uniform("familyName", "token", file_.token("materialBind")),
+            attribute("indices", "int[]", file_.array(CrateType::int32, std::span<const std::int32_t>(faces)))};
         bind(subset, material_path(surface.materials[m]));
         object.mesh.push_back(std::move(subset));
     }
@@ -400,8 +397,8 @@ Real UsdFilm::close() {
     looks.children = std::move(looks_);
     if (settings_.color != FilmColor::none) {
         const double range[] = {0, top_};
-        world.children.push_back(attribute("userProperties:color_range", "double2",
-                                           file_.scalar(CrateType::vec2_double, range)));
+        world.children.push_back(
+            attribute("userProperties:color_range", "double2", file_.scalar(CrateType::vec2_double, range)));
         world.children.back().fields.emplace_back("custom", file_.boolean(true));
     }
     world.children.push_back(std::move(looks));

@@ -85,9 +85,9 @@ private:
     std::set<std::string, std::less<>> names_;
     std::map<BodyHandle, std::size_t> body_object_;
     std::map<ColliderHandle, std::size_t> collider_object_;
-    std::vector<CrateSpec> looks_;  // materials
+    std::vector<CrateSpec> looks_;                                   // materials
     std::vector<std::pair<VisualMaterial, std::string>> materials_;  // materials of visual surfaces, and their paths
-    std::optional<PlanePatch> patch_;  // displayed part of planes, in world coordinates
+    std::optional<PlanePatch> patch_;                                // displayed part of planes, in world coordinates
     Quantile quantity_;
     Real top_ = 0;
     // Written lists of times by first frame and number of frames.

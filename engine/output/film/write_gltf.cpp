@@ -35,14 +35,16 @@ struct GltfMesh {
     Mat3 rotation = Mat3::Identity();
     std::vector<Vec3f> points;
     std::vector<std::array<Index, 3>> triangles;
-    std::vector<float> values;         // of the coloured quantity, by vertex; empty if there is none
+    std::vector<float> values;              // of the coloured quantity, by vertex; empty if there is none
     const VisualSurface* visual = nullptr;  // with texture coordinates and materials; nullptr if there is none
-    Color color{};                     // of triangles without another colour
+    Color color{};                          // of triangles without another colour
 };
 
 /// Mean normal of the triangles at each vertex, weighted by area.
 std::vector<Vec3f> vertex_normals(const GltfMesh& mesh) {
-    const auto point = [&](Index vertex) { return Eigen::Vector3f(mesh.points[static_cast<std::size_t>(vertex)].data()); };
+    const auto point = [&](Index vertex) {
+        return Eigen::Vector3f(mesh.points[static_cast<std::size_t>(vertex)].data());
+    };
     std::vector<Eigen::Vector3f> sum(mesh.points.size(), Eigen::Vector3f::Zero());
     for (const auto& [a, b, c] : mesh.triangles) {
         const Eigen::Vector3f area = (point(b) - point(a)).cross(point(c) - point(a));
@@ -51,7 +53,8 @@ std::vector<Vec3f> vertex_normals(const GltfMesh& mesh) {
     std::vector<Vec3f> normals;
     for (const Eigen::Vector3f& total : sum) {
         // glTF wants unit vectors, also at vertices of triangles without area.
-        const Eigen::Vector3f unit = total.norm() > 0 ? Eigen::Vector3f(total / total.norm()) : Eigen::Vector3f::UnitZ();
+        const Eigen::Vector3f unit =
+            total.norm() > 0 ? Eigen::Vector3f(total / total.norm()) : Eigen::Vector3f::UnitZ();
         normals.push_back({unit.x(), unit.y(), unit.z()});
     }
     return normals;
@@ -63,26 +66,23 @@ public:
         json_ = {{"asset", {{"version", "2.0"}, {"generator", "Skerry"}}},
                  {"scene", 0},
                  {"scenes", {{{"nodes", {0}}}}},
-                 {"nodes", GltfJson::array({{{"name", "World"}, {"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}}})},
-                 {"meshes", GltfJson::array()},
-                 {"materials", GltfJson::array()},
-                 {"accessors", GltfJson::array()},
-                 {"bufferViews", GltfJson::array()}};
+                 {"nodes", {{{"name", "World"}, {"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}}}}};
     }
 
     void add(const GltfMesh& mesh) {
+        if (mesh.triangles.empty()) return;
         const Eigen::Quaternion<Real> turn(mesh.rotation);
-        json_["nodes"][0]["children"].push_back(json_["nodes"].size());
-        json_["nodes"].push_back({{"name", mesh.name},
-                                  {"mesh", json_["meshes"].size()},
-                                  {"translation", {mesh.origin.x(), mesh.origin.y(), mesh.origin.z()}},
-                                  {"rotation", {turn.x(), turn.y(), turn.z(), turn.w()}}});
-        json_["meshes"].push_back({{"name", mesh.name}, {"primitives", primitives(mesh)}});
+        const std::size_t number = append("meshes", {{"name", mesh.name}, {"primitives", primitives(mesh)}});
+        const std::size_t node = append("nodes", {{"name", mesh.name},
+                                                  {"mesh", number},
+                                                  {"translation", {mesh.origin.x(), mesh.origin.y(), mesh.origin.z()}},
+                                                  {"rotation", {turn.x(), turn.y(), turn.z(), turn.w()}}});
+        json_["nodes"][0]["children"].push_back(node);
     }
 
     void write(const std::filesystem::path& file) {
         pad(binary_, '\0');
-        json_["buffers"] = GltfJson::array({{{"byteLength", binary_.size()}}});
+        if (!binary_.empty()) append("buffers", {{"byteLength", binary_.size()}});
         std::string text = json_.dump(-1, ' ', false, GltfJson::error_handler_t::replace);
         pad(text, ' ');
         constexpr std::uint32_t magic = 0x46546c67, version = 2, json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
@@ -104,32 +104,36 @@ public:
 private:
     static void pad(std::string& bytes, char with) { bytes.append((4 - bytes.size() % 4) % 4, with); }
 
+    /// Appends an object to a list of the file, and returns its number in the list.
+    std::size_t append(const char* list, GltfJson object) {
+        json_[list].push_back(std::move(object));
+        return json_[list].size() - 1;
+    }
+
     /// Appends bytes to the binary part, and returns the number of the view of these bytes.
     std::size_t view(std::string_view bytes, int target) {
         pad(binary_, '\0');
         GltfJson view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes.size()}};
         if (target != 0) view["target"] = target;
         binary_.append(bytes);
-        json_["bufferViews"].push_back(std::move(view));
-        return json_["bufferViews"].size() - 1;
+        return append("bufferViews", std::move(view));
     }
 
     /// Appends an array, and returns the number of its accessor.
     template <class T>
     std::size_t array(const std::vector<T>& values, const char* type, int component, int target) {
         const std::string_view bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-        json_["accessors"].push_back({{"bufferView", view(bytes, target)},
-                                      {"componentType", component},
-                                      {"count", values.size()},
-                                      {"type", type}});
-        return json_["accessors"].size() - 1;
+        return append("accessors", {{"bufferView", view(bytes, target)},
+                                    {"componentType", component},
+                                    {"count", values.size()},
+                                    {"type", type}});
     }
 
     GltfJson primitives(const GltfMesh& mesh) {
         // Vertices of glTF have one texture point each. A vertex with several is written several times.
         const bool textured = mesh.visual != nullptr && !mesh.visual->texture_corners.empty();
         std::map<std::pair<Index, Index>, std::uint32_t> numbers;
-        std::vector<std::pair<Index, Index>> vertices;  // vertex and texture point
+        std::vector<std::pair<Index, Index>> vertices;        // vertex and texture point
         std::map<Index, std::vector<std::uint32_t>> corners;  // by material
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
             for (std::size_t k = 0; k < 3; ++k) {
@@ -138,7 +142,6 @@ private:
                 if (is_new) vertices.push_back(vertex);
                 corners[material_of(mesh, t)].push_back(place->second);
             }
-        if (vertices.empty()) return GltfJson::array();
         const auto expanded = [&](const auto& values) {
             std::decay_t<decltype(values)> all;
             for (const auto& [vertex, texture] : vertices) all.push_back(values[static_cast<std::size_t>(vertex)]);
@@ -146,7 +149,7 @@ private:
         };
         const std::vector<Vec3f> points = expanded(mesh.points);
         GltfJson attributes = {{"POSITION", array(points, "VEC3", type_float, target_vertices)},
-                           {"NORMAL", array(expanded(vertex_normals(mesh)), "VEC3", type_float, target_vertices)}};
+                               {"NORMAL", array(expanded(vertex_normals(mesh)), "VEC3", type_float, target_vertices)}};
         Vec3f lower = points.front(), upper = lower;
         for (const Vec3f& point : points)
             for (std::size_t axis = 0; axis < point.size(); ++axis) {
@@ -201,16 +204,16 @@ private:
         const auto known = std::ranges::find(materials_, shown);
         if (known != materials_.end()) return static_cast<std::size_t>(known - materials_.begin());
         const auto& [r, g, b] = shown.color;
-        GltfJson surface = {{"baseColorFactor", {r, g, b, shown.opacity}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}};
+        GltfJson surface = {
+            {"baseColorFactor", {r, g, b, shown.opacity}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}};
         if (!shown.texture.empty()) {
             surface["baseColorTexture"] = {{"index", texture_number(shown.texture)}};
             surface["baseColorFactor"] = {1, 1, 1, shown.opacity};
         }
         GltfJson entry = {{"name", shown.name}, {"pbrMetallicRoughness", surface}};
         if (shown.opacity < 1) entry["alphaMode"] = "BLEND";
-        json_["materials"].push_back(std::move(entry));
         materials_.push_back(std::move(shown));
-        return materials_.size() - 1;
+        return append("materials", std::move(entry));
     }
 
     /// Appends an image to the file, and returns the number of its texture.
@@ -218,9 +221,8 @@ private:
         std::ifstream in(image, std::ios::binary);
         const std::string bytes{std::istreambuf_iterator<char>(in), {}};
         const char* format = bytes.starts_with("\x89PNG") ? "image/png" : "image/jpeg";
-        json_["images"].push_back({{"bufferView", view(bytes, 0)}, {"mimeType", format}});
-        json_["textures"].push_back({{"source", json_["images"].size() - 1}});
-        return json_["textures"].size() - 1;
+        return append("textures",
+                      {{"source", append("images", {{"bufferView", view(bytes, 0)}, {"mimeType", format}})}});
     }
 
     FilmColor color_;

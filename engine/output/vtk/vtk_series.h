@@ -66,7 +66,7 @@ private:
     std::map<BodyHandle, std::vector<Vec3>> origin_;
     // Colliders in the last file of colliders, and their poses in this file.
     std::vector<std::pair<ColliderHandle, MotionKey>> colliders_prev_;
-    std::string colliders_file_;        // name of the last file of colliders
+    std::string colliders_file_;       // name of the last file of colliders
     std::optional<PlanePatch> patch_;  // displayed part of planes, from the first frame with bodies
     std::vector<Entry> entries_;
 };

@@ -92,6 +92,38 @@ TEST_CASE("a world that bodies join and leave is written as a series and as a pa
     CHECK(text.find("\"bodies\":[\"box\",\"ball\"]") != std::string::npos);
 }
 
+TEST_CASE("a frame of a film is later than the frame before, and a film that was closed takes no frame",
+          "[unit][output]") {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "run.usd";
+    BodyHandle box;
+    World world = box_on_floor(box);
+    FilmWriter film(file, {.frame_step = 0.01});
+    film.add_frame(world);
+    CHECK_THROWS_WITH(film.add_frame(world), Catch::Contains("time of the frame: found 0.000000 s, expected a time "
+                                                             "after that of the previous frame, 0.000000 s"));
+    REQUIRE(world.advance(0.01).ok());
+    film.add_frame(world);
+    CHECK_FALSE(fs::exists(file));
+    film.close();
+    CHECK(fs::exists(file));
+    CHECK_THROWS_WITH(film.close(), Catch::Contains("found a film that was closed"));
+}
+
+TEST_CASE("a film that is not closed leaves the film of an earlier run", "[unit][output]") {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "run.usd";
+    std::ofstream(file) << "earlier";
+    BodyHandle box;
+    const World world = box_on_floor(box);
+    {
+        FilmWriter film(file, {});
+        film.add_frame(world);
+    }
+    CHECK(fs::file_size(file) == 7);
+    CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);
+}
+
 TEST_CASE("a rigid body without tetrahedra is written as the triangles of its surface", "[unit][output]") {
     BodyHandle box;
     World world = box_on_floor(box);
