@@ -1,5 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "engine/mesh/repair/triangle_tree.h"
 #include "engine/mesh/visual/bound_visual.h"
@@ -169,6 +171,24 @@ BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
     visual.gradient = gradients_of(nodes, tetrahedra, wanted);
     visual.fit.warning = warning_of(visual, nodes, mean_edge_of(shape.boundary()));
     return visual;
+}
+
+VisualPoints split_at_seams(const VisualSurface& surface) {
+    VisualPoints points;
+    std::map<std::array<Index, 2>, Index> known;  // points by node and texture point
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        std::array<Index, 3>& corners = points.triangles.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index node = surface.triangles[t][k];
+            const Index texture = surface.texture_corners.empty() ? no_index : surface.texture_corners[t][k];
+            const auto [place, is_new] = known.try_emplace({node, texture}, static_cast<Index>(points.node.size()));
+            corners[k] = place->second;
+            if (!is_new) continue;
+            points.node.push_back(node);
+            points.texture_point.push_back(texture);
+        }
+    }
+    return points;
 }
 
 std::vector<Vec3> visual_positions(const BoundVisual& visual, std::span<const Vec3> of_body) {

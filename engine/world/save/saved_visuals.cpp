@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/mesh/visual/bound_visual.h"
 #include "engine/world/save/saved_sets.h"
 
 namespace skerry {
@@ -63,7 +64,8 @@ SavedVisuals visuals_to_save(const Model& model) {
 }
 
 void put_visuals(const SavedVisuals& saved, const SavedFile& file, Model& model) {
-    const std::size_t bodies = model.body_records.size(), count = saved.nodes.size(), materials = saved.color.item.size();
+    const std::size_t bodies = model.body_records.size(), count = saved.nodes.size(),
+                      materials = saved.color.item.size();
     expect_rows(file, "visuals/of_body", saved.of_body.size(), bodies, "bodies");
     expect_rows_of(file, "visuals/of_body", saved.of_body, count, true);
     expect_ragged(file, "visuals/nodes", saved.nodes, count, "visual surfaces");
