@@ -84,6 +84,9 @@ void put_visuals(const SavedVisuals& saved, const SavedFile& file, Model& model)
         BodyRecord& record = model.body_records[b];
         const auto [first, is_new] = first_body.try_emplace(row, b);
         const std::span<const Vec3> nodes = model.mesh_shape(b);
+        if (nodes.empty())
+            file.complain("visuals/of_body", "a visual surface of body " + std::to_string(b) + ", which has no nodes",
+                          "no visual surface");
         if (!is_new && std::ranges::equal(nodes, model.mesh_shape(first->second)) &&
             record.tetrahedra == model.body_records[first->second].tetrahedra) {
             record.visual = model.body_records[first->second].visual;

@@ -96,7 +96,7 @@ TEST_CASE("an .obj file gives texture coordinates and the materials of its .mtl 
     CHECK_THAT(notes[0], Contains("the material file \"square.mtl\" does not exist"));
     CHECK_THAT(notes[1], Contains("no material file defines the material \"dark red\""));
     std::ofstream(file, std::ios::app) << "f 1/1 2/2 3/4\n";
-    CHECK_THROWS_WITH(mesh::read_visual(file), Contains("line 11: texture point: found 4, expected 1 to 3"));
+    CHECK_THROWS_WITH(mesh::read_visual(file), Contains("line 12: texture point: found 4, expected 1 to 3"));
 }
 
 TEST_CASE("a visual surface follows affine motions exactly, inside and outside of its body", "[unit][visual]") {
@@ -210,7 +210,7 @@ TEST_CASE("copies of a body in a scene share a visual surface, also after loadin
         for (const BodyFrame& body : frame.bodies) CHECK(body.visual == frame.bodies[0].visual);
     }
     CHECK_THROWS_WITH(scene_of("\"missing.obj\""),
-                      Contains("bodies[0] 'block'.visual") && Contains("missing.obj") && Contains("no such file"));
+                      Contains("body \"block\": bodies[0].visual: found the path of a missing file"));
     CHECK_THROWS_WITH(scene_of(R"({"file": "thin.obj", "scale": 0})"), Contains("visual.scale: found 0"));
 
     VtkSeries series(folder.path(), "run");
