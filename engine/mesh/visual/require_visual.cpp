@@ -16,7 +16,8 @@ void require_count(const std::string& object, const char* field, std::size_t fou
 void require_index(const std::string& object, const char* field, Index found, std::size_t count, bool may_be_none) {
     if (may_be_none && found == no_index) return;
     if (found < 0 || static_cast<std::size_t>(found) >= count)
-        refuse(object, field, std::to_string(found), "an index from 0 to " + std::to_string(count) + " - 1");
+        refuse(object, field, std::to_string(found),
+               "an index below " + std::to_string(count) + (may_be_none ? ", or -1" : ""));
 }
 
 void require_unit(const std::string& object, const char* field, Real found) {

@@ -60,6 +60,7 @@ from ._settings import (
 )
 from ._surface_check import SurfaceFault, SurfaceFaultKind, SurfaceReport, SurfaceShell, check_surface
 from ._sweep import sweep
+from ._visual import VisualMaterial, VisualSurface
 from ._world import (
     Anchor,
     Attachment,
@@ -237,6 +238,8 @@ __all__ = [
     "TieProbe",
     "TieState",
     "VelocityProbe",
+    "VisualMaterial",
+    "VisualSurface",
     "VolumeProbe",
     "World",
     "WorldReport",
