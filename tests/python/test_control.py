@@ -228,3 +228,12 @@ def test_all_objects_and_values_of_a_loaded_world_can_be_read() -> None:
     np.testing.assert_array_equal(attachment.velocity, (0, 0, 0))
     attachment.remove()
     assert loaded.attachments == []
+
+
+@pytest.mark.parametrize("triangle", [(0, 1, 2), (0, 2, 1)])
+def test_a_collider_of_one_triangle_stops_bodies_from_both_sides(triangle: tuple[int, int, int]) -> None:
+    world = sk.World(threads=1)
+    world.add_collider(sk.SurfaceMesh(nodes=[(-2, -2, 0), (2, -2, 0), (0, 2, 0)], triangles=[triangle]))
+    ball = world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(0, 0, 0.06))
+    world.run(0.3)
+    assert ball.center_of_mass[2] > 0.045 and world.contacts["normal"][:, 2].min() > 0.9
