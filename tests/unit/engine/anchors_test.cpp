@@ -1,7 +1,6 @@
 // Anchors: points that are fixed to bodies, to colliders and to the world.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <string>
 #include <vector>
 
 #include "engine/world/query/place_anchor.h"
@@ -10,6 +9,7 @@
 #include "skerry/load.h"
 #include "skerry/spring.h"
 #include "skerry/tie.h"
+#include "tests/support/message_of.h"
 #include "tests/support/worlds.h"
 
 namespace skerry::test::anchors_test {
@@ -45,15 +45,6 @@ Sum sum_of(const WorldState& state, std::span<const Vec3> force) {
         sum.moment += state.model.nodes.position[n].cross(force[n]);
     }
     return sum;
-}
-
-std::string message_of(auto&& call) {
-    try {
-        call();
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return {};
 }
 
 constexpr Real rounding = 1e-14;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "skerry/error.h"
 #include "skerry/instruction_set.h"
+#include "tests/support/message_of.h"
 
 namespace skerry::test::kernels_test {
 
@@ -19,12 +19,7 @@ Kernels called(const char* name) {
 }
 
 std::string refusal(std::span<const KernelSet> sets, std::string_view wanted) {
-    try {
-        choose_kernels(sets, wanted);
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "taken";
+    return message_of([&] { choose_kernels(sets, wanted); });
 }
 
 }  // namespace

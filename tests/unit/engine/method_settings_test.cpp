@@ -6,9 +6,9 @@
 
 #include "engine/world/state/step_scratch.h"
 #include "engine/world/tuning.h"
-#include "skerry/error.h"
 #include "skerry/problem.h"
 #include "skerry/world.h"
+#include "tests/support/message_of.h"
 
 namespace skerry::test::method_settings_test {
 
@@ -27,24 +27,14 @@ ContactProblem pair_problem(Real mu) {
     return problem;
 }
 
-template <class Call>
-std::string complaint_of(const Call& call) {
-    try {
-        call();
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return {};
-}
-
 }  // namespace
 
 TEST_CASE("over-relaxation outside of its range is refused, inside it changes the path and not the solution",
           "[unit][problem]") {
     for (const Real wrong : {0.0, 2.0, -1.0, std::nan("")}) {
-        CHECK(complaint_of([&] { solve_problem(pair_problem(0.3), {.relaxation = wrong}); }).find("relaxation") !=
+        CHECK(message_of([&] { solve_problem(pair_problem(0.3), {.relaxation = wrong}); }).find("relaxation") !=
               std::string::npos);
-        CHECK(complaint_of([&] { tuned_world({}, {.relaxation = wrong}); }).find("relaxation") != std::string::npos);
+        CHECK(message_of([&] { tuned_world({}, {.relaxation = wrong}); }).find("relaxation") != std::string::npos);
     }
     const ProblemSettings plain{.method = SolverMethod::pgs, .tolerance = 1e-12};
     ProblemSettings relaxed = plain;

@@ -9,6 +9,7 @@
 #include "engine/output/write_file.h"
 #include "output_sample.h"
 #include "skerry/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skerry::test::output_files_test {
@@ -27,15 +28,6 @@ int count_files(const TemporaryFolder& folder, const std::string& part) {
 std::string content(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::string complaint_of(auto&& action) {
-    try {
-        action();
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "";
 }
 
 }  // namespace
@@ -66,17 +58,16 @@ TEST_CASE("a folder that cannot be made is named, with what was found and what w
     const fs::path file = folder.path() / "plain_file";
     std::ofstream(file) << "not a folder";
     for (const fs::path& place : {file, file / "below"}) {
-        const std::string complaint = complaint_of([&] { VtkSeries(place, "run"); });
+        const std::string complaint = message_of([&] { VtkSeries(place, "run"); });
         CHECK(complaint.find(place.string()) != std::string::npos);
         CHECK(complaint.find("found ") != std::string::npos);
         CHECK(complaint.find("expected a folder") != std::string::npos);
     }
     fs::create_directories(folder.path() / "taken");
-    CHECK(complaint_of([&] {
-              write_file(folder.path() / "taken", [](std::ostream& out) { out << 1; });
-          }).find("taken") != std::string::npos);
-    CHECK(complaint_of([&] { VtkSeries(folder.path(), "a/b"); }).find("\"a/b\"") != std::string::npos);
-    CHECK(complaint_of([&] { VtkSeries(folder.path(), ""); }).find("expected a file name") != std::string::npos);
+    CHECK(message_of([&] { write_file(folder.path() / "taken", [](std::ostream& out) { out << 1; }); }).find("taken") !=
+          std::string::npos);
+    CHECK(message_of([&] { VtkSeries(folder.path(), "a/b"); }).find("\"a/b\"") != std::string::npos);
+    CHECK(message_of([&] { VtkSeries(folder.path(), ""); }).find("expected a file name") != std::string::npos);
 }
 
 TEST_CASE("colliders are written again only when one of them came, went or moved", "[unit][output]") {

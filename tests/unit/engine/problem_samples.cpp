@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "skerry/error.h"
+#include "tests/support/message_of.h"
 
 namespace skerry::test {
 namespace fs = std::filesystem;
@@ -165,12 +165,7 @@ ContactProblem read_back(const FclibFile& file) {
 }
 
 std::string refusal_of(const fs::path& path) {
-    try {
-        read_problem(path);
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "read";
+    return message_of([&] { read_problem(path); });
 }
 
 std::string refusal(const FclibFile& file) {

@@ -9,6 +9,7 @@
 
 #include "problem_samples.h"
 #include "skerry/error.h"
+#include "tests/support/message_of.h"
 
 namespace skerry::test::problem_write_test {
 
@@ -56,12 +57,7 @@ std::string bytes_of(const fs::path& path) {
 }
 
 std::string refusal_to_write(const ContactProblem& problem, const fs::path& path, std::span<const Vec3> reaction = {}) {
-    try {
-        write_problem(problem, path, reaction);
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "written";
+    return message_of([&] { write_problem(problem, path, reaction); });
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "engine/scene/scene_plan.h"
-#include "skerry/error.h"
 #include "skerry/load.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skerry::test::scene_loads_test {
@@ -22,12 +22,7 @@ ScenePlan plan_with(const std::string& loads) {
 }
 
 std::string refusal_of(const std::string& loads) {
-    try {
-        build_scene(plan_with(loads));
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "nothing refused";
+    return message_of([&] { build_scene(plan_with(loads)); });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "engine/scene/scene_plan.h"
 #include "skerry/joint.h"
 #include "skerry/mesh.h"
+#include "tests/support/message_of.h"
 #include "tests/unit/engine/scene_files.h"
 
 namespace skerry::test::scene_plan_test {
@@ -96,12 +97,7 @@ TEST_CASE("materials of tetrahedra are found by the labels of the mesh", "[unit]
 TEST_CASE("labels and materials that are not there are named with what is", "[unit]") {
     const auto refusal = [](const std::string& materials) {
         const TemporaryFolder folder;
-        try {
-            plan_scene(labelled_scene(folder, materials));
-        } catch (const SceneError& error) {
-            return std::string(error.what());
-        }
-        return std::string("nothing refused");
+        return message_of([&] { plan_scene(labelled_scene(folder, materials)); });
     };
     CHECK_THAT(refusal(R"({"2": "steel"})"),
                Catch::Contains("body \"b\": bodies[0].materials.2: found label 2, expected one of the labels of the "

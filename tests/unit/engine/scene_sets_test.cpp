@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "engine/scene/scene_plan.h"
-#include "skerry/error.h"
 #include "skerry/sets.h"
 #include "systems/collision/build_surface.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skerry::test::scene_sets_test {
@@ -22,12 +22,7 @@ ScenePlan plan_of(const std::string& body, const std::string& scene = {}) {
 }
 
 std::string refusal(const std::string& body, const std::string& scene = {}) {
-    try {
-        plan_of(body, scene);
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "nothing refused";
+    return message_of([&] { plan_of(body, scene); });
 }
 
 std::size_t node_count(const std::string& entry) {

@@ -4,6 +4,7 @@
 
 #include "engine/scene/scene_plan.h"
 #include "skerry/surface.h"
+#include "tests/support/message_of.h"
 #include "tests/unit/engine/scene_files.h"
 
 namespace skerry::test::scene_surface_test {
@@ -19,12 +20,7 @@ std::string scene(const std::string& pairs, const std::string& collider) {
 
 std::string refusal(const std::string& pairs, const std::string& collider = R"("material": "steel")") {
     const TemporaryFolder folder;
-    try {
-        build_scene(plan_scene(folder.write("s.json", scene(pairs, collider))));
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "";
+    return message_of([&] { build_scene(plan_scene(folder.write("s.json", scene(pairs, collider)))); });
 }
 
 }  // namespace
@@ -73,13 +69,10 @@ TEST_CASE("a scene gives parts of a surface their own friction", "[unit][surface
     CHECK(*ski.direction == Vec3(0, 1, 0));
     CHECK(left.surface.restitution == 0.4);
     CHECK(!left.surface.friction);
-    const auto fault = [&](const std::string& surface) -> std::string {
-        try {
+    const auto fault = [&](const std::string& surface) {
+        return message_of([&] {
             build_scene(plan_scene(folder.write("s.json", body_with(sets + "\"surfaces\": [" + surface + "]"))));
-        } catch (const SceneError& error) {
-            return error.what();
-        }
-        return "";
+        });
     };
     using Catch::Matchers::Contains;
     CHECK_THAT(fault(R"({"set": "botom", "friction": 1})"), Contains("surfaces[0].set") && Contains("bottom"));

@@ -12,6 +12,7 @@
 #include "skerry/joint.h"
 #include "skerry/load.h"
 #include "tests/support/lively_scene.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/world_file_damage.h"
 
@@ -49,12 +50,7 @@ struct FileOfWorld {
     /// Error message of World::load for the content.
     std::string refusal(std::string_view content) const {
         std::ofstream(path, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
-        try {
-            World::load(path);
-        } catch (const SceneError& error) {
-            return error.what();
-        }
-        return {};
+        return message_of([&] { World::load(path); });
     }
     std::string refusal(std::span<const std::byte> content) const {
         return refusal(std::string_view(reinterpret_cast<const char*>(content.data()), content.size()));
