@@ -27,7 +27,7 @@ enum class SurfaceFaultKind {
     flat_shells,          // closed shells without volume
     doubled_volumes,      // triangles behind which closed shells enclose the same volume twice
     slivers,              // triangles of three nodes with an altitude within the tolerance
-    thin_walls,           // sampled places at which the wall is thinner than the mean edge
+    thin_walls,           // sampled places at which the wall is thinner than half the mean edge
     unlikely_size,        // a size above 20 m or below 1e-6 m, probably a wrong unit of length
 };
 template <>
