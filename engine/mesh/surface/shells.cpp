@@ -17,10 +17,10 @@ namespace skerry::mesh {
 namespace {
 
 struct ShellSize {
-    Aabb box = empty_box();  // [m]
-    Real area = 0;           // [m^2]
-    Real volume = 0;         // [m^3]
-    Vec3 origin = Vec3::Zero();
+    Aabb box = empty_box();      // [m]
+    Real area = 0;               // [m^2]
+    Real volume = 0;             // [m^3]
+    Vec3 origin = Vec3::Zero();  // a corner, from which volumes are measured [m]
 
     Real diagonal() const { return (box.upper - box.lower).norm(); }
 };
@@ -30,7 +30,7 @@ std::vector<ShellSize> sizes_of(const SurfaceReport& report) {
     for (std::size_t t = 0; t < report.shell.size(); ++t) {
         ShellSize& size = sizes[static_cast<std::size_t>(report.shell[t])];
         std::array<Vec3, 3> x = corners_of(report.cleaned, static_cast<Index>(t));
-        if (size.area == 0 && size.box.lower.x() > size.box.upper.x()) size.origin = x[0];
+        if (size.box.lower.x() > size.box.upper.x()) size.origin = x[0];
         for (Vec3& corner : x) {
             grow(size.box, corner);
             corner -= size.origin;
