@@ -8,8 +8,8 @@
 
 #include "engine/mesh/labels.h"
 #include "engine/mesh/require_positive.h"
-#include "engine/mesh/surface/check_shells.h"
 #include "engine/mesh/sets.h"
+#include "engine/mesh/surface/check_shells.h"
 #include "engine/world/complaint.h"
 #include "systems/collision/build_surface.h"
 #include "systems/dynamics/rigid/rigid_motion.h"

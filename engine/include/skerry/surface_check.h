@@ -27,7 +27,7 @@ enum class SurfaceFaultKind {
     flat_shells,          // closed shells without volume
     doubled_volumes,      // triangles behind which closed shells enclose the same volume twice
     slivers,              // triangles of three nodes with an altitude within the tolerance
-    thin_walls,           // sampled places at which the wall is thinner than the mean edge
+    thin_walls,           // sampled places at which the wall is thinner than half the mean edge
     unlikely_size,        // a size above 20 m or below 1e-6 m, probably a wrong unit of length
 };
 template <>
@@ -78,7 +78,7 @@ struct SurfaceShell {
 struct SurfaceReport {
     std::size_t nodes = 0, triangles = 0;             // of the given surface
     Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // bounding box [m]
-    Real tolerance = 0;                               // nodes up to this distance apart were merged [m]
+    Real tolerance = 0;                               // nodes up to this distance apart were merged; negative: none [m]
     std::size_t merged = 0;                           // number of nodes that were merged into another node
     Real min_edge = 0, mean_edge = 0, max_edge = 0;   // edge lengths of the cleaned surface [m]
     Real area = 0, volume = 0;                        // of the cleaned surface; volume of the closed shells [m^2, m^3]

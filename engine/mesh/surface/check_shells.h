@@ -8,7 +8,7 @@
 
 namespace skerry::mesh {
 
-/// As check_surface, without the search for crossings, slivers and thin walls.
+/// Performs check_surface without the search for crossings, slivers and thin walls.
 SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std::string& name);
 
 /// Distance that counts as rounding error in a surface [m].

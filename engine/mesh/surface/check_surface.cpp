@@ -81,6 +81,11 @@ void report_repeated_shells(SurfaceReport& report, std::span<const Index> repeat
 
 SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std::string& name) {
     require_surface(surface, name);
+    if (!(tolerance < 1)) {
+        std::ostringstream found;
+        found << tolerance;
+        Complaint{name, {}, "tolerance", found.str(), "a fraction of the diagonal below 1", {}}.raise();
+    }
     SurfaceReport report{.nodes = surface.nodes.size(), .triangles = surface.triangles.size()};
     Aabb box = empty_box();
     for (const std::array<Index, 3>& triangle : surface.triangles)

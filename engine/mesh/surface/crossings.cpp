@@ -13,36 +13,36 @@
 namespace skerry::mesh {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
+using Points = std::array<Vec3, 3>;
 
 struct Extent {
     Real low, high;
 };
 
-Extent extent_of(const Corners& triangle, const Vec3& axis) {
+Extent extent_of(const Points& triangle, const Vec3& axis) {
     const Real a = axis.dot(triangle[0]), b = axis.dot(triangle[1]), c = axis.dot(triangle[2]);
     return {std::min({a, b, c}), std::max({a, b, c})};
 }
 
 /// Distance by which the second triangle must move along a unit vector to end the overlap in this direction; negative
 /// if the triangles do not overlap there [m].
-Real overlap_along(const Corners& first, const Corners& second, const Vec3& axis) {
+Real overlap_along(const Points& first, const Points& second, const Vec3& axis) {
     const Extent a = extent_of(first, axis), b = extent_of(second, axis);
     return std::min(a.high - b.low, b.high - a.low);
 }
 
-Corners sides_of(const Corners& x) {
+Points sides_of(const Points& x) {
     return {x[1] - x[0], x[2] - x[1], x[0] - x[2]};
 }
 
-Real longest(const Corners& sides) {
+Real longest_side(const Points& sides) {
     return std::sqrt(std::max({sides[0].squaredNorm(), sides[1].squaredNorm(), sides[2].squaredNorm()}));
 }
 
 /// Altitude over the longest side [m].
-Real altitude_of(const Corners& x) {
-    const Corners sides = sides_of(x);
-    const Real length = longest(sides);
+Real least_altitude(const Points& x) {
+    const Points sides = sides_of(x);
+    const Real length = longest_side(sides);
     return length > 0 ? sides[0].cross(sides[1]).norm() / length : 0;
 }
 
@@ -51,11 +51,11 @@ enum class PairFault { none, crossing, overlap };
 /// Tests two triangles by separating axes (Gottschalk, Lin, Manocha 1996): convex shapes are apart if and only if their
 /// projections on one of the axes are. Common corners and edges count as no overlap, because some axis separates the
 /// triangles except for these.
-PairFault fault_of(const Corners& first, const Corners& second, Real distance) {
+PairFault fault_of(const Points& first, const Points& second, Real distance) {
     // Cross products of sides shorter than this have no reliable direction, relative to the product of the lengths.
     constexpr Real parallel = 1e-9;
-    const Corners u = sides_of(first), v = sides_of(second);
-    const Real tolerance = std::max(distance, default_weld * std::max(longest(u), longest(v)));
+    const Points u = sides_of(first), v = sides_of(second);
+    const Real tolerance = std::max(distance, default_weld * std::max(longest_side(u), longest_side(v)));
     const Vec3 normal = u[0].cross(u[1]).normalized(), other = v[0].cross(v[1]).normalized();
     const auto separates = [&](const Vec3& axis) { return overlap_along(first, second, axis) <= tolerance; };
     const Real height = overlap_along(first, second, normal);
@@ -72,7 +72,7 @@ PairFault fault_of(const Corners& first, const Corners& second, Real distance) {
     }
     const Extent heights = extent_of({second[0] - first[0], second[1] - first[0], second[2] - first[0]}, normal);
     if (heights.high - heights.low > 2 * tolerance) return PairFault::none;
-    for (const Corners& sides : {u, v})
+    for (const Points& sides : {u, v})
         for (const Vec3& side : sides)
             if (separates(normal.cross(side).normalized())) return PairFault::none;
     return PairFault::overlap;
@@ -114,8 +114,8 @@ void find_crossings(SurfaceReport& report, Real distance) {
     std::vector<Index> pairs;
     for (std::size_t t = 0; t < boxes.size(); ++t) {
         const auto first = static_cast<Index>(t);
-        const Corners corners = corners_of(surface, first);
-        if (altitude_of(corners) <= distance) {
+        const Points corners = corners_of(surface, first);
+        if (least_altitude(corners) <= distance) {
             add_fault(report, SurfaceFaultKind::slivers, first);
             continue;
         }
@@ -125,8 +125,8 @@ void find_crossings(SurfaceReport& report, Real distance) {
         });
         std::ranges::sort(pairs);
         for (const Index other : pairs) {
-            const Corners others = corners_of(surface, other);
-            if (altitude_of(others) <= distance) continue;
+            const Points others = corners_of(surface, other);
+            if (least_altitude(others) <= distance) continue;
             const PairFault fault = fault_of(corners, others, distance);
             if (fault == PairFault::none) continue;
             const auto row = static_cast<std::size_t>(other);

@@ -17,10 +17,10 @@ namespace skerry::mesh {
 namespace {
 
 struct ShellSize {
-    Aabb box = empty_box();  // [m]
-    Real area = 0;           // [m^2]
-    Real volume = 0;         // [m^3]
-    Vec3 origin = Vec3::Zero();
+    Aabb box = empty_box();      // [m]
+    Real area = 0;               // [m^2]
+    Real volume = 0;             // [m^3]
+    Vec3 origin = Vec3::Zero();  // a corner, from which volumes are measured [m]
 
     Real diagonal() const { return (box.upper - box.lower).norm(); }
 };
@@ -30,7 +30,7 @@ std::vector<ShellSize> sizes_of(const SurfaceReport& report) {
     for (std::size_t t = 0; t < report.shell.size(); ++t) {
         ShellSize& size = sizes[static_cast<std::size_t>(report.shell[t])];
         std::array<Vec3, 3> x = corners_of(report.cleaned, static_cast<Index>(t));
-        if (size.area == 0 && size.box.lower.x() > size.box.upper.x()) size.origin = x[0];
+        if (size.box.lower.x() > size.box.upper.x()) size.origin = x[0];
         for (Vec3& corner : x) {
             grow(size.box, corner);
             corner -= size.origin;
@@ -41,37 +41,42 @@ std::vector<ShellSize> sizes_of(const SurfaceReport& report) {
     return sizes;
 }
 
-/// Triangles of a shell, with the nodes of the whole surface.
-SurfaceMesh shell_of(const SurfaceReport& report, std::size_t shell) {
-    SurfaceMesh part{report.cleaned.nodes, {}};
+/// Rows of `report.cleaned` of the triangles of each shell.
+std::vector<std::vector<Index>> rows_of_shells(const SurfaceReport& report) {
+    std::vector<std::vector<Index>> rows(report.shells.size());
     for (std::size_t t = 0; t < report.shell.size(); ++t)
-        if (static_cast<std::size_t>(report.shell[t]) == shell) part.triangles.push_back(report.cleaned.triangles[t]);
-    return weld(part, no_weld);
+        rows[static_cast<std::size_t>(report.shell[t])].push_back(static_cast<Index>(t));
+    return rows;
 }
 
-/// Finds shells that repeat an earlier shell. Returns the earlier shell of each shell, or no_index.
-std::vector<Index> repeated_shells(const SurfaceReport& report, std::span<const ShellSize> sizes, Real distance) {
+/// The given triangles, each with nodes of its own.
+SurfaceMesh part_of(const SurfaceMesh& surface, std::span<const Index> rows) {
+    SurfaceMesh part;
+    for (const Index t : rows) {
+        const auto first = static_cast<Index>(part.nodes.size());
+        for (const Vec3& x : corners_of(surface, t)) part.nodes.push_back(x);
+        part.triangles.push_back({first, first + 1, first + 2});
+    }
+    return part;
+}
+
+/// True if the second shell is the first one again. Shells of the same orientation may be further apart than
+/// `distance` [m].
+bool repeats(const SurfaceReport& report, std::span<const ShellSize> sizes, std::span<const std::vector<Index>> rows,
+             std::size_t first, std::size_t second, Real distance) {
     // Shells of the same orientation this close together cannot be meant as a wall or a region, relative to their size.
     constexpr Real close = 1e-3;
-    std::vector<Index> same(sizes.size(), no_index);
-    for (std::size_t j = 1; j < sizes.size(); ++j)
-        for (std::size_t i = 0; i < j && same[j] == no_index; ++i) {
-            const ShellSize &first = sizes[i], &second = sizes[j];
-            const bool alike = report.shells[i].closed == report.shells[j].closed &&
-                               (!report.shells[i].closed || (first.volume > 0) == (second.volume > 0));
-            const Real limit = std::max(distance, alike ? close * first.diagonal() : 0);
-            if (same[i] != no_index || (first.box.lower - second.box.lower).norm() > 2 * limit ||
-                (first.box.upper - second.box.upper).norm() > 2 * limit ||
-                std::abs(first.area - second.area) > 10 * close * first.area)
-                continue;
-            const SurfaceMesh part = shell_of(report, j);
-            const TriangleTree tree(shell_of(report, i));
-            const Real squared = limit * limit;
-            if (std::ranges::all_of(part.nodes,
-                                    [&](const Vec3& x) { return tree.distance_squared(x, 2 * squared) <= squared; }))
-                same[j] = static_cast<Index>(i);
-        }
-    return same;
+    const ShellSize &a = sizes[first], &b = sizes[second];
+    const bool closed = report.shells[first].closed;
+    const bool alike = closed == report.shells[second].closed && (!closed || (a.volume > 0) == (b.volume > 0));
+    const Real limit = std::max(distance, alike ? close * a.diagonal() : 0);
+    if ((a.box.lower - b.box.lower).norm() > 2 * limit || (a.box.upper - b.box.upper).norm() > 2 * limit ||
+        std::abs(a.area - b.area) > 10 * close * a.area)
+        return false;
+    const SurfaceMesh part = part_of(report.cleaned, rows[second]);
+    const TriangleTree tree(part_of(report.cleaned, rows[first]));
+    return std::ranges::all_of(
+        part.nodes, [&](const Vec3& x) { return tree.distance_squared(x, 2 * limit * limit) <= limit * limit; });
 }
 
 /// Sign of the side of the line through `p` and `q` on which `x` lies, seen along the first axis. The sign of a point
@@ -112,11 +117,14 @@ public:
             const int side = side_of(x, p, q);
             if (side_of(x, q, r) != side || side_of(x, r, p) != side) return;
             const Vec3 across = (q - p).cross(r - p);
-            if (across.dot(p - x) * across.x() > 0)
-                winding_[static_cast<std::size_t>(report_.shell[static_cast<std::size_t>(t)])] += side;
+            if (across.dot(p - x) * across.x() <= 0) return;
+            const Index shell = report_.shell[static_cast<std::size_t>(t)];
+            winding_[static_cast<std::size_t>(shell)] += side;
+            passed_.push_back(shell);
         });
         std::erase_if(found, [&](Index shell) { return winding_[static_cast<std::size_t>(shell)] == 0; });
-        std::ranges::fill(winding_, 0);
+        for (const Index shell : passed_) winding_[static_cast<std::size_t>(shell)] = 0;
+        passed_.clear();
         std::ranges::sort(found);
         return found;
     }
@@ -124,7 +132,8 @@ public:
 private:
     const SurfaceReport& report_;
     BoxTree shells_, triangles_;
-    std::vector<int> winding_;  // of each shell around the point
+    std::vector<int> winding_;   // of each shell around the point
+    std::vector<Index> passed_;  // shells that the ray passes through
 };
 
 /// Triangles of a shell with the same other shells around the volume behind them.
@@ -192,21 +201,25 @@ void turn_inside_out(SurfaceReport& report) {
 }  // namespace
 
 bool drop_repeated_shells(SurfaceReport& report, Real distance) {
-    const std::vector<Index> same = repeated_shells(report, sizes_of(report), distance);
-    const auto row_of = [&](std::size_t shell) {
-        const auto place = std::ranges::find(report.shell, static_cast<Index>(shell));
-        return static_cast<Index>(place - report.shell.begin());
-    };
-    bool any = false;
-    for (std::size_t s = 0; s < same.size(); ++s) {
-        if (same[s] == no_index) continue;
-        add_fault(report, SurfaceFaultKind::duplicate_shells, row_of(s), row_of(static_cast<std::size_t>(same[s])));
-        any = true;
+    const std::vector<ShellSize> sizes = sizes_of(report);
+    const std::vector<std::vector<Index>> rows = rows_of_shells(report);
+    std::vector<Aabb> boxes;
+    for (const ShellSize& size : sizes)
+        boxes.push_back({size.box.lower.array() - distance, size.box.upper.array() + distance});
+    const BoxTree tree(boxes);
+    std::vector<bool> dropped(sizes.size(), false);
+    for (std::size_t s = 0; s < sizes.size(); ++s) {
+        std::size_t same = s;  // first shell that this one repeats
+        tree.for_each_overlap(boxes[s], [&](Index other) {
+            const auto row = static_cast<std::size_t>(other);
+            if (row < same && !dropped[row] && repeats(report, sizes, rows, row, s, distance)) same = row;
+        });
+        dropped[s] = same < s;
+        if (dropped[s]) add_fault(report, SurfaceFaultKind::duplicate_shells, rows[s].front(), rows[same].front());
     }
-    if (any)
-        keep_triangles(report,
-                       [&](std::size_t t) { return same[static_cast<std::size_t>(report.shell[t])] == no_index; });
-    return any;
+    if (std::ranges::count(dropped, true) == 0) return false;
+    keep_triangles(report, [&](std::size_t t) { return !dropped[static_cast<std::size_t>(report.shell[t])]; });
+    return true;
 }
 
 void compare_shells(SurfaceReport& report) {
@@ -223,9 +236,9 @@ void compare_shells(SurfaceReport& report) {
         if (std::abs(shell.volume) <= flat * size * size * size)
             add_fault(report, SurfaceFaultKind::flat_shells, static_cast<Index>(t));
     }
-    const auto signed_count = std::ranges::count(report.shells, true, &SurfaceShell::closed);
     SurroundedTriangles surrounded;
-    if (signed_count > 1) surrounded = surrounded_triangles(report, sizes);
+    if (std::ranges::count(report.shells, true, &SurfaceShell::closed) > 1)
+        surrounded = surrounded_triangles(report, sizes);
     nest(report, surrounded);
     turn_inside_out(report);
     const auto sign_of = [&](Index shell) {

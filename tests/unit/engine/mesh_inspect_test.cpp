@@ -7,6 +7,7 @@
 #include "engine/mesh/surface/check_shells.h"
 #include "skerry/error.h"
 #include "skerry/mesh.h"
+#include "tests/support/surface_corpus.h"
 
 namespace skerry::test::mesh_inspect_test {
 
@@ -151,6 +152,11 @@ TEST_CASE("aligned or nested shells that overlap are refused, and shells that on
     }
     CHECK_NOTHROW(mesh::require_shells(joined(1, 1), "part", false));
     CHECK_NOTHROW(mesh::require_shells(joined(1, 3), "part", false));
+    // Boxes with common nodes, as in STL files.
+    const SurfaceMesh box = box_surface(Vec3::Ones());
+    CHECK_THROWS_WITH(mesh::require_shells(mesh::weld(both(box, moved(box, {0.5, 0, 0})), 0), "part", false),
+                      Contains("enclose the same volume twice"));
+    CHECK_NOTHROW(mesh::require_shells(mesh::weld(both(box, moved(box, {1, 0, 0})), 0), "part", false));
 }
 
 TEST_CASE("boundary triangles look outwards", "[unit]") {

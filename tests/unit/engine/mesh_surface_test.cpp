@@ -195,6 +195,11 @@ TEST_CASE("surfaces with wrong numbers are refused by name", "[unit][surface]") 
     ball.triangles[4][1] = 1000000;
     CHECK_THROWS_WITH(mesh::check_surface(ball), Contains("triangle 4: node: found 1000000"));
     CHECK_THROWS_WITH(mesh::check_surface({}), Contains("no triangles"));
+    CHECK_THROWS_WITH(mesh::check_surface(ball_surface(0.5), 1), Contains("surface: tolerance: found 1, expected"));
+    // All triangles have two corners in one place.
+    const SurfaceReport none = mesh::check_surface({{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}});
+    CHECK(found_in(none) == names_of({SurfaceFaultKind::flat_triangles}));
+    CHECK_FALSE(none.can_be_filled());
 }
 
 TEST_CASE("a million triangles are checked", "[unit][surface]") {
