@@ -10,6 +10,7 @@
 #include "engine/mesh/repair/surface_measures.h"
 #include "skerry/error.h"
 #include "skerry/fill.h"
+#include "tests/support/draws.h"
 #include "tests/support/surface_corpus.h"
 #include "tests/support/temporary_folder.h"
 
@@ -231,6 +232,31 @@ TEST_CASE("a surface of a scene is filled again only after a change of the surfa
     std::filesystem::remove(cache);
     std::filesystem::create_directory(cache);
     CHECK(runs_of(exact) > 0);
+}
+
+TEST_CASE("surfaces with the faults of users' files are filled with the volume of their solid, or refused") {
+    if (!netgen_is_built()) return;
+    const Variable netgen("SKERRY_FILL", built_netgen());
+    // fTetWild fills the surfaces with faults if SKERRY_FILL_PYTHON names an interpreter that has it.
+    std::vector<CorpusSurface> corpus = surface_corpus();
+    corpus.resize(static_cast<std::size_t>(draws(static_cast<int>(corpus.size()))));
+    for (const CorpusSurface& of : corpus) {
+        INFO(of.name);
+        try {
+            const mesh::FilledMesh filled = mesh::fill(of.surface, of.name);
+            const MeshReport report = inspect(filled.mesh);
+            CHECK(report.inverted + report.flat == 0);
+            // fTetWild moves the surface by up to the tolerance.
+            const Real surface = mesh::area_of(filled.surface.cleaned);
+            const Real rounding = 1e-6 * report.volume;
+            if (of.volume)
+                CHECK(std::abs(report.volume - *of.volume) <=
+                      (filled.exact ? 0 : filled.tolerance * surface) + rounding);
+        } catch (const SceneError& error) {
+            CHECK_THAT(error.what(), Contains(of.name));
+            CHECK_FALSE(mesh::check_surface(of.surface).can_be_filled());
+        }
+    }
 }
 
 }  // namespace
