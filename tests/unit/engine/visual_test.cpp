@@ -160,6 +160,7 @@ TEST_CASE("a visual surface lives and moves with its body, and changes no step",
     }
     Visuals visuals(world);
     for (const BodyHandle body : bodies) CHECK(visuals.set(body, fine_ball()).warning.empty());
+    CHECK(visuals.fit(bodies[0]).farthest == Approx(0.1));
     const auto at_rest = visuals.positions(bodies[0]);
     CHECK(largest_error(at_rest, fine_ball().nodes) < 1e-15);
     CHECK(world.state_hash() == plain.state_hash());
