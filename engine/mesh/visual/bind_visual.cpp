@@ -64,7 +64,7 @@ SurfaceMesh boundary_of(std::span<const Vec3> nodes, std::span<const std::array<
     return surface;
 }
 
-Vec3 place_of(const MaterialPoint& point, std::span<const Vec3> nodes) {
+Vec3 position_of(const MaterialPoint& point, std::span<const Vec3> nodes) {
     Vec3 place = Vec3::Zero();
     for (std::size_t k = 0; k < 4; ++k) place += point.weight[k] * nodes[static_cast<std::size_t>(point.node[k])];
     return place;
@@ -162,7 +162,7 @@ BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
         const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place));
         // The nearest point of a node inside is the node itself, up to rounding.
         const bool is_inside = point.node[3] != point.node[0];
-        visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(place - place_of(point, nodes)));
+        visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(place - position_of(point, nodes)));
         const Real distance = visual.offset.back().norm();
         if (distance == 0) continue;
         ++visual.fit.outside;

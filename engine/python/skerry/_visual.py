@@ -105,7 +105,7 @@ class VisualSurface:
     def materials(self) -> tuple[VisualMaterial, ...]:
         """Materials of the triangles."""
         return tuple(
-            VisualMaterial(name, tuple(color), opacity, texture)
+            VisualMaterial(name, vector(color, "color"), opacity, texture)
             for name, color, opacity, texture in self._core.materials()
         )
 
