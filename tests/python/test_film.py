@@ -195,7 +195,8 @@ def test_wrong_films_are_refused_and_leave_no_file(tmp_path: Path) -> None:
         ("a.usd", {"color": "heat"}, "color: found 'heat', expected 'none', 'stress', 'speed' or 'contact'"),
         ("a.usd", {"color_max": -1}, "color_max: found -1.000000, expected a number above 0"),
     ):
-        with pytest.raises(sk.SceneError, match=message), world.usd(tmp_path / path, **options):  # type: ignore[arg-type]
+        film = world.usd(tmp_path / path, **options)  # type: ignore[arg-type]
+        with pytest.raises(sk.SceneError, match=message), film:
             pass
     assert [file.name for file in tmp_path.iterdir()] == ["file"]
 
