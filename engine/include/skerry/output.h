@@ -20,7 +20,8 @@ namespace skerry {
 ///   material;
 /// - one .vtp file of the contacts, with impulse, force, normal, gap, slip, state and region;
 /// - one .vtp file of the colliders, which is written again only when a collider has changed;
-/// - one .vtp file of joints, ties, cables and springs, with kind and force, if there are any.
+/// - one .vtp file of joints, ties, cables and springs, with kind and force, if there are any;
+/// - one .vtp file of visual surfaces, with texture coordinates, displacement, velocity and stress, if there are any.
 ///
 /// Displacements are measured from the position in which a body was first written. Stress is Cauchy stress [Pa], strain
 /// is Green strain. Both are given by tetrahedron and by node, with components in the order of VTK: XX, YY, ZZ, XY, YZ,
@@ -107,7 +108,8 @@ private:
 };
 
 /// Writes the present state as a binary glTF file (.glb). The file has a mesh for each body and each collider, with
-/// normals. Colours are as in a film. glTF has the y axis up, so the meshes are rotated by -90 degrees about x.
+/// normals. Colours are as in a film. Textures are included if they are PNG or JPEG images. glTF has the y axis up, so
+/// the meshes are rotated by -90 degrees about x.
 void write_gltf(const World& world, const std::filesystem::path& file, FilmColor color = FilmColor::none,
                 std::optional<Real> color_max = {});
 

@@ -1,5 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "engine/mesh/repair/triangle_tree.h"
 #include "engine/mesh/visual/bound_visual.h"
@@ -15,8 +17,10 @@ namespace {
 /// Finds the tetrahedron around a point, and the nearest point of the boundary.
 class RestShape {
 public:
-    RestShape(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra)
-        : nodes_(nodes), tetrahedra_(tetrahedra), boundary_(boundary_of(nodes, tetrahedra)), tree_(boundary_) {
+    /// `boundary`: boundary of the tetrahedra, with at least one triangle.
+    RestShape(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
+              const SurfaceMesh& boundary)
+        : nodes_(nodes), tetrahedra_(tetrahedra), boundary_(boundary), tree_(boundary) {
         std::vector<Aabb> boxes;
         for (const std::array<Index, 4>& corners : tetrahedra) {
             boxes.push_back(empty_box());
@@ -24,8 +28,6 @@ public:
         }
         boxes_ = BoxTree(boxes);
     }
-
-    const SurfaceMesh& boundary() const { return boundary_; }
 
     MaterialPoint nearest(const Vec3& place) const {
         // Tolerance for rounding errors of barycentric coordinates, so that no point lies between two tetrahedra.
@@ -42,27 +44,27 @@ public:
                             inside = point;
                         });
         if (best > -rounding) return inside;
-        const mesh::NearestTriangle found = tree_.nearest(place);
+        mesh::NearestTriangle found = tree_.nearest(place);
+        if (found.triangle == no_index) found = {0, {1, 0, 0}, infinity};  // squares of distances overflow
         const auto& [a, b, c] = boundary_.triangles[static_cast<std::size_t>(found.triangle)];
         return {{a, b, c, a}, {found.weight[0], found.weight[1], found.weight[2], 0}};
     }
 
 private:
-    static SurfaceMesh boundary_of(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra) {
-        SurfaceMesh surface{.nodes = {nodes.begin(), nodes.end()}, .triangles = {}};
-        for (const BoundaryTriangle& triangle : boundary_triangles(tetrahedra))
-            surface.triangles.push_back(triangle.node);
-        return surface;
-    }
-
     std::span<const Vec3> nodes_;
     std::span<const std::array<Index, 4>> tetrahedra_;
-    SurfaceMesh boundary_;
+    const SurfaceMesh& boundary_;
     mesh::TriangleTree tree_;
     BoxTree boxes_;
 };
 
-Vec3 place_of(const MaterialPoint& point, std::span<const Vec3> nodes) {
+SurfaceMesh boundary_of(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra) {
+    SurfaceMesh surface{.nodes = {nodes.begin(), nodes.end()}, .triangles = {}};
+    for (const BoundaryTriangle& triangle : boundary_triangles(tetrahedra)) surface.triangles.push_back(triangle.node);
+    return surface;
+}
+
+Vec3 position_of(const MaterialPoint& point, std::span<const Vec3> nodes) {
     Vec3 place = Vec3::Zero();
     for (std::size_t k = 0; k < 4; ++k) place += point.weight[k] * nodes[static_cast<std::size_t>(point.node[k])];
     return place;
@@ -148,18 +150,19 @@ BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
                         std::span<const std::array<Index, 4>> tetrahedra) {
     BoundVisual visual{.surface = std::move(surface), .fit = {}, .point = {}, .offset = {}, .gradient = {}};
     visual.point.reserve(visual.surface.nodes.size());
-    if (tetrahedra.empty()) {
+    const SurfaceMesh boundary = boundary_of(nodes, tetrahedra);
+    if (boundary.triangles.empty()) {
         bind_to_solid(visual, nodes);
         return visual;
     }
-    const RestShape shape(nodes, tetrahedra);
+    const RestShape shape(nodes, tetrahedra, boundary);
     std::vector<bool> wanted(nodes.size(), false);
     visual.offset.reserve(visual.surface.nodes.size());
     for (const Vec3& place : visual.surface.nodes) {
         const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place));
         // The nearest point of a node inside is the node itself, up to rounding.
         const bool is_inside = point.node[3] != point.node[0];
-        visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(place - place_of(point, nodes)));
+        visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(place - position_of(point, nodes)));
         const Real distance = visual.offset.back().norm();
         if (distance == 0) continue;
         ++visual.fit.outside;
@@ -167,8 +170,26 @@ BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
         for (const Index n : point.node) wanted[static_cast<std::size_t>(n)] = true;
     }
     visual.gradient = gradients_of(nodes, tetrahedra, wanted);
-    visual.fit.warning = warning_of(visual, nodes, mean_edge_of(shape.boundary()));
+    visual.fit.warning = warning_of(visual, nodes, mean_edge_of(boundary));
     return visual;
+}
+
+VisualPoints split_at_seams(const VisualSurface& surface) {
+    VisualPoints points;
+    std::map<std::array<Index, 2>, Index> known;  // points by node and texture point
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        std::array<Index, 3>& corners = points.triangles.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index node = surface.triangles[t][k];
+            const Index texture = surface.texture_corners.empty() ? no_index : surface.texture_corners[t][k];
+            const auto [place, is_new] = known.try_emplace({node, texture}, static_cast<Index>(points.node.size()));
+            corners[k] = place->second;
+            if (!is_new) continue;
+            points.node.push_back(node);
+            points.texture_point.push_back(texture);
+        }
+    }
+    return points;
 }
 
 std::vector<Vec3> visual_positions(const BoundVisual& visual, std::span<const Vec3> of_body) {

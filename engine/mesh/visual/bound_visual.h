@@ -29,6 +29,14 @@ struct BoundVisual {
     Ragged<GradientTerm> gradient;
 };
 
+/// Points of a surface, each with one node and at most one texture point. A node at which texture coordinates jump has
+/// several points.
+struct VisualPoints {
+    std::vector<Index> node, texture_point;         // by point; no_index: no texture point
+    std::vector<std::array<Index, 3>> triangles{};  // indices of points
+};
+VisualPoints split_at_seams(const VisualSurface& surface);
+
 /// Throws SceneError that names `object` if an index of the surface is out of range, a value is not finite, or lists
 /// differ in length.
 void require_visual(const VisualSurface& surface, const std::string& object);

@@ -8,7 +8,8 @@
 
 namespace skerry {
 
-void expect_rows(const SavedFile& file, const std::string& path, std::size_t found, std::size_t expected, const char* of) {
+void expect_rows(const SavedFile& file, const std::string& path, std::size_t found, std::size_t expected,
+                 const char* of) {
     if (found != expected)
         file.complain(path, std::to_string(found) + " rows", std::to_string(expected) + ", the number of " + of);
 }

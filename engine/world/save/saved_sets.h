@@ -29,7 +29,8 @@ inline std::string text_of(std::span<const std::uint8_t> row) {
 }
 
 /// Checks the number of rows of a column, which is the number of the objects `of`.
-void expect_rows(const SavedFile& file, const std::string& path, std::size_t found, std::size_t expected, const char* of);
+void expect_rows(const SavedFile& file, const std::string& path, std::size_t found, std::size_t expected,
+                 const char* of);
 /// Checks the offsets of a list of lists, and the number of its rows. Without rows, offsets may be missing.
 template <class T>
 void expect_ragged(const SavedFile& file, const std::string& path, const Ragged<T>& rows, std::size_t count,

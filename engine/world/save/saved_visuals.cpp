@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/mesh/visual/bound_visual.h"
 #include "engine/world/save/saved_sets.h"
 
 namespace skerry {
@@ -63,7 +64,8 @@ SavedVisuals visuals_to_save(const Model& model) {
 }
 
 void put_visuals(const SavedVisuals& saved, const SavedFile& file, Model& model) {
-    const std::size_t bodies = model.body_records.size(), count = saved.nodes.size(), materials = saved.color.item.size();
+    const std::size_t bodies = model.body_records.size(), count = saved.nodes.size(),
+                      materials = saved.color.item.size();
     expect_rows(file, "visuals/of_body", saved.of_body.size(), bodies, "bodies");
     expect_rows_of(file, "visuals/of_body", saved.of_body, count, true);
     expect_ragged(file, "visuals/nodes", saved.nodes, count, "visual surfaces");
@@ -82,6 +84,9 @@ void put_visuals(const SavedVisuals& saved, const SavedFile& file, Model& model)
         BodyRecord& record = model.body_records[b];
         const auto [first, is_new] = first_body.try_emplace(row, b);
         const std::span<const Vec3> nodes = model.mesh_shape(b);
+        if (nodes.empty())
+            file.complain("visuals/of_body", "a visual surface of body " + std::to_string(b) + ", which has no nodes",
+                          "no visual surface");
         if (!is_new && std::ranges::equal(nodes, model.mesh_shape(first->second)) &&
             record.tetrahedra == model.body_records[first->second].tetrahedra) {
             record.visual = model.body_records[first->second].visual;

@@ -36,7 +36,6 @@
 #include "components/surface_rules.h"
 #include "components/surface_table.h"
 #include "components/tie_table.h"
-#include "engine/mesh/visual/bound_visual.h"
 #include "engine/world/state/field_cache.h"
 #include "engine/world/state/known_elements.h"
 #include "engine/world/tuning.h"
@@ -50,6 +49,8 @@
 #include "systems/dynamics/motion/move_colliders.h"
 
 namespace skerry {
+
+struct BoundVisual;  // engine/mesh/visual/bound_visual.h
 
 /// Slot of the attachments that move mesh colliders. Users have no handles to these attachments.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;
