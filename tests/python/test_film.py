@@ -195,7 +195,8 @@ def test_wrong_films_are_refused_and_leave_no_file(tmp_path: Path) -> None:
         ("a.usd", {"color": "heat"}, "color: found 'heat', expected 'none', 'stress', 'speed' or 'contact'"),
         ("a.usd", {"color_max": -1}, "color_max: found -1.000000, expected a number above 0"),
     ):
-        with pytest.raises(sk.SceneError, match=message), world.usd(tmp_path / path, **options):  # type: ignore[arg-type]
+        film = world.usd(tmp_path / path, **options)  # type: ignore[arg-type]
+        with pytest.raises(sk.SceneError, match=message), film:
             pass
     assert [file.name for file in tmp_path.iterdir()] == ["file"]
 
@@ -277,8 +278,14 @@ def test_a_gltf_file_has_the_state_of_the_world(tmp_path: Path) -> None:
     mesh = found[0][0].combine()
     triangles = mesh.cells.reshape(-1, 4)[:, 1:]
     # x, y and z of the world are x, -z and y of glTF
-    points = mesh.points[:, [0, 2, 1]] * (1, -1, 1)
+    points, normals = (rows[:, [0, 2, 1]] * (1, -1, 1) for rows in (mesh.points, mesh["NORMAL"]))
     np.testing.assert_allclose(points[triangles], np.asarray(ball.positions)[ball.surface], atol=1e-7)
+    speed = np.linalg.norm(ball.velocities, axis=1)
+    np.testing.assert_allclose(np.ravel(mesh["_SPEED"])[triangles], speed[ball.surface], rtol=1e-6)
+    assert mesh["COLOR_0"].shape[0] == len(points)
+    outward = points - points.mean(axis=0)
+    outward /= np.linalg.norm(outward, axis=1)[:, None]
+    assert ((normals * outward).sum(axis=1) > 0.9).all()
 
 
 def test_a_gltf_file_has_the_materials_of_a_visual_surface(tmp_path: Path) -> None:

@@ -108,7 +108,8 @@ private:
 };
 
 /// Writes the present state as a binary glTF file (.glb). The file has a mesh for each body and each collider, with
-/// normals. Colours are as in a film. glTF has the y axis up, so the meshes are rotated by -90 degrees about x.
+/// normals. Colours are as in a film. Textures are included if they are PNG or JPEG images. glTF has the y axis up, so
+/// the meshes are rotated by -90 degrees about x.
 void write_gltf(const World& world, const std::filesystem::path& file, FilmColor color = FilmColor::none,
                 std::optional<Real> color_max = {});
 

@@ -46,7 +46,7 @@ struct CrateFile::Tables {
     std::vector<std::int32_t> field_token, field_sets;
     std::vector<CrateValue> field_value;
     std::vector<std::int32_t> spec_path, spec_fields, spec_kind;
-    // By path, in depth-first order: number of the path, last part of the path as token (negative for a property), and
+    // Paths in depth-first order: number of the path, last part of the path as token (negative for a property), and
     // step to the next sibling: -2 without child and sibling, -1 with a child only, 0 with a sibling only.
     std::vector<std::int32_t> path_number, path_token, path_jump;
 };

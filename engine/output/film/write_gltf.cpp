@@ -8,6 +8,8 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -130,21 +132,21 @@ private:
     }
 
     GltfJson primitives(const GltfMesh& mesh) {
-        // Vertices of glTF have one texture point each. A vertex with several is written several times.
         const bool textured = mesh.visual != nullptr && !mesh.visual->texture_corners.empty();
-        std::map<std::pair<Index, Index>, std::uint32_t> numbers;
-        std::vector<std::pair<Index, Index>> vertices;        // vertex and texture point
+        VisualPoints vertices{.node = std::vector<Index>(mesh.points.size()), .texture_point = {}};
+        if (textured) {
+            vertices = split_at_seams(*mesh.visual);  // a vertex of glTF has one texture point
+        } else {
+            std::iota(vertices.node.begin(), vertices.node.end(), 0);
+            vertices.triangles = mesh.triangles;
+        }
         std::map<Index, std::vector<std::uint32_t>> corners;  // by material
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::pair vertex(mesh.triangles[t][k], textured ? mesh.visual->texture_corners[t][k] : no_index);
-                const auto [place, is_new] = numbers.try_emplace(vertex, static_cast<std::uint32_t>(vertices.size()));
-                if (is_new) vertices.push_back(vertex);
-                corners[material_of(mesh, t)].push_back(place->second);
-            }
+        for (std::size_t t = 0; t < vertices.triangles.size(); ++t)
+            for (const Index corner : vertices.triangles[t])
+                corners[material_of(mesh, t)].push_back(static_cast<std::uint32_t>(corner));
         const auto expanded = [&](const auto& values) {
             std::decay_t<decltype(values)> all;
-            for (const auto& [vertex, texture] : vertices) all.push_back(values[static_cast<std::size_t>(vertex)]);
+            for (const Index node : vertices.node) all.push_back(values[static_cast<std::size_t>(node)]);
             return all;
         };
         const std::vector<Vec3f> points = expanded(mesh.points);
@@ -161,7 +163,7 @@ private:
         accessor["max"] = upper;
         if (textured) {
             std::vector<std::array<float, 2>> texture_points;
-            for (const auto& [vertex, texture] : vertices) {
+            for (const Index texture : vertices.texture_point) {
                 const std::array<Real, 2> at = texture == no_index
                                                    ? std::array<Real, 2>{}
                                                    : mesh.visual->texture_points[static_cast<std::size_t>(texture)];
@@ -206,8 +208,8 @@ private:
         const auto& [r, g, b] = shown.color;
         GltfJson surface = {
             {"baseColorFactor", {r, g, b, shown.opacity}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}};
-        if (!shown.texture.empty()) {
-            surface["baseColorTexture"] = {{"index", texture_number(shown.texture)}};
+        if (const std::optional<std::size_t> texture = texture_number(shown.texture)) {
+            surface["baseColorTexture"] = {{"index", *texture}};
             surface["baseColorFactor"] = {1, 1, 1, shown.opacity};
         }
         GltfJson entry = {{"name", shown.name}, {"pbrMetallicRoughness", surface}};
@@ -216,13 +218,16 @@ private:
         return append("materials", std::move(entry));
     }
 
-    /// Appends an image to the file, and returns the number of its texture.
-    std::size_t texture_number(const std::filesystem::path& image) {
+    /// Appends an image to the file, and returns the number of its texture. Returns nothing if the file is no PNG or
+    /// JPEG image, since glTF has no others.
+    std::optional<std::size_t> texture_number(const std::filesystem::path& image) {
         std::ifstream in(image, std::ios::binary);
         const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-        const char* format = bytes.starts_with("\x89PNG") ? "image/png" : "image/jpeg";
-        return append("textures",
-                      {{"source", append("images", {{"bufferView", view(bytes, 0)}, {"mimeType", format}})}});
+        const bool is_png = bytes.starts_with("\x89PNG");
+        if (!is_png && !bytes.starts_with("\xff\xd8")) return std::nullopt;
+        const std::size_t number =
+            append("images", {{"bufferView", view(bytes, 0)}, {"mimeType", is_png ? "image/png" : "image/jpeg"}});
+        return append("textures", {{"source", number}});
     }
 
     FilmColor color_;

@@ -252,7 +252,8 @@ class ProgramRunTest(ProgramCase):
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("film.usd: output: found the error \"File too large\" while writing", done.stderr)
         self.assertIn("NOT WRITTEN   --film", done.stdout)
-        self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["drop.json", "probed.json", "probes.csv"])
+        files = sorted(file.name for file in self.folder.iterdir())
+        self.assertEqual(files, ["drop.json", "probed.json", "probes.csv"])
 
     def test_frames_of_an_earlier_run_make_room_and_nothing_else_does(self):
         out = self.folder / "out"
