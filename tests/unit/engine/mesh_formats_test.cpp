@@ -65,8 +65,8 @@ std::vector<SecondOrderFile> second_order_files() {
     const auto comma = [](std::size_t n) { return std::to_string(n + 1) + ", "; };
     const std::string abaqus =
         "*NODE\n" + node_lines(comma, ", ", "") +
-        "*ELEMENT, TYPE=C3D10M, ELSET=ALL\n1, 1, 2, 3, 4, 5, 6,\n7, 8, 9, 10\n*ELSET, ELSET=NONE, INTERNAL\n" + sections +
-        "*SURFACE, NAME=BASE\nALL, S1\n";
+        "*ELEMENT, TYPE=C3D10M, ELSET=ALL\n1, 1, 2, 3, 4, 5, 6,\n7, 8, 9, 10\n*ELSET, ELSET=NONE, INTERNAL\n" +
+        sections + "*SURFACE, NAME=BASE\nALL, S1\n";
     return {{"a.msh", gmsh, "surface_4"},
             {"a.vtk", vtk, "part"},
             {"b.vtk", replaced(vtk, "22 24", "69 71"), "part"},
