@@ -180,6 +180,9 @@ TEST_CASE("a bad Medit file is refused with the place and the reason", "[unit]")
     refused("Dimension 3", "Dimension 2", "Dimension, line 2: dimension: found 2, expected 3");
     refused("MeshVersionFormatted", "MeshVersion", "expected MeshVersionFormatted");
     refused("Unknown 1 2.5", "Vertices 1 0 0 0 0", "a second section Vertices");
+    refused(
+        "Hexahedra 1\n1 2 3 4 1 2 3 4 0", "TetrahedraP3 1\n1 2 3 4 1 2 3 4 1 2 3 4 1 2 3 4 1 2 3 4 0",
+        "TetrahedraP3, line 12: found 1 tetrahedra of third or higher order, expected tetrahedra of first or second");
     refused("Hexahedra 1\n1 2 3 4 1 2 3 4 0", "TetrahedraP2Ordering 1 0 2 0 0",
             "TetrahedraP2Ordering, row 1 of 1, line 12: coordinate: found 0, expected 2");
     const std::string binary = medit_file(mesh, 3, Bytes::native);
