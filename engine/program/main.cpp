@@ -309,8 +309,9 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
     CLI::App& command = *app.add_subcommand("inspect", "Show the content and likely problems of a mesh or scene");
     command.footer(inspect_examples);
     command
-        .add_option("FILE", options.file,
-                    "mesh file (.msh, .inp, .mesh, .vtk, .vtu, .node, .ele), surface (.obj, .ply, .stl) or scene file (.json)")
+        .add_option(
+            "FILE", options.file,
+            "mesh file (.msh, .inp, .mesh, .vtk, .vtu, .node, .ele), surface (.obj, .ply, .stl) or scene file (.json)")
         ->required();
     add_set(command, options.assignments);
     command.add_flag("--json", options.json, "print the result as JSON");

@@ -98,9 +98,10 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
             .key("skittle", &MeshEntry::skittle, {.meaning = "a skittle"})
             .key("table", &MeshEntry::table, {.meaning = "a table"})
             .key("file", &MeshEntry::file,
-                 {.meaning = "path of a mesh file, relative to the folder of the scene: Gmsh .msh, VTK .vtk or .vtu, TetGen "
-                             ".node/.ele, Medit .mesh/.meshb or Abaqus .inp; rigid bodies and colliders also take .obj, "
-                             ".ply and .stl"})
+                 {.meaning =
+                      "path of a mesh file, relative to the folder of the scene: Gmsh .msh, VTK .vtk or .vtu, TetGen "
+                      ".node/.ele, Medit .mesh/.meshb or Abaqus .inp; rigid bodies and colliders also take .obj, "
+                      ".ply and .stl"})
             .key("surface", &MeshEntry::surface,
                  {.meaning =
                       "path of a surface, for example .obj, .ply or .stl, relative to the folder of the scene. It is "

@@ -105,12 +105,16 @@ struct TableShape {
 Mesh table(const TableShape& shape);
 
 /// Reads a mesh from Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary), VTK XML .vtu
-/// (unstructured grids; ASCII, base64 and raw, also compressed by zlib) or TetGen .node/.ele (`path` may name
-/// either file). Only linear tetrahedra are used: curved tetrahedra are refused, other kinds of elements and unused
-/// nodes are dropped; Mesh::file_number then names the remaining nodes. Inverted tetrahedra are turned: two of
-/// their nodes change places. `notes`, if given, gets a sentence that names the file and the number of turned
-/// tetrahedra. If turning would make tetrahedra overlap, the shape itself is faulty; the mesh is then left as in
-/// the file, and `inspect` counts the faults.
+/// (unstructured grids; ASCII, base64 and raw, also compressed by zlib), TetGen .node/.ele (`path` may name either
+/// file), Medit .mesh/.meshb (ASCII and binary) or Abaqus .inp. Tetrahedra of second order are divided into eight
+/// linear ones each, which together have all nodes of the file. Tetrahedra of higher order are refused. Other kinds of
+/// elements and unused nodes are dropped; Mesh::file_number then names the remaining nodes. Inverted tetrahedra are
+/// turned: two of their nodes change places. If turning would make tetrahedra overlap, the shape itself is faulty; the
+/// mesh is then left as in the file, and `inspect` counts the faults. `notes`, if given, gets sentences about divided,
+/// dropped and turned elements, each with the name of the file.
+///
+/// An Abaqus file must list its nodes, elements and sets in Cartesian coordinates. Instances of parts are joined into
+/// one mesh. Steps, loads and constants of materials are not read.
 ///
 /// Sources of the labels; without these sources the mesh has no labels:
 /// - Gmsh: the number of the physical group (of the first group, if a volume is in several), 0 outside of all groups.
@@ -118,6 +122,9 @@ Mesh table(const TableShape& shape);
 /// - VTK: the first array of cell data that is called region, gmsh:physical, medit:ref or CellEntityIds and has one
 ///   whole number per cell.
 /// - TetGen: the last attribute in the .ele file, if it is a whole number for all tetrahedra.
+/// - Medit: the references of the tetrahedra.
+/// - Abaqus: the materials of the solid sections are numbered from 1 in their order; 0 outside of all sections. `notes`
+///   names the material of each label.
 ///
 /// Sources of the sets:
 /// - Gmsh: each physical group of points, curves, surfaces or volumes, by its name. A group without a name is called
@@ -125,6 +132,10 @@ Mesh table(const TableShape& shape);
 /// - VTK: arrays of bits or whole numbers with one number per point or cell. An array NAME of zeros and ones gives the
 ///   set NAME, any other array a set NAME_N for each number N but 0. An array in which all numbers differ gives none.
 /// - TetGen: node_marker_N and face_marker_N for each marker N but 0 of the files .node and .face.
+/// - Medit: node_ref_N and face_ref_N for each reference N but 0 of the vertices and triangles.
+/// - Abaqus: sets of nodes, sets of elements and surfaces by name. Names of an instance begin with its own name and a
+///   dot. If other objects have the same name, sets of elements are called NAME_elements and surfaces NAME_surface.
+///   A set that is just the nodes of the set of elements of the same name is dropped, and so are internal sets.
 /// Triangles that are not faces of a tetrahedron are dropped from sets, and `notes` gets their number.
 ///
 /// Throws SceneError that names the file, the place in the file, and the found and the expected text.

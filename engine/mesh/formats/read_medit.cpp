@@ -143,6 +143,9 @@ private:
                 read_elements(section, count);
                 break;
             case MeditContent::others:
+                if (section.kind == curved_tetrahedra)
+                    reader_.complain({}, std::to_string(count) + " " + curved_tetrahedra,
+                                     "tetrahedra of first or second order", "export the mesh with linear elements");
                 mesh_.others[section.kind] += count;
                 mesh_.curved_triangles += section.kind == curved_triangles ? count : 0;
                 for (std::size_t i = 0; i < numbers * count; ++i) reader_.integer(index_type_, "node");

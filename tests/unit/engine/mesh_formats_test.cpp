@@ -65,8 +65,8 @@ std::vector<SecondOrderFile> second_order_files() {
     const auto comma = [](std::size_t n) { return std::to_string(n + 1) + ", "; };
     const std::string abaqus =
         "*NODE\n" + node_lines(comma, ", ", "") +
-        "*ELEMENT, TYPE=C3D10M, ELSET=ALL\n1, 1, 2, 3, 4, 5, 6,\n7, 8, 9, 10\n*ELSET, ELSET=NONE, INTERNAL\n" + sections +
-        "*SURFACE, NAME=BASE\nALL, S1\n";
+        "*ELEMENT, TYPE=C3D10M, ELSET=ALL\n1, 1, 2, 3, 4, 5, 6,\n7, 8, 9, 10\n*ELSET, ELSET=NONE, INTERNAL\n" +
+        sections + "*SURFACE, NAME=BASE\nALL, S1\n";
     return {{"a.msh", gmsh, "surface_4"},
             {"a.vtk", vtk, "part"},
             {"b.vtk", replaced(vtk, "22 24", "69 71"), "part"},
@@ -180,6 +180,9 @@ TEST_CASE("a bad Medit file is refused with the place and the reason", "[unit]")
     refused("Dimension 3", "Dimension 2", "Dimension, line 2: dimension: found 2, expected 3");
     refused("MeshVersionFormatted", "MeshVersion", "expected MeshVersionFormatted");
     refused("Unknown 1 2.5", "Vertices 1 0 0 0 0", "a second section Vertices");
+    refused(
+        "Hexahedra 1\n1 2 3 4 1 2 3 4 0", "TetrahedraP3 1\n1 2 3 4 1 2 3 4 1 2 3 4 1 2 3 4 1 2 3 4 0",
+        "TetrahedraP3, line 12: found 1 tetrahedra of third or higher order, expected tetrahedra of first or second");
     refused("Hexahedra 1\n1 2 3 4 1 2 3 4 0", "TetrahedraP2Ordering 1 0 2 0 0",
             "TetrahedraP2Ordering, row 1 of 1, line 12: coordinate: found 0, expected 2");
     const std::string binary = medit_file(mesh, 3, Bytes::native);
@@ -316,12 +319,14 @@ TEST_CASE("a bad Abaqus file is refused with the place and the reason", "[unit]"
     refused("instance=right", "instance=middle", "INSTANCE: found \"middle\", expected the name of an instance");
     refused("10., 0., 0.\n", "10., 0.\n", "*INSTANCE, line 38: found 2 numbers, expected 3 numbers of a translation");
     refused("10., 0., 1., 90.", "10., 0., 0., 90.", "motion: found the same point twice");
-    refused("name=right", "name=left", "found a second part or instance \"left.\"");
+    refused("name=right", "name=left", "*INSTANCE, line 37: NAME: found a second instance \"left.\"");
     refused("*Heading", "*Include, input=mesh.inp", "*INCLUDE, line 1: found the keyword *INCLUDE");
     refused("*NODE,", "*Node, input=nodes.txt,", "*NODE, line 4: found the parameter INPUT");
     refused("*NODE,", "*Node, system=C,", "SYSTEM: found \"C\", expected R");
     CHECK_THAT(refusal_of_mesh("a.inp", "[TITLE]\n"), Contains("line 1: found \"[TITLE]\", expected a keyword line"));
     CHECK_THAT(refusal_of_mesh("a.inp", ""), Contains("found no nodes"));
+    CHECK_THAT(refusal_of_mesh("a.inp", "*PART, NAME=A\n*END PART\n*PART, NAME=A\n*END PART\n"),
+               Contains("found no nodes"));
 }
 
 }  // namespace skerry::test::mesh_formats_test
