@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -108,6 +109,32 @@ std::vector<StrainedPoints> strained_points(const RegionInputs& contacts) {
     return bodies;
 }
 
+/// Erases contacts from a problem. `contacts`: ascending.
+void leave_out(std::span<const Index> contacts, StepProblem& problem) {
+    std::vector<Index> kept;
+    for (Index i = 0; i < problem.problem.contacts(); ++i)
+        if (!std::ranges::binary_search(contacts, i)) kept.push_back(i);
+    const auto keep = [&]<class T>(std::vector<T>& values) {
+        if (values.empty()) return;
+        for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[static_cast<std::size_t>(kept[i])];
+        values.resize(kept.size());
+    };
+    if (kept.empty())
+        problem.problem = {};
+    else
+        problem.problem = part_of(problem.problem, kept);
+    LumpedContacts& lumped = problem.lumped;
+    keep(lumped.node);
+    keep(lumped.weight);
+    keep(lumped.normal);
+    keep(lumped.offset);
+    keep(lumped.friction);
+    for (RigidPoints& body : lumped.rigid) keep(body.touch);
+    keep(problem.impulse);
+    keep(problem.contact);
+    keep(problem.region);
+}
+
 }  // namespace
 
 StepProblem step_problem(const StepContacts& step, const SolverSettings& settings, Real h) {
@@ -117,7 +144,6 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
     lumped.velocity.assign(step.free_velocity.begin(), step.free_velocity.end());
     std::vector<Vec3> impulse;
     for (std::size_t row = 0; row < step.contacts.stencil.size(); ++row) {
-        if (!step.joined.empty() && step.joined[row]) continue;
         bool on_rigid_body = false;
         const LumpedContact contact = load_contact(
             step.contacts, static_cast<Index>(row), step.free_velocity, settings, h, [](Index node) { return node; },
@@ -148,6 +174,13 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
     result.problem = assemble_problem(lumped, {});
     result.problem.description = description_of(step, settings);
     result.impulse = in_contact_frames(lumped, impulse);
+    if (const std::optional<std::vector<Index>> immovable =
+            eliminate_equations(step.equations, step.contacts, result.contact, result.impulse, result.problem)) {
+        if (!immovable->empty()) leave_out(*immovable, result);
+        result.problem.description +=
+            "; W and q include the joints, ties and rollers of the bodies, and the impulses of their motors, limits, "
+            "slides and cables in the step";
+    }
     return result;
 }
 

@@ -118,11 +118,12 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
     if (series.body) {
         const BodyPlan& body = plan.bodies[*series.body];
         const Mesh& mesh = plan.meshes[body.mesh];
-        const bool is_rigid = body.settings.dynamics == BodyDynamics::rigid || body.shape.sphere || body.shape.capsule ||
-                              body.shape.cylinder;
+        const bool is_rigid = body.settings.dynamics == BodyDynamics::rigid || body.shape.sphere ||
+                              body.shape.capsule || body.shape.cylinder;
         if (is_rigid && (entry.quantity == ProbeQuantity::stress || entry.quantity == ProbeQuantity::volume))
-            entry.place.key("body").refuse("the rigid body " + in_quotes(*entry.body),
-                                           "a body that deforms, for the quantity " + in_quotes(name_of(entry.quantity)));
+            entry.place.key("body").refuse(
+                "the rigid body " + in_quotes(*entry.body),
+                "a body that deforms, for the quantity " + in_quotes(name_of(entry.quantity)));
         if (entry.box || entry.set) series.nodes = nodes_of(part_of(entry), body, plan);
         if (entry.point) series.point = find_point(entry, mesh);
         if (entry.quantity == ProbeQuantity::reaction) {

@@ -344,8 +344,7 @@ JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePla
 
 /// Adds a note if a joint does not start where its mimic wants it.
 void note_start_of_mimic(const JointPlan& joint, ScenePlan& plan) {
-    const JointPlan& leader =
-        plan.joints[find_joint(plan, joint.mimic->joint, joint.place.key("mimic").key("joint"))];
+    const JointPlan& leader = plan.joints[find_joint(plan, joint.mimic->joint, joint.place.key("mimic").key("joint"))];
     const Real found = joint.settings.coordinate,
                wanted = joint.mimic->ratio * leader.settings.coordinate + joint.mimic->offset;
     constexpr Real rounding = 1e-6;

@@ -150,7 +150,8 @@ std::string StepReport::message() const {
                    "its dynamics to explicit";
         case StepStatus::too_stiff:
             return "the step was not taken: " + who + " has a stable step of only " + short_text(value) +
-                   " s, which is too short to advance the time; check the material, size and shape of the body, and springs, "
+                   " s, which is too short to advance the time; check the material, size and shape of the body, and "
+                   "springs, "
                    "cables, cavities, fibres and loads on it";
     }
     return {};

@@ -202,9 +202,7 @@ void require_common_position(const JointTable& table, std::size_t joint, const c
     for (std::size_t j = 0; j < table.size(); ++j) {
         const OfHead other = of_head(table, static_cast<Index>(j));
         if (other.head != own.head) continue;
-        const auto in_own = [&](Real limit) {
-            return own.ratio * ((limit - other.offset) / other.ratio) + own.offset;
-        };
+        const auto in_own = [&](Real limit) { return own.ratio * ((limit - other.offset) / other.ratio) + own.offset; };
         const auto [least, most] = std::minmax({in_own(table.lower[j]), in_own(table.upper[j])});
         lower = std::max(lower, least);
         upper = std::min(upper, most);
@@ -213,7 +211,8 @@ void require_common_position(const JointTable& table, std::size_t joint, const c
     if (lower - upper > rounding * std::max({Real(1), std::abs(lower), std::abs(upper)}))
         refuse_joint(field,
                      "limits of this joint and of those that it mimics or that mimic it, by which its coordinate is at "
-                     "least " + short_text(lower) + " and at most " + short_text(upper),
+                     "least " +
+                         short_text(lower) + " and at most " + short_text(upper),
                      "limits that a common position of these joints satisfies");
 }
 

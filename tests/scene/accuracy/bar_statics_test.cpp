@@ -1,5 +1,5 @@
-// Bars at rest under their weight and in rotation, their vibrations, and a bar that yields (docs/methods/accuracy.md 12,
-// 13, 16, 20, 65, and the orders in h of 31).
+// Bars at rest under their weight and in rotation, their vibrations, and a bar that yields (docs/methods/accuracy.md
+// 12, 13, 16, 20, 65, and the orders in h of 31).
 #include <catch2/catch.hpp>
 #include <optional>
 
@@ -256,7 +256,8 @@ TEST_CASE("damping takes nothing of the stretch of a spinning bar", "[scene]") {
     }
 }
 
-TEST_CASE("a bar that is loaded, unloaded and loaded again follows the curve of linear hardening", "[scene][accuracy]") {
+TEST_CASE("a bar that is loaded, unloaded and loaded again follows the curve of linear hardening",
+          "[scene][accuracy]") {
     constexpr Real size = 0.1, area = 0.025 * 0.025, yield = 5e3, hardening = 2e4;  // [m], [m^2], [Pa], [Pa]
     // States with the Kirchhoff stress s [Pa] and the plastic strain p, reached one after the other.
     struct State {
@@ -274,13 +275,13 @@ TEST_CASE("a bar that is loaded, unloaded and loaded again follows the curve of 
     constexpr Real phase = 0.4, rest = 0.1;  // duration of a change, and of the rest at its end [s]
     const Mesh mesh = mesh::box({size, 0.025, 0.025}, {4, 1, 1});
     World world(weightless());
-    const auto bar = world.add_body(
-        mesh, {.material = world.add_material({.young_modulus = modulus,
-                                               .poisson_ratio = 0.3,
-                                               .density = density,
-                                               .damping = 300,
-                                               .model = MaterialModel::hencky,
-                                               .plasticity = Plasticity{yield, hardening}})});
+    const auto bar =
+        world.add_body(mesh, {.material = world.add_material({.young_modulus = modulus,
+                                                              .poisson_ratio = 0.3,
+                                                              .density = density,
+                                                              .damping = 300,
+                                                              .model = MaterialModel::hencky,
+                                                              .plasticity = Plasticity{yield, hardening}})});
     std::array<std::vector<Index>, 2> end;
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if (std::abs(mesh.nodes[n].x()) > 0.49 * size) end[mesh.nodes[n].x() > 0].push_back(static_cast<Index>(n));
@@ -291,7 +292,8 @@ TEST_CASE("a bar that is loaded, unloaded and loaded again follows the curve of 
         constexpr int parts = 20;
         for (int k = 1; k <= parts; ++k) {  // starts and ends slowly, because vibrations would cause more flow
             const Real t = static_cast<Real>(k) / parts;
-            pull.keys.push_back({.time = start.time + t * phase, .position = start.position + t * t * (3 - 2 * t) * way});
+            pull.keys.push_back(
+                {.time = start.time + t * phase, .position = start.position + t * t * (3 - 2 * t) * way});
         }
         pull.keys.push_back({.time = start.time + phase + rest, .position = start.position + way});
     }

@@ -168,10 +168,13 @@ TEST_CASE("a scene lists pairs that do not collide, also without their joint, an
         const std::string block = R"("mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}}, "material": "rubber",
             "dynamics": "rigid")";
         return load_scene(folder.write("pairs.json", R"({"materials": {"rubber": {}},
-            "bodies": [{"name": "a", "position": [0, 0, 1], )" + block + R"(},
-                       {"name": "b", "position": [0, 0, 1.5], )" + block + R"(}],
+            "bodies": [{"name": "a", "position": [0, 0, 1], )" +
+                                                         block + R"(},
+                       {"name": "b", "position": [0, 0, 1.5], )" +
+                                                         block + R"(}],
             "colliders": [{"name": "floor", "shape": {"plane": {}}}], "joints": [{"kind": "ball", "first": "a",
-            "second": "b"}], "no_collision": [{"body": "a", "to_body": "b"}, )" + pair + "]}"));
+            "second": "b"}], "no_collision": [{"body": "a", "to_body": "b"}, )" +
+                                                         pair + "]}"));
     };
     Scene loaded = scene(R"({"body": "b", "to_collider": "floor"})");
     World& world = loaded.world;

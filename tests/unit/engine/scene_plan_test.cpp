@@ -182,19 +182,21 @@ TEST_CASE("probes of stress and volume are refused on rigid bodies", "[unit]") {
     const TemporaryFolder folder;
     for (const char* const quantity : {"stress", "volume"}) {
         const std::string scene = body_with(R"("dynamics": "rigid")");
-        const std::string probes = R"(, "probes": [{"name": "p", "quantity": ")" + std::string(quantity) +
-                                   R"(", "body": "block"}]})";
-        CHECK_THROWS_WITH(plan_scene(folder.write("rigid.json", scene.substr(0, scene.size() - 1) + probes)),
-                          Catch::Contains("probes[0].body: found the rigid body \"block\", expected a body that deforms, "
-                                          "for the quantity \"" + std::string(quantity) + "\""));
+        const std::string probes =
+            R"(, "probes": [{"name": "p", "quantity": ")" + std::string(quantity) + R"(", "body": "block"}]})";
+        CHECK_THROWS_WITH(
+            plan_scene(folder.write("rigid.json", scene.substr(0, scene.size() - 1) + probes)),
+            Catch::Contains("probes[0].body: found the rigid body \"block\", expected a body that deforms, "
+                            "for the quantity \"" +
+                            std::string(quantity) + "\""));
     }
 }
 
 TEST_CASE("fibres that exert no force are refused", "[unit]") {
     const TemporaryFolder folder;
     const auto file = [&](const std::string& keys) {
-        return folder.write("fibres.json", scene_with(R"("fibres": [{"body": "ball", "direction": [0, 0, 1])" + keys +
-                                                      "}]"));
+        return folder.write("fibres.json",
+                            scene_with(R"("fibres": [{"body": "ball", "direction": [0, 0, 1])" + keys + "}]"));
     };
     CHECK_THROWS_WITH(plan_scene(file(R"(, "exponent": 2, "tension": [[0, 0], [1, 0]])")),
                       Catch::Contains("fibres[0]: found no \"stiffness\" and no \"tension\" above 0"));
@@ -291,7 +293,8 @@ TEST_CASE("a start and limits that contradict a mimic are named", "[unit]") {
     const TemporaryFolder folder;
     const auto file = [&](const std::string& keys) {
         return folder.write("mimic.json", jointed_scene(R"("name": "leader", "kind": "hinge", "first": "door",
-            "upper": 0.2}, {"name": "follower", "kind": "slider", "first": "frame", )" + keys));
+            "upper": 0.2}, {"name": "follower", "kind": "slider", "first": "frame", )" +
+                                                        keys));
     };
     const std::string mimic = R"("mimic": {"joint": "leader", "ratio": -2, "offset": 1})";
     CHECK(plan_scene(file(mimic + R"(, "coordinate": 1)")).notes.empty());
