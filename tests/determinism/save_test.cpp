@@ -182,7 +182,7 @@ TEST_CASE("leapfrog, global regions and a set step are saved", "[determinism]") 
     check_restarts({start, 0.01, 6}, 3, 6, 7);
 }
 
-TEST_CASE("a clone goes on with the same bits, and neither changes the other", "[determinism]") {
+TEST_CASE("a clone goes on with the same bits, and neither changes the other", "[determinism][serial]") {
     World world = lively_scene({});
     REQUIRE(world.advance(0.1).ok());
     const std::uint64_t before = world.state_hash();
@@ -237,7 +237,7 @@ TEST_CASE("settings that users do not have are carried by clones and files", "[d
     }
 }
 
-TEST_CASE("handles, names, shapes and contacts are what they were after loading", "[determinism]") {
+TEST_CASE("handles, names, shapes and contacts are what they were after loading", "[determinism][serial]") {
     const TemporaryFolder folder;
     World world = lively_scene({});
     const std::vector<BodyHandle> all = world.bodies();

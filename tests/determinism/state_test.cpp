@@ -40,7 +40,7 @@ TEST_CASE("what the test of copies runs has bodies that sleep and wake", "[deter
     CHECK(woken);
 }
 
-TEST_CASE("the hash sees a bit in every column that is state", "[determinism]") {
+TEST_CASE("the hash sees a bit in every column that is state", "[determinism][serial]") {
     World world = lively_scene({});
     world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = world.add_material({.young_modulus = 1e7}),
                                                            .position = {50, 0, 5},
@@ -81,7 +81,7 @@ TEST_CASE("the hash sees a bit in every column that is state", "[determinism]") 
     CHECK(world.state_hash() == before);
 }
 
-TEST_CASE("every column of a table that is state can be told from what is not", "[determinism]") {
+TEST_CASE("every column of a table that is state can be told from what is not", "[determinism][serial]") {
     World world = lively_scene({});
     REQUIRE(world.advance(0.1).ok());
     WorldState& state = WorldAccess::state_of(world);

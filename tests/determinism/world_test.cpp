@@ -82,7 +82,7 @@ TEST_CASE("balls on a stiff implicit block have the same bits for 1 and 4 worker
     }
 }
 
-TEST_CASE("the hash sees a change of the last bit of one velocity", "[determinism]") {
+TEST_CASE("the hash sees a change of the last bit of one velocity", "[determinism][serial]") {
     World world = pile(Backend::serial, 1);
     const std::uint64_t before = world.state_hash();
     const BodyHandle body = world.bodies()[4];
@@ -92,7 +92,7 @@ TEST_CASE("the hash sees a change of the last bit of one velocity", "[determinis
     CHECK(world.state_hash() != before);
 }
 
-TEST_CASE("budgets that skip what cannot be close change no bit that matters", "[determinism]") {
+TEST_CASE("budgets that skip what cannot be close change no bit that matters", "[determinism][serial]") {
     // Searching everything in every step finds the same contacts in the same order, so the runs stay equal.
     std::vector<std::uint64_t> hashes;
     for (bool budgets : {true, false}) {

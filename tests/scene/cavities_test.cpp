@@ -191,7 +191,7 @@ TEST_CASE("a thick sphere widens under a prescribed pressure as Lame found", "[s
         mesh, {.material = world.add_material(lossless({.young_modulus = modulus, .poisson_ratio = nu, .damping = 40})),
                .dynamics = dynamics});
     Cavities(world).add({.body = shell, .filling = TimeTable(p)});
-    REQUIRE(world.advance(0.6).ok());
+    REQUIRE(world.advance(0.3).ok());
     const Real stress = p * a * a * a / (b * b * b - a * a * a);
     // The tolerance is that of the element for this mesh, as in the test of accuracy with loads on nodes.
     CHECK(mean_radius(world, shell, mesh, a) - a ==
@@ -352,8 +352,8 @@ TEST_CASE("cavities have the same bits on any number of threads, in copies and i
         REQUIRE(world.advance(0.02).ok());
         return sphere;
     };
-    CHECK(course(3).world.state_hash() == course(1).world.state_hash());
-    check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.02).ok()); });
+    check_same_bits(
+        course, [](World& world) { REQUIRE(world.advance(0.02).ok()); }, 3);
 }
 
 TEST_CASE("a change of pressure, by table or by hand, wakes a body", "[scene][cavities][sleep]") {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/temporary_folder.h"
+#include "tests/support/same_bits.h"
 #include "tests/support/worlds.h"
 
 namespace skerry::test::implicit_bodies_test {
@@ -156,17 +156,12 @@ TEST_CASE("energy of implicit bodies that hit each other adds up to rounding", "
 
 TEST_CASE("a world with implicit bodies goes on bit by bit when it is cloned or saved, on any number of workers",
           "[scene][implicit]") {
-    Collision reference;
-    REQUIRE(reference.world.advance(0.02).ok());
-    const TemporaryFolder folder;
-    reference.world.save(folder.path() / "world");
-    World loaded = World::load(folder.path() / "world"), cloned = reference.world.clone();
-    Collision with_two(2);
-    REQUIRE(with_two.world.advance(0.02).ok());
-    for (World* world : {&reference.world, &loaded, &cloned, &with_two.world}) REQUIRE(world->advance(0.2).ok());
-    CHECK(loaded.state_hash() == reference.world.state_hash());
-    CHECK(cloned.state_hash() == reference.world.state_hash());
-    CHECK(with_two.world.state_hash() == reference.world.state_hash());
+    const auto course = [](int threads) {
+        Collision scene(threads);
+        REQUIRE(scene.world.advance(0.02).ok());
+        return scene;
+    };
+    check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.2).ok()); });
 }
 
 TEST_CASE("an implicit body vibrates as a rod does, damped as theta says", "[scene][implicit]") {

@@ -4,6 +4,7 @@
 
 #include "skerry/load.h"
 #include "skerry/relax.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
@@ -415,42 +416,40 @@ TEST_CASE("loads that cannot be are refused by name, and change nothing", "[scen
     const BodyHandle round = flight.world.add_body(Sphere{0.1}, {.material = flight.material, .position = {2, 0, 0}});
     Loads loads(flight.world);
     const auto before = flight.world.state_hash();
-    const auto message = [&](auto&& call) {
-        try {
-            call();
-        } catch (const SceneError& error) {
-            return std::string(error.what());
-        }
-        return std::string("no error");
-    };
     using Catch::Contains;
-    CHECK_THAT(message([&] {
+    CHECK_THAT(message_of([&] {
                    loads.add(ForceLoad{flight.body, {}, {1, 0, 0}});
                }),
                Contains("nodes") && Contains("an empty list"));
-    CHECK_THAT(message([&] {
+    CHECK_THAT(message_of([&] {
                    loads.add(ForceLoad{flight.body, {1, 27}, {1, 0, 0}});
                }),
                Contains("cube") && Contains("node 27") && Contains("0 to 26"));
-    CHECK_THAT(message([&] { loads.add(ForceLoad{flight.body, {1, 1}, {1, 0, 0}}); }), Contains("node 1 twice"));
-    CHECK_THAT(message([&] { loads.add(TractionLoad{round, {{0, 1, 2}}, {1, 0, 0}}); }), Contains("which is a sphere"));
-    CHECK_THAT(message([&] {
+    CHECK_THAT(message_of([&] { loads.add(ForceLoad{flight.body, {1, 1}, {1, 0, 0}}); }), Contains("node 1 twice"));
+    CHECK_THAT(message_of([&] {
+                   loads.add(TractionLoad{round, {{0, 1, 2}}, {1, 0, 0}});
+               }),
+               Contains("which is a sphere"));
+    CHECK_THAT(message_of([&] {
                    loads.add(TractionLoad{flight.body, {{0, 1, 26}}, {1, 0, 0}});
                }),
                Contains("nodes 0, 1 and 26") && Contains("surface of body 'cube'"));
-    CHECK_THAT(message([&] { loads.add(DragField{.rate = 0}); }), Contains("rate") && Contains("> 0"));
-    CHECK_THAT(message([&] { loads.add(AccelerationField{.acceleration = {NAN, 0, 0}}); }), Contains("acceleration"));
-    CHECK_THAT(message([&] {
+    CHECK_THAT(message_of([&] { loads.add(DragField{.rate = 0}); }), Contains("rate") && Contains("> 0"));
+    CHECK_THAT(message_of([&] {
+                   loads.add(AccelerationField{.acceleration = {NAN, 0, 0}});
+               }),
+               Contains("acceleration"));
+    CHECK_THAT(message_of([&] {
                    loads.add(ForceLoad{flight.body, {1}, {1, 0, 0}, TimeTable({{1, 0}, {1, 2}})});
                }),
                Contains("scale[1].time"));
     CHECK(loads.all().empty());
     CHECK(flight.world.state_hash() == before);
     const LoadHandle factor = loads.add(GravityScale{.scale = 0.5});
-    CHECK_THAT(message([&] { loads.add(GravityScale{.scale = 2}); }), Contains("a second factor of the weight"));
-    CHECK_THAT(message([&] { loads.set_vector(factor, {1, 0, 0}); }), Contains("set_scale()"));
+    CHECK_THAT(message_of([&] { loads.add(GravityScale{.scale = 2}); }), Contains("a second factor of the weight"));
+    CHECK_THAT(message_of([&] { loads.set_vector(factor, {1, 0, 0}); }), Contains("set_scale()"));
     loads.remove(factor);
-    CHECK_THAT(message([&] { loads.state(factor); }), Contains("a handle without an object"));
+    CHECK_THAT(message_of([&] { loads.state(factor); }), Contains("a handle without an object"));
 }
 
 }  // namespace skerry::test::loads_test

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "tests/support/element_kinds.h"
+#include "tests/support/message_of.h"
 #include "tests/support/worlds.h"
 
 namespace skerry::test::scene_materials_test {
@@ -35,12 +36,7 @@ std::vector<Vec3> random_velocities(const Mesh& mesh, Real size) {
 }
 
 std::string refusal(World& world, const Mesh& mesh, const BodySettings& body) {
-    try {
-        world.add_body(mesh, body);
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "nothing refused";
+    return message_of([&] { world.add_body(mesh, body); });
 }
 
 }  // namespace

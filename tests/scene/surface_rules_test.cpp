@@ -2,12 +2,13 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <vector>
 
 #include "skerry/surface.h"
 #include "systems/collision/build_surface.h"
+#include "tests/support/mapped_box.h"
+#include "tests/support/message_of.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/worlds.h"
 
@@ -19,13 +20,6 @@ constexpr Real g = standard_gravity;
 constexpr Real degree = std::numbers::pi / 180;
 
 /// Numbers of the nodes of a mesh for which `chosen` is true.
-std::vector<Index> nodes_where(const Mesh& mesh, const std::function<bool(const Vec3&)>& chosen) {
-    std::vector<Index> nodes;
-    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
-        if (chosen(mesh.nodes[n])) nodes.push_back(static_cast<Index>(n));
-    return nodes;
-}
-
 Settings with_step(const Vec3& gravity, Real h = 1.0 / 500) {
     Settings settings = accurate(gravity, 1e-11);
     settings.step_size = h;
@@ -423,14 +417,7 @@ TEST_CASE("surface rules refuse what cannot be", "[scene][surface]") {
     const auto ball = world.add_body(Sphere{0.1}, {.material = material, .position = {1, 0, 0}, .name = "ball"});
     SurfaceSets sets(world);
     const std::vector<Index> node{0};
-    const auto refusal = [&](const SurfaceSetSettings& set) -> std::string {
-        try {
-            sets.add(set);
-        } catch (const SceneError& error) {
-            return error.what();
-        }
-        return "";
-    };
+    const auto refusal = [&](const SurfaceSetSettings& set) { return message_of([&] { sets.add(set); }); };
     using Catch::Matchers::Contains;
     const std::optional<Vec3> x(Vec3(1, 0, 0));
     CHECK_THAT(refusal({.body = body}), Contains("sledge") && Contains("no node and no face"));

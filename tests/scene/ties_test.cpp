@@ -10,6 +10,7 @@
 
 #include "skerry/joint.h"
 #include "skerry/scene.h"
+#include "tests/support/message_of.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/two_halves.h"
 #include "tests/support/worlds.h"
@@ -401,12 +402,7 @@ TEST_CASE("ties refuse wrong settings by name", "[scene][ties]") {
     const BodyHandle rigid = bar.world.add_body(
         coarse, {.material = bar.world.add_material({}), .position = {0, 1, 0}, .dynamics = BodyDynamics::rigid});
     const auto message = [&](const TieSettings& settings) {
-        try {
-            Ties(bar.world).add(settings);
-        } catch (const SceneError& error) {
-            return std::string(error.what());
-        }
-        return std::string("no error");
+        return message_of([&] { Ties(bar.world).add(settings); });
     };
     using Catch::Contains;
     CHECK_THAT(message({.body = rigid, .nodes = {0}}), Contains("body") && Contains("which is rigid"));
@@ -450,14 +446,7 @@ TEST_CASE("scenes tie a set, a box or nodes of a body to another object", "[scen
     CHECK(ties.state(ties.all()[0]).force.z() == Approx(20).epsilon(1e-3));
     CHECK(ties.state(ties.all()[1]).force.z() == Approx(-10).epsilon(1e-3));
     CHECK(ties.state(ties.all()[1]).break_force == 1e6);
-    const auto message = [&](const std::string& tie) {
-        try {
-            load(tie);
-        } catch (const SceneError& error) {
-            return std::string(error.what());
-        }
-        return std::string("no error");
-    };
+    const auto message = [&](const std::string& tie) { return message_of([&] { load(tie); }); };
     using Catch::Contains;
     CHECK_THAT(message(R"({"body": "pad", "set": "side"})"), Contains("ties[0].set") && Contains("top"));
     CHECK_THAT(message(R"({"body": "pda", "set": "top"})"), Contains("ties[0].body") && Contains("pda"));
