@@ -83,10 +83,13 @@ class SurfaceReport:
     can_be_filled: True if `cleaned` bounds volumes, and its triangles neither cross nor overlap.
     tolerance: largest distance of merged nodes [m].
     merged: number of nodes that were merged into another node.
-    lower, upper: corners of the bounding box [m].
+    lower: lower corner of the bounding box [m].
+    upper: upper corner of the bounding box [m].
     area: area of `cleaned` [m^2].
     volume: volume of its closed shells [m^3].
-    min_edge, mean_edge, max_edge: edge lengths of `cleaned` [m].
+    min_edge: smallest edge length of `cleaned` [m].
+    mean_edge: mean edge length [m].
+    max_edge: largest edge length [m].
     cleaned: the surface with merged nodes and consistent orientation, without flat and repeated triangles and shells.
         Holes and crossings remain.
     number: number in the checked surface of each triangle of `cleaned`, shape (k,), read-only.
