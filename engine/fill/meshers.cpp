@@ -15,7 +15,7 @@ namespace skerry::mesh {
 namespace {
 
 /// Program for the Python interpreter: fills the surface of standard input (see run_mesher). Its argument is the
-/// envelope as a fraction of the diagonal of the bounding box. One thread makes the result reproducible.
+/// envelope as a fraction of the diagonal of the bounding box.
 constexpr const char* ftetwild_script = R"(
 import os, sys
 try:
@@ -24,7 +24,10 @@ except ImportError as error:
     sys.exit(print(error, file=sys.stderr) or 3)
 nodes, triangles, edge = sys.stdin.readline().split()
 nodes, triangles = int(nodes), int(triangles)
-os.chdir("/proc")  # no files can be created there; fTetWild would write its input to a file
+# fTetWild writes its input to a file of the current folder, which fails in this folder, and prints an error message.
+os.chdir("/proc")
+sys.stderr = os.fdopen(os.dup(2), "w")
+os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
 numbers = numpy.fromstring(sys.stdin.read(), sep=" ")
 points = numbers[:3 * nodes].reshape(-1, 3)
 faces = numbers[3 * nodes:].astype(numpy.int32).reshape(-1, 3)

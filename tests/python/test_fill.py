@@ -40,7 +40,7 @@ def test_a_hole_is_closed_and_the_rest_stays_within_the_tolerance(tmp_path: Path
     report = mesh.inspect()
     assert report.closed_manifold and report.inverted == 0
     below = mesh.boundary().nodes
-    below = below[below[:, 2] < 0.35]
+    below = below[below[:, 2] < 0.2]
     flat = 0.5 - np.linalg.norm(whole.nodes[whole.triangles].mean(axis=1), axis=1).min()  # triangles lie inside
     radii = np.linalg.norm(below, axis=1)
     assert radii.max() < 0.5 + 5e-3 * 3**0.5 and radii.min() > 0.5 - flat - 5e-3 * 3**0.5
@@ -48,33 +48,26 @@ def test_a_hole_is_closed_and_the_rest_stays_within_the_tolerance(tmp_path: Path
 
 
 def test_overlapping_shells_become_one_body_with_the_volume_of_their_union() -> None:
-    second = ball(0.5)
-    shifted = sk.SurfaceMesh(nodes=second.nodes + (0.5, 0.03, 0.01), triangles=second.triangles)
-    with pytest.warns(sk.Doubt, match="united"):
-        mesh = sk.Mesh.fill(joined(ball(0.5), shifted), edge=0.2)
-    parts = [sk.Mesh.ball(0.5, 6).volume] * 2
-    d = float(np.linalg.norm((0.5, 0.03, 0.01)))
-    lens = np.pi * (4 * 0.5 + d) * (2 * 0.5 - d) ** 2 / 12 * parts[0] / (4 / 3 * np.pi * 0.5**3)
-    assert mesh.volume == pytest.approx(sum(parts) - lens, rel=0.02)
+    box = sk.Mesh.box((1, 1, 1), 1).boundary()
+    shifted = sk.SurfaceMesh(nodes=box.nodes + (0.6, 0.2, 0.1), triangles=box.triangles)
+    with pytest.warns(sk.Doubt) as doubts:
+        mesh = sk.Mesh.fill(joined(box, shifted), edge=0.5, tolerance=1e-2)
+    assert any("united" in str(doubt.message) for doubt in doubts)
+    assert mesh.volume == pytest.approx(2 - 0.4 * 0.8 * 0.9, rel=0.02)
     assert mesh.inspect().components == 1
 
 
 def test_regions_are_labelled_after_the_surface_was_remeshed() -> None:
-    with pytest.warns(sk.Doubt, match="region"):
-        mesh = sk.Mesh.fill(joined(ball(0.5), ball(0.25, 4)), edge=0.1, tolerance=2e-3)
+    with pytest.warns(sk.Doubt) as doubts:
+        mesh = sk.Mesh.fill(joined(ball(0.5, 4), ball(0.25, 4)), edge=0.25, tolerance=2e-3)
+    assert any("region" in str(doubt.message) for doubt in doubts)
     assert mesh.labels is not None
     corners = mesh.nodes[mesh.tetrahedra]
     volumes = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6
     inner = sk.Mesh.ball(0.25, 4).volume
-    assert volumes[mesh.labels == 2].sum() == pytest.approx(inner, rel=0.03)
-    assert volumes[mesh.labels == 1].sum() == pytest.approx(sk.Mesh.ball(0.5, 6).volume - inner, rel=0.01)
+    assert volumes[mesh.labels == 2].sum() == pytest.approx(inner, rel=0.05)
+    assert volumes[mesh.labels == 1].sum() == pytest.approx(sk.Mesh.ball(0.5, 4).volume - inner, rel=0.02)
     assert set(mesh.sets) == {"shell_1", "shell_2"}
-
-
-def test_the_same_surface_gives_the_same_mesh() -> None:
-    with pytest.warns(sk.Doubt, match="Netgen"):
-        first, second = (sk.Mesh.fill(ball(0.5, 4), edge=0.3) for _ in range(2))
-    assert first == second
 
 
 def test_errors_name_the_argument_and_the_package_to_install(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -64,8 +64,8 @@ using FillProgress = std::function<void(const std::string&)>;
 /// Fills surfaces with tetrahedra. Nodes at equal positions are merged. Clean surfaces (closed manifolds that do not
 /// cross) are filled by Netgen, which keeps them bitwise, unless `edge` asks for other triangles. Other surfaces are
 /// filled by fTetWild (Hu et al., Fast tetrahedral meshing in the wild, 2020) within the tolerance: holes are closed,
-/// and crossing shells are united. Each mesher runs in its own process. Of several meshes the one with the longest
-/// stable step is returned (docs/decisions/0026-filling-surfaces.md).
+/// and crossing shells are united; repeated runs give slightly different meshes. Each mesher runs in its own process.
+/// Of several meshes the one with the longest stable step is returned (docs/decisions/0026-filling-surfaces.md).
 ///
 /// If shells are nested, regions have the labels 1, 2, ..., beginning with the region of the largest shell. The faces
 /// of each shell are a set: with the name of the file if each file has one shell, otherwise shell_1, shell_2, ...
