@@ -140,16 +140,15 @@ std::string fault_text(const SurfaceFault& fault) {
         {slivers, "triangle with an altitude of almost 0", "triangles with an altitude of almost 0"},
         {thin_walls, "sampled place with a wall thinner than half the mean edge",
          "sampled places with a wall thinner than half the mean edge"},
-        {unlikely_size, "size that is unlikely in metres", ""},
     };
-    const Noun& noun = *std::ranges::find(nouns, fault.kind, &Noun::kind);
     std::ostringstream text;
     text.precision(4);
-    text << fault.count << ' ' << (fault.count == 1 ? noun.one : noun.more);
     if (fault.kind == unlikely_size) {
-        text << ", " << fault.length << " m";
+        text << "a size of " << fault.length << " m, probably in another unit of length";
         return text.str();
     }
+    const Noun& noun = *std::ranges::find(nouns, fault.kind, &Noun::kind);
+    text << fault.count << ' ' << (fault.count == 1 ? noun.one : noun.more);
     if (fault.kind == holes) text << ", the longest " << fault.length << " m around";
     if (fault.kind == thin_walls) text << ", down to " << fault.length << " m";
     text << (fault.count > 1 && fault.kind != holes ? ", the first" : "") << " at (" << fault.place.x() << ", "

@@ -167,6 +167,16 @@ TEST_CASE("neighbours that fold back onto each other overlap, and those that onl
     CHECK(mesh::check_surface(through).find(SurfaceFaultKind::shell_crossings) != nullptr);
 }
 
+TEST_CASE("a surface in millimetres or nanometres is noticed", "[unit][surface]") {
+    for (const Real scale : {1e3, 1e-9}) {
+        const SurfaceReport report = mesh::check_surface(scaled(box_surface({1, 1, 1}), scale));
+        CHECK(fault_of(report, SurfaceFaultKind::unlikely_size).length == Approx(std::sqrt(3.0) * scale));
+        CHECK(report.can_be_filled());
+    }
+    CHECK_THAT(mesh::fault_text({.kind = SurfaceFaultKind::unlikely_size, .count = 1, .length = 1732}),
+               Contains("a size of 1732 m, probably in another unit"));
+}
+
 TEST_CASE("welding merges nodes up to the distance, in chains, and keeps the order", "[unit][surface]") {
     const SurfaceMesh soup{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1e-3, 0, 0}, {1, 1e-3, 0}, {1, 1, 0}, {2e-3, 0, 0}},
                            {{0, 1, 2}, {3, 0, 6}, {4, 5, 2}, {6, 4, 5}}};
