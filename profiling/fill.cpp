@@ -1,4 +1,5 @@
-// Fills the test surfaces, which have the faults of users' files, and the surfaces of given files, and prints a table.
+// Fills the test surfaces, which have the faults of users' files, and the surfaces of given files, and prints a table
+// (CSV).
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -18,7 +19,7 @@ using namespace skerry;
 std::string kinds_of(const SurfaceReport& report) {
     std::string kinds;
     for (const SurfaceFault& fault : report.faults)
-        kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(fault.kind));
+        kinds += (kinds.empty() ? "" : " ") + std::string(name_of(fault.kind));
     return kinds;
 }
 
@@ -28,19 +29,20 @@ void print_row(const std::string& name, const std::function<mesh::FilledMesh()>&
         const mesh::FilledMesh filled = fill();
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         const MeshReport report = inspect(filled.mesh);
-        std::string volume = "-";
+        std::string volume;
         if (filled.surface_volume) {
             char text[32];
             std::snprintf(text, sizeof text, "%.1e", std::abs(report.volume / *filled.surface_volume - 1));
             volume = text;
         }
-        std::printf("| %s | %s | %zu | %s | %.1f | %zu | %.2f, %.2f | %s | %.2g | %.2g | %.2g |\n", name.c_str(),
+        std::printf("%s,%s,%zu,%s,%.1f,%zu,%.2f,%.2f,%s,%.2g,%.2g,%.2g\n", name.c_str(),
                     kinds_of(filled.surface).c_str(), filled.surface.triangles, filled.mesher.c_str(), elapsed.count(),
                     report.tetrahedra, report.min_quality, report.mean_quality, volume.c_str(),
                     filled.distance.from_first / filled.tolerance, filled.distance.from_second / filled.tolerance,
                     filled.stable_step);
     } catch (const SceneError& error) {
-        std::printf("| %s | refused: %s |\n", name.c_str(), error.what());
+        std::printf("%s,,,refused,,,,,,,,\n", name.c_str());
+        std::fprintf(stderr, "%s\n", error.what());
     }
     std::fflush(stdout);
 }
@@ -59,9 +61,8 @@ int main(int argc, char** argv) {
     app.add_flag("--files-only", no_corpus, "leave the test surfaces out");
     CLI11_PARSE(app, argc, argv);
     std::printf(
-        "| surface | faults | triangles | mesher | time [s] | tetrahedra | quality: worst, mean | volume error | "
-        "distance to mesh / tolerance | distance to surface / tolerance | step [s] |\n"
-        "|---|---|---:|---|---:|---:|---:|---:|---:|---:|---:|\n");
+        "surface,faults,triangles,mesher,time [s],tetrahedra,worst quality,mean quality,volume error,"
+        "distance from surface / tolerance,distance from mesh / tolerance,step [s]\n");
     if (!no_corpus)
         for (const test::CorpusSurface& of : test::surface_corpus())
             print_row(of.name, [&] { return mesh::fill(of.surface, of.name, settings); });
