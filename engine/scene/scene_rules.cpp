@@ -186,19 +186,6 @@ const Rule<RepeatEntry>& rule_of<RepeatEntry>() {
 }
 
 template <>
-const Rule<VisualEntry>& rule_of<VisualEntry>() {
-    static const auto rule =
-        Rule<VisualEntry>("visual", "A triangle surface that is drawn in place of a body and follows it.")
-            .key("file", &VisualEntry::file,
-                 {.meaning = "path of a surface file, for example .obj or .stl, relative to the folder of the scene",
-                  .required = true})
-            .key("scale", &VisualEntry::scale,
-                 {.meaning = "factor for all coordinates of the surface; default: that of \"mesh\"",
-                  .limits = above(0)});
-    return rule;
-}
-
-template <>
 const Rule<BodyEntry>& rule_of<BodyEntry>() {
     static const auto rule =
         Rule<BodyEntry>("body", "A body. The mesh is first rotated about its origin and then moved to the position.")

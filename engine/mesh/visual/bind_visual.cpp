@@ -114,7 +114,7 @@ Real extent_of(std::span<const Vec3> points) {
 std::string warning_of(const BoundVisual& visual, std::span<const Vec3> nodes, Real edge) {
     // Surfaces beside a coarse mesh are at most about one edge outside.
     constexpr Real most_edges = 3;
-    // The same object in two units differs by at least a factor of 10.
+    // A wrong unit changes sizes by a factor of at least 10.
     constexpr Real most_ratio = 5;
     const Real ratio = extent_of(visual.surface.nodes) / extent_of(nodes);
     if (ratio > most_ratio || ratio < 1 / most_ratio)

@@ -62,7 +62,8 @@ function make_drawing(group, surface, points, nodes, redraw) {
   const look = { roughness: 0.62, metalness: 0, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     side: surface.gradients ? THREE.DoubleSide : THREE.FrontSide };
   const plain = new THREE.MeshStandardMaterial({ ...look, vertexColors: THREE.VertexColors });
-  const own = surface.material ? [...surface.materials, no_material].map((row) => make_material(row, look, redraw)) : [];
+  const of_surface = surface.material ? [...surface.materials, no_material] : [];
+  const own = of_surface.map((material) => make_material(material, look, redraw));
   const materials = [{ material: plain, opacity: 1 }, ...own];
   const mesh = new THREE.Mesh(geometry, plain);
   mesh.castShadow = mesh.receiveShadow = true;
