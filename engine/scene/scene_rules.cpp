@@ -237,11 +237,8 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
             .key("element", &BodyEntry::element, {.meaning = "type of the elements that carry the stress"})
             .key("pin", &BodyEntry::pin, {.meaning = "pinned nodes"})
             .key("surfaces", &BodyEntry::surfaces,
-                 {.meaning = "parts of the surface with their own friction and restitution. Where they overlap, the "
-                             "last one counts"})
-            .key("visual", &BodyEntry::visual,
-                 {.meaning = "surface that is drawn in place of the body, in the frame of the mesh: a file or an "
-                             "object"})
+                 {.meaning = "parts with their own friction and restitution; where they overlap, the last one counts"})
+            .key("visual", &BodyEntry::visual, {.meaning = "surface that is drawn in place of the body"})
             .exactly_one({"mesh", "shape"})
             .at_most_one({"position", "positions"})
             .at_most_one({"positions", "repeat"});

@@ -131,7 +131,8 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
 template <>
 const Rule<VisualEntry>& rule_of<VisualEntry>() {
     static const auto rule =
-        Rule<VisualEntry>("visual", "A triangle surface that is drawn in place of a body and follows it.")
+        Rule<VisualEntry>(
+            "visual", "A triangle surface in the frame of the mesh that is drawn in place of a body and follows it.")
             .key("file", &VisualEntry::file,
                  {.meaning = "path of a surface file, for example .obj or .stl, relative to the folder of the scene",
                   .required = true})
