@@ -338,7 +338,7 @@ std::string ele_file(const Mesh& mesh, int first_number) {
 std::string obj_file(const SurfaceMesh& surface) {
     std::string file = "# a surface\no body\n";
     for (const Vec3& x : surface.nodes) file += "v " + text(x) + "\n";
-    file += "vn 0 0 1\n";
+    file += "vt 0.5 0.5\nvn 0 0 1\n";
     for (const std::array<Index, 3>& t : surface.triangles)
         file += "f " + std::to_string(t[0] + 1) + "//1 " + std::to_string(t[1] + 1) + "/1/1 " +
                 std::to_string(t[2] - static_cast<int>(surface.nodes.size())) + "\n";
