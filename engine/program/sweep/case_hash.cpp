@@ -1,7 +1,9 @@
 #include "engine/program/sweep/case_hash.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 
 #include "components/hash.h"
 #include "engine/program/number_text.h"
@@ -63,8 +65,9 @@ void CaseHasher::add_files(const Json& json, const std::filesystem::path& of, Ha
         if (name.is_string()) hash.add(hash_of_file(of.parent_path() / name.get_ref<const std::string&>()));
     };
     if (!json.is_structured()) return;
+    constexpr std::string_view keys[] = {"include", "scene", "file", "surface", "visual"};
     for (const auto& [key, value] : json.items()) {
-        if (json.is_object() && (key == "include" || key == "file")) {
+        if (json.is_object() && std::ranges::find(keys, key) != std::end(keys)) {
             add(value);
             if (value.is_array())
                 for (const Json& item : value) add(item);

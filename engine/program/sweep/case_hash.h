@@ -26,8 +26,8 @@ public:
 
 private:
     std::uint64_t hash_of_file(const std::filesystem::path& file);
-    /// Adds to `hash` the hashes of all files that the keys "include" and "file" name. Names are relative to the folder
-    /// of `of`.
+    /// Adds to `hash` the hashes of all files that `json` names: scenes, meshes and surfaces. Names are relative to the
+    /// folder of `of`.
     void add_files(const Json& json, const std::filesystem::path& of, Hash& hash);
 
     std::filesystem::path file_;

@@ -232,7 +232,7 @@ TEST_CASE("damaged files of surfaces are refused with their place, and quads and
              {"cut.stl", stl.substr(0, stl.size() / 2), "the file is incomplete"},
              {"nan.stl", text.substr(0, vertex) + "vertex nan 0 0\n" + text.substr(text.find('\n', vertex)),
               "found nan"},
-             {"empty.stl", "", "the end of the file"},
+             {"empty.stl", "", "an empty file"},
              {"empty.obj", "", "no triangles"},
              {"nan.obj", "v 0 nan 0\n" + obj, "line 1: position: found nan"},
              {"cut.obj", obj.substr(0, obj.rfind(' ')), "2 corners"}}) {

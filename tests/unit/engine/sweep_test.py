@@ -146,6 +146,21 @@ class SweepTest(ProgramCase):
                             said=["case_000002.json", "not the result of a case"])
         self.assertIn("1 of 6", self.sweep(self.cases, "--out", self.out, "--redo").stderr)
 
+    def test_a_case_belongs_to_the_scenes_and_surfaces_that_its_scene_names(self):
+        box = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+        self.write("drawn.obj", box)
+        self.write("part.json", SCENE)
+        self.scene.write_text(json.dumps({"include": [{"scene": "part.json", "name": "left"}], "seconds": 0.01,
+                                          "materials": SCENE["materials"],
+                                          "bodies": [{**SCENE["bodies"][0], "name": "b", "visual": "drawn.obj",
+                                                      "position": [5, 0, 1]}]}))
+        self.write("cases.json", {"scene": "drop.json", "grid": [{"set": "seconds", "values": [0.01]}]})
+        self.sweep(self.cases, "--out", self.out)
+        for name, content in (("part.json", {**SCENE, "probe_step": 0.01}), ("drawn.obj", box + "# changed\n")):
+            self.write(name, content)
+            self.assert_refused("sweep", self.cases, "--out", self.out, said=["an earlier version of the scene"])
+            self.assertIn("1 of 1 cases to run", self.sweep(self.cases, "--out", self.out, "--redo").stderr)
+
     def slow_cases(self):
         """Eight of a few tenths of a second."""
         scene = dict(SCENE, seconds=2, bodies=[
