@@ -42,9 +42,16 @@ puck = world.add_body(sk.Mesh.ball(0.05, 2), metal, position=(3, 0, 0.0501))
 drum = world.add_body(sk.Cylinder(radius=0.05, height=0.1), rubber, position=(0.7, 0, 0.8))
 bodies: sk.Objects[sk.Body] = world.bodies
 triangles: sk.SurfaceMesh = mesh.boundary()
+paint = sk.VisualMaterial(name="paint")
+cube.visual = sk.VisualSurface(triangles.nodes, triangles.triangles, materials=[paint])
+drawn: sk.VisualSurface | None = cube.visual
 folder = pathlib.Path(sys.argv[1])
 (folder / "one.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
 triangles = sk.read_surface(folder / "one.obj")
+checked: sk.SurfaceReport = sk.check_surface(triangles)
+faults: tuple[sk.SurfaceFault, ...] = checked.faults
+fault_kinds: set[sk.SurfaceFaultKind] = {fault.kind for fault in faults}
+shells: tuple[sk.SurfaceShell, ...] = checked.shells
 
 # Connections and loads.
 low: sk.SurfaceSet = world.add_surface_set(cube, sk.Surface(friction=0.2), nodes=cube.select(set="low"))
@@ -99,6 +106,8 @@ film: sk.Film = world.record()
 with recorder, film, world.contact_problems() as steps:
     report: sk.StepReport = world.advance(0.02)
 page: sk.Page = world.show()
+color: sk.FilmColor = "speed"
+world.gltf(folder / "end.glb", color=color)
 step: sk.StepProblem = steps[-1]
 problem: sk.Problem = step.problem
 solution: sk.Solution = sk.solve(problem, method=method)
