@@ -55,8 +55,8 @@ int main(int argc, char** argv) {
     mesh::FillSettings settings;
     bool million = false, no_corpus = false;
     app.add_option("SURFACE", files, "surface files to be filled as well");
-    app.add_option("--tolerance", settings.tolerance, "as of skerry fill")->capture_default_str();
-    app.add_option("--time-limit", settings.limits.seconds, "as of skerry fill [s]")->capture_default_str();
+    app.add_option("--tolerance", settings.tolerance, "option of `skerry fill`")->capture_default_str();
+    app.add_option("--time-limit", settings.limits.seconds, "option of `skerry fill` [s]")->capture_default_str();
     app.add_flag("--million", million, "also fill a surface of a million triangles with edges of 0.1 m");
     app.add_flag("--files-only", no_corpus, "leave the test surfaces out");
     CLI11_PARSE(app, argc, argv);

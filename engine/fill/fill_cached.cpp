@@ -20,7 +20,7 @@ namespace {
 // A change of this number makes earlier cache files unused. Raise it when fill() returns other meshes than before.
 constexpr std::uint64_t cache_version = 1;
 
-/// Name of the cache file: that of the surface file, a hash, and .msh.
+/// Name of the cache file: the name of the surface file, a hash, and .msh.
 std::filesystem::path cache_file(const std::filesystem::path& file, const FillSettings& settings) {
     std::ifstream in(file, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -54,7 +54,7 @@ private:
 
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings, const FillProgress& progress,
                  std::vector<std::string>* notes) {
-    // The cases of a sweep fill a surface once: the others wait for the first one.
+    // Only one case of a sweep fills the surface. The other cases wait for it and then read the cache file.
     const FileLock lock(file);
     const std::filesystem::path cache = cache_file(file, settings);
     if (std::filesystem::exists(cache)) try {

@@ -23,7 +23,7 @@ struct VelocityRow {
     };
     struct OnFrame {
         Index frame;  // row of RigidBodyTable
-        Vec3 along, turn;
+        Vec3 along, turn;  // coefficients of the velocity [1] and of the angular velocity [m]; for axes: 0 and [1]
     };
     std::vector<OnNode> nodes;    // velocities of nodes; on implicit bodies, of their deformation
     std::vector<OnFrame> frames;  // velocities and spins of rigid and implicit bodies
@@ -39,13 +39,13 @@ struct VelocityRow {
     }
 };
 
-/// Whether a row keeps its velocity or its impulse of the step. `held`: keeps its velocity; the impulse is not known.
+/// The value of the step that a row keeps. `held`: keeps its velocity, and the impulse is not known.
 enum class Keeps { velocity, impulse, held };
 
 struct EquationRow {
     VelocityRow row;
     Keeps keeps = Keeps::velocity;
-    Real impulse = 0;
+    Real impulse = 0;  // [N s] or [N m s]
 };
 
 /// Inverse masses of a step.
@@ -186,6 +186,7 @@ void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std:
     }
 }
 
+/// The row of a slide has the direction of its impulse, so that its impulse along the row is 1.
 void list_ties(const StepEquations& equations, const Mobilities& mobilities, std::vector<EquationRow>& rows) {
     const TieRowTable& ties = equations.tie_rows;
     for (std::size_t i = 0; i < ties.size() && !equations.tie_kind.empty(); ++i) {
@@ -197,6 +198,7 @@ void list_ties(const StepEquations& equations, const Mobilities& mobilities, std
     }
 }
 
+/// The row of a point of a cable has the direction of the impulse on the point, so that its impulse is 1.
 void list_cables(const CableBlockTable& cables, const Mobilities& mobilities, std::vector<EquationRow>& rows) {
     for (const CableBlock& block : cables.solved()) {
         Vec3 last = Vec3::Zero();

@@ -11,9 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "engine/mesh/repair/surface_measures.h"
 #include "skerry/surface_check.h"
 
 namespace skerry::test {
+
+using mesh::volume_inside;
 
 inline SurfaceMesh moved(SurfaceMesh surface, const Vec3& by) {
     for (Vec3& x : surface.nodes) x += by;
@@ -38,7 +41,7 @@ inline SurfaceMesh both(SurfaceMesh first, const SurfaceMesh& second) {
     return first;
 }
 
-/// The same surface with nodes and triangles in the opposite order.
+/// Reverses the order of the nodes and of the triangles.
 inline SurfaceMesh renumbered(SurfaceMesh surface) {
     const auto last = static_cast<Index>(surface.nodes.size()) - 1;
     std::ranges::reverse(surface.nodes);
@@ -48,7 +51,7 @@ inline SurfaceMesh renumbered(SurfaceMesh surface) {
     return surface;
 }
 
-/// The same triangles, each with nodes of its own.
+/// Gives each triangle nodes of its own.
 inline SurfaceMesh soup_of(const SurfaceMesh& surface) {
     SurfaceMesh soup;
     for (const std::array<Index, 3>& triangle : surface.triangles) {
@@ -122,22 +125,10 @@ struct CorpusSurface {
     std::string name;
     SurfaceMesh surface;
     std::vector<SurfaceFaultKind> faults;  // kinds that a check must find, in ascending order
-    // Volume of its solid, without overlapping and repeated parts, as far as tetrahedra represent it; no value if it
-    // has none [m^3]
+    // Volume of the solid inside, in which overlapping and repeated parts count once; no value if the surface bounds no
+    // solid, or if the volume is not known exactly [m^3]
     std::optional<Real> volume{};
 };
-
-/// Volume inside a surface by the divergence theorem [m^3].
-inline Real volume_inside(const SurfaceMesh& surface) {
-    Real volume = 0;
-    for (const auto& [a, b, c] : surface.triangles) {
-        const auto at = [&](Index n) {
-            return Vec3(surface.nodes[static_cast<std::size_t>(n)] - surface.nodes.front());
-        };
-        volume += at(a).dot(at(b).cross(at(c))) / 6;
-    }
-    return volume;
-}
 
 /// Small surfaces. Unless the name tells another size, they are about 1 m large.
 inline std::vector<CorpusSurface> surface_corpus() {

@@ -26,7 +26,7 @@ enum class SurfaceFaultKind {
     overlaps,             // pairs of triangles that overlap in a common plane
     flat_shells,          // closed shells without volume
     doubled_volumes,      // triangles behind which closed shells enclose the same volume twice
-    slivers,              // triangles of three nodes with an altitude within the tolerance
+    slivers,              // triangles of three different nodes with an altitude within the tolerance
     thin_walls,           // sampled places at which the wall is thinner than half the mean edge
     unlikely_size,        // a size above 20 m or below 1e-6 m, probably a wrong unit of length
 };
@@ -112,8 +112,8 @@ inline constexpr Real no_weld = -1;
 
 /// Checks a surface. Nodes up to `tolerance` * (diagonal of the bounding box) apart are first merged, also in chains; 0
 /// merges equal nodes only. Triangles cross if they overlap by more than this distance in every direction (at least
-/// default_weld times their longest edge). The order of the nodes and triangles does not change. Throws SceneError
-/// if a node is not finite or a triangle has a node that does not exist; `name` stands for the surface in the error.
+/// default_weld times the diagonal). The order of the nodes and triangles does not change. Throws SceneError if a node
+/// is not finite or a triangle has a node that does not exist; `name` stands for the surface in the error.
 SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance = default_weld,
                             const std::string& name = "surface");
 
@@ -123,7 +123,7 @@ SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance = default
 SurfaceMesh weld(const SurfaceMesh& surface, Real distance, std::vector<Index>* number = nullptr);
 
 /// Describes the faults of a kind with their number and the first place, for example "2 holes, the longest 0.3 m around
-/// at (0, 0, 1) m beside triangle 17".
+/// at (0, 0, 1) m, triangle 17".
 std::string fault_text(const SurfaceFault& fault);
 
 }  // namespace mesh

@@ -13,7 +13,7 @@
 namespace skerry::mesh {
 namespace {
 
-/// Elements of an Abaqus element type: their number of nodes, 0 if the type is not read; else the name of their kind.
+/// Number of nodes of an element type. For types that are not read it is 0, and `name` is the plural for the user.
 struct AbaqusKind {
     std::size_t nodes = 0;
     std::string name{};

@@ -7,7 +7,11 @@
 
 namespace skerry::mesh {
 
+/// Corners of a triangle, given by its nodes or by its row [m].
 std::array<Vec3, 3> corners(const SurfaceMesh& surface, const std::array<Index, 3>& triangle);
+inline std::array<Vec3, 3> corners_of(const SurfaceMesh& surface, Index triangle) {
+    return corners(surface, surface.triangles[static_cast<std::size_t>(triangle)]);
+}
 
 /// Mean length of the edges of all triangles [m]. The surface needs at least one triangle.
 Real mean_edge(const SurfaceMesh& surface);

@@ -1,5 +1,7 @@
 #include "engine/mesh/surface/add_fault.h"
 
+#include "engine/mesh/repair/surface_measures.h"
+
 namespace skerry::mesh {
 
 SurfaceFault& add_fault(SurfaceReport& report, SurfaceFaultKind kind, Index triangle, const Vec3& place, Index other) {

@@ -12,11 +12,4 @@ SurfaceFault& add_fault(SurfaceReport& report, SurfaceFaultKind kind, Index tria
 /// Adds a fault whose place is the centre of the triangle.
 SurfaceFault& add_fault(SurfaceReport& report, SurfaceFaultKind kind, Index triangle, Index other = no_index);
 
-/// Corners of a triangle [m].
-inline std::array<Vec3, 3> corners_of(const SurfaceMesh& surface, Index triangle) {
-    const auto [a, b, c] = surface.triangles[static_cast<std::size_t>(triangle)];
-    return {surface.nodes[static_cast<std::size_t>(a)], surface.nodes[static_cast<std::size_t>(b)],
-            surface.nodes[static_cast<std::size_t>(c)]};
-}
-
 }  // namespace skerry::mesh

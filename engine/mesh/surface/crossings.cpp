@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "engine/mesh/repair/surface_measures.h"
 #include "engine/mesh/surface/add_fault.h"
 #include "engine/mesh/surface/triangle_boxes.h"
 #include "systems/collision/tree/box_tree.h"
@@ -50,12 +51,11 @@ enum class PairFault { none, crossing, overlap };
 
 /// Tests two triangles by separating axes (Gottschalk, Lin, Manocha 1996): convex shapes are apart if and only if their
 /// projections on one of the axes are. Common corners and edges count as no overlap, because some axis separates the
-/// triangles except for these.
-PairFault fault_of(const Points& first, const Points& second, Real distance) {
+/// triangles except for these. `tolerance`: overlap that counts as rounding error [m].
+PairFault fault_of(const Points& first, const Points& second, Real tolerance) {
     // Cross products of sides shorter than this have no reliable direction, relative to the product of the lengths.
     constexpr Real parallel = 1e-9;
     const Points u = sides_of(first), v = sides_of(second);
-    const Real tolerance = std::max(distance, default_weld * std::max(longest_side(u), longest_side(v)));
     const Vec3 normal = u[0].cross(u[1]).normalized(), other = v[0].cross(v[1]).normalized();
     const auto separates = [&](const Vec3& axis) { return overlap_along(first, second, axis) <= tolerance; };
     const Real height = overlap_along(first, second, normal);

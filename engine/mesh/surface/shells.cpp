@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "engine/mesh/repair/surface_measures.h"
 #include "engine/mesh/repair/triangle_tree.h"
 #include "engine/mesh/surface/add_fault.h"
 #include "engine/mesh/surface/connect.h"

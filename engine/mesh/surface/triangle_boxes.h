@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/mesh/surface/add_fault.h"
+#include "engine/mesh/repair/surface_measures.h"
 #include "systems/collision/tree/box.h"
 
 namespace skerry::mesh {

@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "engine/mesh/repair/surface_measures.h"
 #include "engine/mesh/repair/triangle_tree.h"
 #include "engine/mesh/visual/bound_visual.h"
 #include "engine/world/complaint.h"
@@ -127,16 +128,6 @@ std::string warning_of(const BoundVisual& visual, std::span<const Vec3> nodes, R
     return {};
 }
 
-Real mean_edge_of(const SurfaceMesh& surface) {
-    Real sum = 0;
-    for (const std::array<Index, 3>& triangle : surface.triangles)
-        for (std::size_t k = 0; k < 3; ++k)
-            sum += (surface.nodes[static_cast<std::size_t>(triangle[k])] -
-                    surface.nodes[static_cast<std::size_t>(triangle[(k + 1) % 3])])
-                       .norm();
-    return sum / static_cast<Real>(3 * surface.triangles.size());
-}
-
 /// Binds all nodes to one tetrahedron, whose corners are nodes of a rigid body.
 void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes) {
     const std::array<Index, 4> corners = point_of_solid(nodes, nodes[0]).node;
@@ -170,7 +161,7 @@ BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
         for (const Index n : point.node) wanted[static_cast<std::size_t>(n)] = true;
     }
     visual.gradient = gradients_of(nodes, tetrahedra, wanted);
-    visual.fit.warning = warning_of(visual, nodes, mean_edge_of(boundary));
+    visual.fit.warning = warning_of(visual, nodes, mesh::mean_edge(boundary));
     return visual;
 }
 

@@ -148,7 +148,7 @@ TEST_CASE("a repeated shell is filled once, with a note") {
     const SurfaceMesh ball = ball_surface(0.5);
     const mesh::FilledMesh filled = mesh::fill(both(ball, renumbered(ball)), "twice.stl");
     CHECK(inspect(filled.mesh).volume == Approx(mesh::volume_inside(ball)).epsilon(1e-12));
-    CHECK(notes_contain(filled, "shell"));
+    CHECK(notes_contain(filled, "1 repeated shell"));
 }
 
 TEST_CASE("a mesher that hangs, crashes or writes no mesh is an error of the surface") {

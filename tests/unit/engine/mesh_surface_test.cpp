@@ -218,7 +218,7 @@ TEST_CASE("a million triangles are checked", "[unit][surface]") {
     CHECK(found_in(report).empty());
     CHECK(report.can_be_filled());
     CHECK(report.shells.size() == 1);
-    // 2 pi^2 R r^2, less what the chords cut off: 1 - (2 pi / n)^2 / 6 for each of the two circles
+    // 2 pi^2 R r^2. Chords reduce the area of each of the two circles by the factor 1 - (2 pi / n)^2 / 6.
     CHECK(report.volume == Approx(2 * std::numbers::pi * std::numbers::pi * 0.09).epsilon(0.01));
 }
 

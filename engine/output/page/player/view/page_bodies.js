@@ -6,7 +6,7 @@ function make_bodies(scene, list, visuals, frames, legend_top, largest, redraw) 
   const first_of = (number) => frames.find((frame) => frame.bodies.has(number)).bodies.get(number);
   const bodies = list.map((body, number) => make_body(scene, body, visuals[number], number, first_of(number), redraw));
 
-  // What `frame` shows, moved towards the next frame by `blend` in [0, 1). `visual`: draw visual surfaces.
+  // Shows `frame`, moved towards the next frame by `blend` in [0, 1). `visual`: draw visual surfaces.
   function show(frame, next, blend, color, visual) {
     let count = 0;
     bodies.forEach((body, number) => {
@@ -73,7 +73,7 @@ function make_body(scene, shape, visual, number, first, redraw) {
   return body;
 }
 
-// Positions of the vertices. parts: what is shown of one frame or two, with shares that add up to one.
+// Positions of the vertices. parts: states of the body in one frame or two, with shares that add up to one.
 function positions_at({ vertices, step }, parts) {
   const out = new Float64Array(3 * vertices);
   for (const { body, share } of parts)
