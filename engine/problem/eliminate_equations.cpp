@@ -22,7 +22,7 @@ struct VelocityRow {
         Vec3 along;
     };
     struct OnFrame {
-        Index frame;  // row of RigidBodyTable
+        Index frame;       // row of RigidBodyTable
         Vec3 along, turn;  // coefficients of the velocity [1] and of the angular velocity [m]; for axes: 0 and [1]
     };
     std::vector<OnNode> nodes;    // velocities of nodes; on implicit bodies, of their deformation

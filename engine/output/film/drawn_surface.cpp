@@ -11,8 +11,8 @@ namespace skerry {
 
 namespace {
 
-// Colours of all quantities, of bodies and of colliders (sRGB). The first two lists are those of stress and of bodies on
-// pages (player/data/page_colors.js).
+// Colours of all quantities, of bodies and of colliders (sRGB). The first two lists are those of stress and of bodies
+// on pages (player/data/page_colors.js).
 constexpr std::uint32_t ramp[] = {0x8f8ad6, 0xb27cd0, 0xcf72b8, 0xe56d92, 0xf27f67, 0xf9a64a, 0xf7dd53};
 constexpr std::uint32_t body_colors[] = {0x6fa8dc, 0xe6a15c, 0x7fbf7b, 0xd98cb3, 0xb8a6e0,
                                          0xd8c25f, 0x6cc5c1, 0xe07f72, 0xa9b665, 0x8f9fb8};

@@ -263,8 +263,9 @@ class StepProblem:
     step: number of the step, counted from 1.
     time: time at the start of the step [s].
     step_size: length of the step [s].
-    problem: the problem, without contacts that no impulse can move, and without regions that have joints, ties, nodes
-        on rollers, or cables with friction or a prescribed length.
+    problem: the problem, without contacts that no impulse can move. Joints, ties and nodes on rollers are eliminated:
+        W and q are those of the bodies that these connect. Slides, motors, limits, passive forces, and cables with
+        friction or a prescribed length act by their impulses of the step.
     impulse: impulses that the solver found, in the contact frames of `problem`, shape (c, 3) [N s].
     contact: number of each contact in World.contacts, shape (c,).
     region: region of each contact, shape (c,).
