@@ -1,4 +1,5 @@
-# Netgen's library for skerry-fill, which `skerry inspect --repair` calls; without it that option says what is missing.
+# Netgen's library for skerry-fill, which `skerry fill` and `skerry inspect --repair` call. Without it they name the
+# missing package.
 # Debian keeps the libraries in a folder of their own, and libnglib.so has names that only libinterface.so knows.
 find_path(NGLIB_INCLUDE nglib.h PATH_SUFFIXES netgen DOC "Folder of nglib.h (Debian: libnglib-dev)")
 find_library(NGLIB_LIBRARY nglib PATH_SUFFIXES netgen DOC "Netgen's library with the C interface")

@@ -1,5 +1,5 @@
-// Replacement for engine/output/page and zlib if SKERRY_PAGES=OFF. Creating a PageWriter, or reading a compressed VTK
-// file, then throws SceneError.
+// Replacement for engine/output/page, write_gltf and zlib if SKERRY_PAGES=OFF. Creating a PageWriter, writing glTF, or
+// reading a compressed VTK file, then throws SceneError.
 #include "engine/absent/refuse_absent.h"
 #include "engine/mesh/formats/inflate.h"
 #include "skerry/output.h"
