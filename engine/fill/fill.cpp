@@ -247,6 +247,7 @@ FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillS
 
 FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSettings& settings,
                 const FillProgress& progress) {
+    if (files.empty()) Complaint{{}, "surface", {}, "no files", "at least one file of a surface", {}}.raise();
     GivenSurface given;
     for (const std::filesystem::path& file : files) given.add(read_surface(file.string()), file.string());
     return Filling(given, settings, progress).run();

@@ -74,7 +74,7 @@ class VisualSurface:
 
     @staticmethod
     def read(path: Path, *, scale: float = 1.0) -> VisualSurface:
-        """Reads a surface from a file in one of the formats of SurfaceMesh; from .obj files also texture coordinates
+        """Reads a surface from a file in one of the formats of read_surface(); from .obj files also texture coordinates
         and the materials of their .mtl files. Coordinates are multiplied by `scale`. A missing file of materials gives
         a warning Doubt. SceneError: the file cannot be read."""
         core, notes = _core.read_visual(path_text(path, "path"), real(scale, "scale"))

@@ -173,6 +173,7 @@ TEST_CASE("a mesher that hangs, crashes or writes no mesh is an error of the sur
     CHECK_THAT(failure(open), Contains("/nowhere/python") && Contains("pip install wildmeshing"));
     CHECK_THAT(failure(open, {.tolerance = 0}), Contains("tolerance above 0"));
     CHECK_THAT(failure(open, {.edge = -1}), Contains("edge") && Contains("-1"));
+    CHECK_THROWS_WITH(mesh::fill(std::vector<std::filesystem::path>{}), Contains("found no files"));
 }
 
 TEST_CASE("a mesher ends with the exception of a progress function") {
