@@ -55,6 +55,8 @@ def test_bad_surfaces_are_refused_and_doubtful_ones_named(tmp_path: Path) -> Non
     with pytest.raises(sk.SceneError, match="triangles: found 3, expected an index below 3"):
         world.add_body(sk.Sphere(1), sk.Material(), visual=bad)
     assert len(world.bodies) == 0
+    with pytest.raises(TypeError, match="material: found numbers of the type float64, expected whole numbers"):
+        sk.VisualSurface(np.eye(3), [[0, 1, 2]], materials=[sk.VisualMaterial()], material=[0.7])
     with pytest.warns(sk.Doubt, match="times as large as the body; check the units"):
         world.add_body(sk.Sphere(1), sk.Material(), visual=sk.VisualSurface(1000 * np.eye(3), [[0, 1, 2]]))
     (tmp_path / "a.mtl").unlink(missing_ok=True)

@@ -60,10 +60,10 @@ class VisualSurface:
         self._core = _core.new_visual(
             real_array(nodes, "nodes", ("n", 3)),
             index_array(triangles, "triangles", ("k", 3)),
-            real_array(np.reshape(texture_points, (-1, 2)), "texture_points", ("p", 2)),
-            index_array(np.reshape(np.asarray(texture_corners, dtype=np.int32), (-1, 3)), "texture_corners", ("k", 3)),
+            real_array(texture_points, "texture_points", ("p", 2)),
+            index_array(texture_corners, "texture_corners", ("k", 3)),
             rows,
-            index_array(np.asarray(material, dtype=np.int32), "material", ("k",)),
+            index_array(material, "material", ("k",)),
         )
 
     @classmethod
