@@ -12,7 +12,7 @@ CODE = re.compile(r"""//[^\n]*|/\*.*?\*/|\s+|("(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\
 INCLUDE = re.compile(r'^#include "(.*)"', re.MULTILINE)
 # Sources that need packages, definitions or templates of their own, or belong to another project.
 SPECIAL = re.compile(
-    r"jobs/backend_.*\.cpp|engine/absent/.*|engine/program/fill/.*|profiling/siconos\.cpp|profiling/.*/bullet_peer\.cpp"
+    r"jobs/backend_.*\.cpp|engine/absent/.*|engine/fill/netgen/.*|profiling/siconos\.cpp|profiling/.*/bullet_peer\.cpp"
     r"|profiling/roofline/(peak_loops|roofline)\.cpp|tests/(host|consumer)/.*|tests/fuzz/fuzz_reader\.cpp")
 LATELY = 24 * 3600  # age of a commit, measured from the newest one, up to which its files count as changed [s]
 
