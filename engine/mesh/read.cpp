@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -229,6 +230,46 @@ SurfaceMesh take_triangles(const std::string& path, RawMesh& raw) {
 SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes) {
     RawMesh raw = read_raw(path, true, notes);
     return raw.tetrahedra.empty() ? take_triangles(path, raw) : boundary(take_tetrahedra(path, raw, notes));
+}
+
+namespace {
+
+/// Gives the materials that an .obj file names the properties from its .mtl files.
+void read_materials(const std::string& path, const std::vector<std::string>& files,
+                    std::vector<VisualMaterial>& materials, std::vector<std::string>* notes) {
+    std::set<std::string> missing;
+    for (const VisualMaterial& material : materials) missing.insert(material.name);
+    for (const std::string& name : files) {
+        const std::filesystem::path file = std::filesystem::path(path).parent_path() / name;
+        if (!std::filesystem::is_regular_file(file)) {
+            if (notes) notes->push_back(path + ": the material file " + in_quotes(name) + " does not exist");
+            continue;
+        }
+        FileReader reader(file.string());
+        for (VisualMaterial& found : read_mtl(reader)) {
+            const auto used = std::ranges::find(materials, found.name, &VisualMaterial::name);
+            if (used == materials.end()) continue;
+            missing.erase(found.name);
+            *used = std::move(found);
+        }
+    }
+    if (!notes) return;
+    for (const std::string& name : missing)
+        notes->push_back(path + ": no material file defines the material " + in_quotes(name) + ", which is drawn grey");
+}
+
+}  // namespace
+
+VisualSurface read_visual(const std::string& path, std::vector<std::string>* notes) {
+    RawMesh raw = read_raw(path, true, notes);
+    VisualSurface visual = std::move(raw.visual);
+    SurfaceMesh surface =
+        raw.tetrahedra.empty() ? take_triangles(path, raw) : boundary(take_tetrahedra(path, raw, notes));
+    visual.nodes = std::move(surface.nodes);
+    visual.triangles = std::move(surface.triangles);
+    visual.file = path;
+    read_materials(path, raw.material_files, visual.materials, notes);
+    return visual;
 }
 
 Mesh read_rigid(const std::string& path, std::vector<std::string>* notes) {

@@ -20,6 +20,11 @@ std::vector<Index> materials_of(const World& world, BodyHandle body) {
                               model.bodies.material[row]);
 }
 
+const BoundVisual* visual_of(const World& world, BodyHandle body) {
+    const Model& model = WorldAccess::state_of(world).model;
+    return model.body_records[static_cast<std::size_t>(model.row(body, "frame"))].visual.get();
+}
+
 /// Returns a value for each cell of a body, given those of its tetrahedra. A body without tetrahedra is rigid, and its
 /// cells have the value zero.
 template <class T>
@@ -59,6 +64,7 @@ Frame collect_frame(const World& world) {
                                                                  .node_stress = std::move(fields[b].stress),
                                                                  .node_strain = std::move(fields[b].strain),
                                                                  .material = materials_of(world, body)});
+        of_body.visual = visual_of(world, body);
         of_body.stress = values_of_cells<Mat3>(world.stress(body), of_body, Mat3::Zero());
         of_body.strain = values_of_cells<Mat3>(world.strain(body), of_body, Mat3::Zero());
         if (yields) of_body.plastic_strain = values_of_cells<Real>(world.plastic_strain(body), of_body, 0);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "components/options.h"
+#include "engine/mesh/visual/bound_visual.h"
 #include "skerry/report.h"
 #include "skerry/settings.h"
 
@@ -30,6 +31,8 @@ struct BodyFrame {
     std::vector<Mat3> node_stress, node_strain;  // values by node: Cauchy stress [Pa] and Green strain
     // Material number of each cell. Materials are numbered in the order in which they were added.
     std::vector<Index> material{};
+    // Surface that is drawn in place of `surface`; nullptr if there is none. See visual_positions and visual_values.
+    const BoundVisual* visual = nullptr;
 
     std::size_t count_cells() const { return tetrahedra.empty() ? surface.size() : tetrahedra.size(); }
     std::size_t corners_of_cell() const { return tetrahedra.empty() ? 3 : 4; }

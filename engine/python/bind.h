@@ -31,6 +31,7 @@ void bind_problem(nb::module_& module);
 void bind_recorder(nb::module_& module);
 void bind_rollout(nb::module_& module);
 void bind_scene(nb::module_& module);
+void bind_visual_surface(nb::module_& module);
 void bind_world(nb::module_& module);
 
 /// Arrays that Python passes in: C-contiguous, of exactly this type.

@@ -55,6 +55,7 @@ NB_MODULE(_core, module) {
     bind_materials(module);
     bind_mesh(module);
     bind_problem(module);
+    bind_visual_surface(module);
     bind_world(module);
     bind_recorder(module);
     bind_rollout(module);

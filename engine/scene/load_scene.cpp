@@ -3,6 +3,7 @@
 #include "engine/mesh/require_positive.h"
 #include "engine/scene/scene_plan.h"
 #include "engine/world/tuning.h"
+#include "engine/world/visuals.h"
 #include "skerry/scene.h"
 #include "skerry/surface.h"
 
@@ -130,6 +131,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
             if (body.shape.cylinder) return world.add_body(*body.shape.cylinder, settings);
             return add_mesh_body(plan, body, settings, world);
         }));
+        if (body.visual) set_bound_visual(world, bodies.back(), body.visual);
         if (added) added(bodies.size());
         pins.emplace_back();
         for (const PinPlan& pin : body.pins)

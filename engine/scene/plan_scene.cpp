@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "components/split_mix.h"
@@ -164,6 +165,8 @@ struct PlannedBodies {
     std::set<std::string> names;
     // Index in ScenePlan::meshes of each mesh file that was read, by path and scale.
     std::map<std::pair<std::filesystem::path, Real>, std::size_t> mesh_of_file;
+    // by path and scale of the file, and index in ScenePlan::meshes
+    std::map<std::tuple<std::filesystem::path, Real, std::size_t>, std::shared_ptr<const BoundVisual>> visuals;
 };
 
 /// Returns the index of the body's mesh in plan.meshes. Each mesh file is read only once.
@@ -180,6 +183,22 @@ std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& 
     return next;
 }
 
+/// Returns the visual surface of an entry, bound to its mesh. Entries with the same surface and mesh share it.
+std::shared_ptr<const BoundVisual> plan_visual(const BodyEntry& entry, const std::string& name, std::size_t of_plan,
+                                               PlannedBodies& so_far, ScenePlan& plan) {
+    const VisualEntry& visual = *entry.visual;
+    const Real scale = visual.scale.value_or(entry.mesh ? entry.mesh->scale : 1);
+    std::shared_ptr<const BoundVisual>& bound = so_far.visuals[{visual.file.path, scale, of_plan}];
+    if (bound) return bound;
+    VisualSurface surface =
+        called_at(visual.place, [&] { return mesh::read_visual(visual.file.path.string(), &plan.notes); });
+    for (Vec3& node : surface.nodes) node *= scale;
+    const Mesh& mesh = plan.meshes[of_plan];
+    bound = std::make_shared<const BoundVisual>(bind_visual(std::move(surface), mesh.nodes, mesh.tetrahedra));
+    if (!bound->fit.warning.empty()) plan.notes.push_back("body '" + name + "': " + bound->fit.warning);
+    return bound;
+}
+
 void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far, ScenePlan& plan) {
     const std::size_t material = find_material(plan, entry.material, entry.place.key("material"));
     const std::size_t of_plan = plan_mesh(entry, so_far, plan);
@@ -194,6 +213,7 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
         planned.surfaces.push_back(plan_surface(surface, mesh, planned.sets));
 
     const std::string name = entry.name.empty() ? "body_" + std::to_string(number) : entry.name;
+    if (entry.visual) planned.visual = plan_visual(entry, name, of_plan, so_far, plan);
     const bool copies = entry.repeat || !entry.positions.empty();
     const std::vector<Vec3> positions = positions_of(entry);
     for (std::size_t copy = 0; copy < positions.size(); ++copy) {

@@ -121,6 +121,12 @@ struct RepeatEntry {
     Real jitter = 0;              // [m]
     int seed = 1;
 };
+/// A surface that is drawn in place of a body.
+struct VisualEntry {
+    FilePath file;
+    std::optional<Real> scale;
+    Place place;
+};
 struct BodyShapeEntry {
     std::optional<Sphere> sphere;
     std::optional<Capsule> capsule;
@@ -149,6 +155,7 @@ struct BodyEntry {
     ElementKind element = BodySettings{}.element;
     OneOrMore<PinEntry> pin;
     std::vector<SurfaceEntry> surfaces;
+    std::optional<VisualEntry> visual;
     Place place;
 };
 

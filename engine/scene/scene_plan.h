@@ -4,12 +4,14 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "engine/mesh/visual/bound_visual.h"
 #include "engine/output/series/follow_point.h"
 #include "engine/scene/place.h"
 #include "engine/scene/scene_file.h"
@@ -44,6 +46,7 @@ struct BodyPlan {
     std::map<std::string, MeshSet> sets;                             // sets of the scene, in addition to Mesh::sets
     std::vector<PinPlan> pins;
     std::vector<SurfacePlan> surfaces;
+    std::shared_ptr<const BoundVisual> visual{};  // bound to the mesh; copies of a body share it
     Place place;
 };
 struct ColliderPlan {

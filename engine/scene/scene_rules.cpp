@@ -186,6 +186,19 @@ const Rule<RepeatEntry>& rule_of<RepeatEntry>() {
 }
 
 template <>
+const Rule<VisualEntry>& rule_of<VisualEntry>() {
+    static const auto rule =
+        Rule<VisualEntry>("visual", "A triangle surface that is drawn in place of a body and follows it.")
+            .key("file", &VisualEntry::file,
+                 {.meaning = "path of a surface file, for example .obj or .stl, relative to the folder of the scene",
+                  .required = true})
+            .key("scale", &VisualEntry::scale,
+                 {.meaning = "factor for all coordinates of the surface; default: that of \"mesh\"",
+                  .limits = above(0)});
+    return rule;
+}
+
+template <>
 const Rule<BodyEntry>& rule_of<BodyEntry>() {
     static const auto rule =
         Rule<BodyEntry>("body", "A body. The mesh is first rotated about its origin and then moved to the position.")
@@ -239,6 +252,9 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
             .key("surfaces", &BodyEntry::surfaces,
                  {.meaning = "parts of the surface with their own friction and restitution. Where they overlap, the "
                              "last one counts"})
+            .key("visual", &BodyEntry::visual,
+                 {.meaning = "surface that is drawn in place of the body, in the frame of the mesh: a file or an "
+                             "object"})
             .exactly_one({"mesh", "shape"})
             .at_most_one({"position", "positions"})
             .at_most_one({"positions", "repeat"});

@@ -38,6 +38,8 @@ const Rule<PinEntry>& rule_of<PinEntry>();
 template <>
 const Rule<RepeatEntry>& rule_of<RepeatEntry>();
 template <>
+const Rule<VisualEntry>& rule_of<VisualEntry>();
+template <>
 const Rule<BodyEntry>& rule_of<BodyEntry>();
 template <>
 const Rule<BodyShapeEntry>& rule_of<BodyShapeEntry>();
@@ -102,20 +104,24 @@ const Rule<Settings>& rule_of<Settings>();
 template <>
 const Rule<SceneFile>& rule_of<SceneFile>();
 
-/// An included scene: the path of its file, or an object.
-template <>
-struct Value<IncludeEntry> {
-    static void read(const Json& json, const Place& place, const KeyDoc& doc, IncludeEntry& out) {
+/// A value that is either the path of a file or an object, which has `file` as one of its members.
+template <class Entry, FilePath Entry::*file>
+struct PathOrObject {
+    static void read(const Json& json, const Place& place, const KeyDoc& doc, Entry& out) {
         out.place = place;
         if (json.is_string())
-            Value<FilePath>::read(json, place, doc, out.scene);
+            Value<FilePath>::read(json, place, doc, out.*file);
         else
-            rule_of<IncludeEntry>().read(json, place, out);
+            rule_of<Entry>().read(json, place, out);
     }
     static Json schema(SchemaBook& book, const KeyDoc&) {
-        return either_schema(text_schema(), rule_schema(book, rule_of<IncludeEntry>()));
+        return either_schema(text_schema(), rule_schema(book, rule_of<Entry>()));
     }
 };
+template <>
+struct Value<IncludeEntry> : PathOrObject<IncludeEntry, &IncludeEntry::scene> {};
+template <>
+struct Value<VisualEntry> : PathOrObject<VisualEntry, &VisualEntry::file> {};
 
 /// Documentation of the keys "set", "box" and "nodes" of an entry that derives from PartEntry.
 extern const KeyDoc part_set_doc, part_box_doc, part_nodes_doc;

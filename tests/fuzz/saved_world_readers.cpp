@@ -6,6 +6,7 @@
 #include "engine/world/tuning.h"
 #include "engine/world/world_state.h"
 #include "readers.h"
+#include "skerry/visual.h"
 #include "skerry/world.h"
 #include "tests/support/world_file_damage.h"
 
@@ -13,7 +14,8 @@ namespace skerry::test {
 
 namespace {
 
-/// A world with a row in every small table: two kinds of elements, contacts, a held node, a mesh collider, a script.
+/// A world with a row in every small table: two kinds of elements, contacts, a held node, a mesh collider, a script,
+/// a visual surface.
 World small_world(ElementKind element) {
     World world = tuned_world({.backend = Backend::serial, .threads = 1}, {.sleep_speed = 0.01});
     const auto soft = world.add_material({.young_modulus = 2e4});
@@ -36,6 +38,12 @@ World small_world(ElementKind element) {
                          .self_contact = true,
                          .element = element});
     world.attach(lower, std::vector<Index>{0});
+    Visuals(world).set(lower, {.nodes = lid.nodes,
+                               .triangles = lid.triangles,
+                               .texture_points = {{0, 0}, {1, 0}, {0, 1}},
+                               .texture_corners = std::vector<std::array<Index, 3>>(4, {0, 1, 2}),
+                               .materials = {{.name = "skin", .texture = "skin.png"}},
+                               .material = {0, no_index, 0, 0}});
     world.advance(0.02);
     return world;
 }

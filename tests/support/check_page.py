@@ -1,5 +1,5 @@
-"""Opens pages of PageWriter in headless Chromium: check_page.py FOLDER, which holds page.html and empty.html of
-output_sample_files.
+"""Opens pages of PageWriter in headless Chromium: check_page.py FOLDER, which holds page.html, visual.html and
+empty.html of output_sample_files.
 
 A page marks its root element: data-ready after the first picture, data-error after a failure or a blocked request. The
 script asks for several states by URL fragment, reads the marks back, and looks at the picture itself; then it puts
@@ -209,6 +209,15 @@ KEYS = """
     while (!root.dataset.picture) await wait(50);
 """
 
+VISUAL = """
+    search(/visual triangle \\d+, node \\d+/);
+    const values = tip.textContent;
+    check(/von Mises stress [\\d.]+.[kM]?Pa/.test(values), "an interpolated stress in " + values);
+    key("s");
+    search(/triangle \\d+, node \\d+/);
+    check(!/visual/.test(tip.textContent), "S shows the simulated surface");
+"""
+
 RECORDING = """
     const rate = document.querySelector("#rate select");
     rate.value = "2";
@@ -223,12 +232,12 @@ RECORDING = """
 """
 
 
-def check_acting(folder, fragment, script, size=(900, 700), before=""):
-    """The marks of page.html after `script` has acted on it; `before` runs ahead of all others.
+def check_acting(folder, fragment, script, size=(900, 700), before="", page="page.html"):
+    """The marks of a page after `script` has acted on it; `before` runs ahead of all others.
 
     What the browser does beside the page (a PNG, a video) may take longer than its own time lasts: then there is more.
     """
-    with open(os.path.join(folder, "page.html"), encoding="utf-8") as file:
+    with open(os.path.join(folder, page), encoding="utf-8") as file:
         text = file.read()
     acting = os.path.join(folder, "acting.html")
     with open(acting, "w", encoding="utf-8") as file:
@@ -242,8 +251,9 @@ def check_acting(folder, fragment, script, size=(900, 700), before=""):
 
 
 def check_actions(folder):
-    for fragment, script in [("#frame=60&color=stress", POINTING), ("#frame=40", KEYS), ("#frame=10", RECORDING)]:
-        found = check_acting(folder, fragment, script)
+    for fragment, script, page in [("#frame=60&color=stress", POINTING, "page.html"), ("#frame=40", KEYS, "page.html"),
+                                   ("#frame=10", RECORDING, "page.html"), ("#color=body", VISUAL, "visual.html")]:
+        found = check_acting(folder, fragment, script, page=page)
         assert "error" not in found, f"{fragment}: {found['error']}"
         assert found.get("done") == "true", f"{fragment}: the script did not come to its end"
     lacking = {

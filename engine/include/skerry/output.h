@@ -15,7 +15,8 @@ namespace skerry {
 ///   material;
 /// - one .vtp file of the contacts, with impulse, force, normal, gap, slip, state and region;
 /// - one .vtp file of the colliders, which is written again only when a collider has changed;
-/// - one .vtp file of joints, ties, cables and springs, with kind and force, if there are any.
+/// - one .vtp file of joints, ties, cables and springs, with kind and force, if there are any;
+/// - one .vtp file of visual surfaces, with texture coordinates, displacement, velocity and stress, if there are any.
 ///
 /// Displacements are measured from the position in which a body was first written. Stress is Cauchy stress [Pa], strain
 /// is Green strain. Both are given by tetrahedron and by node, with components in the order of VTK: XX, YY, ZZ, XY, YZ,

@@ -1,6 +1,5 @@
 #include "engine/mesh/repair/triangle_tree.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "systems/collision/tree/box.h"
@@ -13,13 +12,13 @@ TriangleTree::TriangleTree(SurfaceMesh surface) : surface_(std::move(surface)) {
     append_bvh({0, static_cast<Index>(surface_.triangles.size())}, surface_.triangles, surface_.nodes, bvh_, leaves_);
 }
 
-Real TriangleTree::distance_squared(const Vec3& point, Real limit) const {
-    Real nearest = limit;
+NearestTriangle TriangleTree::nearest(const Vec3& point, Real limit) const {
+    NearestTriangle nearest{.distance_squared = limit};
     search(0, point, nearest);
     return nearest;
 }
 
-void TriangleTree::search(Index row, const Vec3& point, Real& nearest) const {
+void TriangleTree::search(Index row, const Vec3& point, NearestTriangle& nearest) const {
     const BvhNode& node = bvh_.node[static_cast<std::size_t>(row)];
     if (node.leaf != no_index) {
         for (const Index t : leaves_.triangle[static_cast<std::size_t>(node.leaf)]) {
@@ -28,7 +27,7 @@ void TriangleTree::search(Index row, const Vec3& point, Real& nearest) const {
             const PointTriangle found = closest_point_on_triangle(point, surface_.nodes[static_cast<std::size_t>(a)],
                                                                   surface_.nodes[static_cast<std::size_t>(b)],
                                                                   surface_.nodes[static_cast<std::size_t>(c)]);
-            nearest = std::min(nearest, found.distance_squared);
+            if (found.distance_squared < nearest.distance_squared) nearest = {t, found.weight, found.distance_squared};
         }
         return;
     }
@@ -38,7 +37,7 @@ void TriangleTree::search(Index row, const Vec3& point, Real& nearest) const {
     for (int i = 0; i < 2; ++i) gap[i] = skerry::distance_squared(bvh_.box[static_cast<std::size_t>(child[i])], point);
     const int first = gap[1] < gap[0];
     for (const int i : {first, 1 - first})
-        if (gap[i] < nearest) search(child[i], point, nearest);
+        if (gap[i] < nearest.distance_squared) search(child[i], point, nearest);
 }
 
 }  // namespace skerry::mesh

@@ -1,10 +1,19 @@
 // Distances of points from a surface.
 #pragma once
 
+#include <array>
+
 #include "components/bvh_table.h"
 #include "skerry/mesh.h"
 
 namespace skerry::mesh {
+
+/// The triangle that is nearest to a point, and the nearest point of this triangle.
+struct NearestTriangle {
+    Index triangle = no_index;
+    std::array<Real, 3> weight{};      // barycentric weights of the corners
+    Real distance_squared = infinity;  // [m^2]
+};
 
 /// A surface that does not change, with a bounding volume tree over its triangles.
 class TriangleTree {
@@ -13,10 +22,15 @@ public:
     explicit TriangleTree(SurfaceMesh surface);
 
     /// Exact squared distance from the point to the nearest triangle [m^2]. Returns `limit` if no triangle is nearer.
-    Real distance_squared(const Vec3& point, Real limit = infinity) const;
+    Real distance_squared(const Vec3& point, Real limit = infinity) const {
+        return nearest(point, limit).distance_squared;
+    }
+    /// If no triangle is nearer than the root of `limit` [m^2], `triangle` is no_index and `distance_squared` is
+    /// `limit`.
+    NearestTriangle nearest(const Vec3& point, Real limit = infinity) const;
 
 private:
-    void search(Index row, const Vec3& point, Real& nearest) const;
+    void search(Index row, const Vec3& point, NearestTriangle& nearest) const;
 
     SurfaceMesh surface_;
     BvhTable bvh_;

@@ -14,6 +14,7 @@ set(page_scripts
     data/page_measure.js
     view/page_view.js
     view/page_pointers.js
+    view/page_drawing.js
     view/page_bodies.js
     view/page_contacts.js
     view/page_lines.js
@@ -43,6 +44,7 @@ set(page_streams
     page/stream/deflate.cpp
     page/stream/line_stream.cpp
     page/stream/pack.cpp
+    page/stream/visual_stream.cpp
 )
 set(pages
     page/page_data.cpp

@@ -85,6 +85,7 @@ void PageData::measure_body(const BodyFrame& body, std::size_t place) {
     if (is_new) {
         bodies_.emplace_back(body);
         body_names_.push_back(body.name);
+        visual_numbers_.push_back(body.visual ? visuals_.number_of(*body.visual) : no_index);
     }
     for (std::size_t field = 0; field < page_field_count; ++field) {
         values.field[field].clear();

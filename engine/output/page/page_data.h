@@ -13,6 +13,7 @@
 #include "engine/output/page/stream/contact_stream.h"
 #include "engine/output/page/stream/deflate.h"
 #include "engine/output/page/stream/line_stream.h"
+#include "engine/output/page/stream/visual_stream.h"
 
 namespace skerry {
 
@@ -46,6 +47,9 @@ public:
     void add(const Frame& frame);
 
     std::span<const std::string> body_names() const { return body_names_; }
+    /// Number of the visual surface of each body, or no_index. A body has that of its first frame.
+    std::span<const Index> visual_numbers() const { return visual_numbers_; }
+    const VisualStream& visuals() const { return visuals_; }
     std::span<const BodyStream> bodies() const { return bodies_; }
     std::span<const PageCollider> colliders() const { return colliders_; }
     std::span<const PageRow> rows() const { return rows_; }
@@ -66,6 +70,8 @@ private:
     std::map<BodyHandle, Index> body_numbers_;
     std::map<ColliderHandle, Index> collider_numbers_;
     std::vector<std::string> body_names_;
+    std::vector<Index> visual_numbers_;
+    VisualStream visuals_;
     std::vector<BodyStream> bodies_;
     std::vector<PageCollider> colliders_;
     ContactStream contacts_;

@@ -1,6 +1,8 @@
 #include "engine/output/page/page_document.h"
 
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -36,6 +38,37 @@ Json json_of_colliders(const PageData& data) {
                         {"kind", collider.kind},
                         {"points", packed<float>(collider.picture.nodes)},
                         {"triangles", packed<std::uint32_t>(collider.picture.triangles)}});
+    return list;
+}
+
+/// Returns an image as a data URI, or an empty text if the file is no PNG or JPEG image, too large, or not readable.
+std::string image_uri(const std::filesystem::path& file) {
+    constexpr std::uintmax_t most_bytes = 2 << 20;  // most of a page without textures is smaller
+    const std::string extension = file.extension().string();
+    const bool is_png = extension == ".png" || extension == ".PNG";
+    if (!is_png && extension != ".jpg" && extension != ".jpeg" && extension != ".JPG") return {};
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) > most_bytes)
+        return {};
+    std::ifstream in(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    return std::string("data:image/") + (is_png ? "png" : "jpeg") + ";base64," + base64(bytes);
+}
+
+/// Materials of each visual surface. A texture that is not part of the page is only named.
+Json json_of_visuals(const PageData& data) {
+    Json list = Json::array();
+    for (const std::vector<VisualMaterial>& materials : data.visuals().materials()) {
+        Json& rows = list.emplace_back(Json::array());
+        for (const VisualMaterial& material : materials) {
+            const std::string image = material.texture.empty() ? "" : image_uri(material.texture);
+            rows.push_back({{"name", material.name},
+                            {"color", material.color},
+                            {"opacity", material.opacity},
+                            {"image", image},
+                            {"left_out", image.empty() ? material.texture : ""}});
+        }
+    }
     return list;
 }
 
@@ -111,6 +144,8 @@ std::string describe(const PageData& data, const PageSummary& summary) {
                        {"title", summary.title},
                        {"gravity", json_of(data.gravity())},
                        {"bodies", data.body_names()},
+                       {"visual_of_body", data.visual_numbers()},
+                       {"visuals", json_of_visuals(data)},
                        {"colliders", json_of_colliders(data)},
                        {"rows", json_of_rows(data)},
                        {"speed", json_of(data.fields()[0])},
@@ -179,6 +214,8 @@ void write_page(const std::filesystem::path& file, const PageData& data, const P
         out << describe(data, summary);
         upto("@frames@");
         out << base64(data.packed_frames());
+        upto("@visuals@");
+        out << base64(data.visuals().packed());
         upto("@three@");
         out << base64(packed_three_js());
         upto("@script@");

@@ -10,7 +10,9 @@
 #include "components/check.h"
 #include "engine/output/escape_markup.h"
 #include "engine/output/shape_picture.h"
+#include "engine/output/vtk/vtk_arrays.h"
 #include "engine/output/vtk/vtk_file.h"
+#include "engine/output/vtk/write_visuals.h"
 #include "engine/output/write_file.h"
 #include "skerry/error.h"
 #include "systems/dynamics/elements/element_energy.h"
@@ -21,49 +23,12 @@ namespace {
 constexpr std::uint8_t vtk_triangle = 5, vtk_tetra = 10;
 constexpr std::size_t least_digits = 4;  // frame numbers are padded with zeros to this number of digits
 constexpr std::pair<const char*, const char*> kinds[] = {
-    {"bodies", ".vtu"}, {"contacts", ".vtp"}, {"colliders", ".vtp"}, {"lines", ".vtp"}};
-
-void put_vector(auto& put, const Vec3& v) {
-    put(v.x());
-    put(v.y());
-    put(v.z());
-}
-
-/// Writes the six components of a symmetric tensor in VTK's order, which ParaView shows as XX, YY, ZZ, XY, YZ, XZ.
-void put_symmetric(auto& put, const Mat3& m) {
-    for (const auto& [row, column] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}) put(m(row, column));
-}
-
-/// Adds an array with one number of type T per row.
-template <class T>
-void scalars(VtkFile& file, std::string_view name, auto&& rows, auto&& value) {
-    file.array<T>(name, 1, std::size(rows), [&](auto put) {
-        for (const auto& row : rows) put(value(row));
-    });
-}
-
-void vectors(VtkFile& file, std::string_view name, auto&& rows, auto&& value) {
-    file.array<float>(name, 3, std::size(rows), [&](auto put) {
-        for (const auto& row : rows) put_vector(put, value(row));
-    });
-}
-
-/// Adds the array "offsets" for `count` cells with `nodes` nodes each. For each cell it contains the index after the
-/// cell's last node.
-void offsets(VtkFile& file, std::size_t count, Index nodes) {
-    file.array<std::int32_t>("offsets", 1, count, [&](auto put) {
-        for (std::size_t cell = 1; cell <= count; ++cell) put(static_cast<Index>(cell) * nodes);
-    });
-}
+    {"bodies", ".vtu"}, {"contacts", ".vtp"}, {"colliders", ".vtp"}, {"lines", ".vtp"}, {"visual", ".vtp"}};
 
 template <class Handle>
 Index number_of(const std::map<Handle, Index>& numbers, Handle handle) {
     const auto found = numbers.find(handle);
     return found == numbers.end() ? -1 : found->second;
-}
-
-std::string count_attribute(std::string_view name, std::size_t count) {
-    return "NumberOf" + std::string(name) + "=\"" + std::to_string(count) + "\" ";
 }
 
 }  // namespace
@@ -186,6 +151,7 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
         else if (!colliders_file_.empty())
             list(2, colliders_file_);
         list(3, frame_file("lines", ".vtp"));
+        list(4, frame_file("visual", ".vtp"));
     }
     // Later frames refer to the last file of colliders, until a collider moves away from its present pose.
     if (!colliders_file_.empty()) colliders_changed(now);
@@ -225,6 +191,11 @@ void VtkSeries::write_files(const Frame& frame) {
         const std::string lines = frame_file("lines", ".vtp");
         write_lines(frame, lines);
         entries_.push_back({frame.time, 3, lines});
+    }
+    if (std::ranges::any_of(frame.bodies, [](const BodyFrame& body) { return body.visual != nullptr; })) {
+        const std::string visual = frame_file("visual", ".vtp");
+        write_visuals(frame, {body_number_, body_names_, origin_}, folder_ / visual);
+        entries_.push_back({frame.time, 4, visual});
     }
     ++frame_count_;
 }

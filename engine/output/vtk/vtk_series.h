@@ -14,8 +14,9 @@ namespace skerry {
 /// True if `file_name` is the name of a file that a series called `name` may write.
 bool is_series_file(std::string_view file_name, std::string_view name);
 
-/// Writes up to four files for each frame: NAME_bodies_0000.vtu, NAME_contacts_0000.vtp, NAME_colliders_0000.vtp if a
-/// collider was added, removed or moved, and NAME_lines_0000.vtp if the series has had joints, ties, cables or springs.
+/// Writes up to five files for each frame: NAME_bodies_0000.vtu, NAME_contacts_0000.vtp, NAME_colliders_0000.vtp if a
+/// collider was added, removed or moved, NAME_lines_0000.vtp if the series has had joints, ties, cables or springs, and
+/// NAME_visual_0000.vtp if a body has a visual surface.
 /// The index NAME.pvd lists the files by time. Bodies, colliders and lines are numbered in the order of their first
 /// appearance, and their numbers never change. The first frame removes the files of an earlier series with the same
 /// name, and no other files. Throws SceneError if these files cannot be replaced. If a frame cannot be written

@@ -58,6 +58,7 @@ from ._settings import (
     TieKind,
 )
 from ._sweep import sweep
+from ._visual import VisualMaterial, VisualSurface
 from ._world import (
     Anchor,
     Attachment,
@@ -231,6 +232,8 @@ __all__ = [
     "TieProbe",
     "TieState",
     "VelocityProbe",
+    "VisualMaterial",
+    "VisualSurface",
     "VolumeProbe",
     "World",
     "WorldReport",

@@ -28,6 +28,7 @@ void bind_sets(WorldClass& type);
 void bind_springs(WorldClass& type);
 void bind_anchors(nb::module_& module);
 void bind_views(WorldClass& type);
+void bind_visuals(WorldClass& type);
 void bind_results(WorldClass& type);
 void bind_problem_watch(WorldClass& type);
 

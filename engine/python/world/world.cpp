@@ -109,6 +109,7 @@ void bind_world(nb::module_& module) {
     bind_sets(type);
     bind_springs(type);
     bind_views(type);
+    bind_visuals(type);
     bind_results(type);
     bind_problem_watch(type);
 }

@@ -114,13 +114,6 @@ void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wante
         model.nodes.velocity[n] += velocity + turn.cross(model.nodes.position[n] - center);
 }
 
-/// Shape of the mesh of a body, in the frame of the mesh [m].
-std::vector<Vec3> mesh_shape_of(const Model& model, std::size_t body) {
-    if (const std::vector<Vec3>& kept = model.body_records[body].mesh_shape; !kept.empty()) return kept;
-    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[body]);
-    return {rest.begin(), rest.end()};
-}
-
 /// Present shape of a body, in the frame of the mesh [m]. The list is empty if the body is not deformed.
 std::vector<Vec3> deformed_shape_of(const Model& model, std::size_t body, const RigidPose& pose,
                                     std::span<const Vec3> mesh_shape) {
@@ -161,7 +154,8 @@ std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     const BodyTable& bodies = model.bodies;
     const BodyRecord record = model.body_records[body];
     const RigidPose pose = pose_of_body(model, body);
-    const std::vector<Vec3> mesh_shape = mesh_shape_of(model, body);
+    const std::span<const Vec3> shape = model.mesh_shape(body);
+    const std::vector<Vec3> mesh_shape(shape.begin(), shape.end());  // the row of the body may move
     std::vector<Vec3> frozen;
     if (next == BodyDynamics::rigid) frozen = deformed_shape_of(model, body, pose, mesh_shape);
     if (!frozen.empty()) require_upright_shape(model, body, frozen);
@@ -187,6 +181,7 @@ std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     model.body_records[after].start = record.start;
     model.body_records[after].label = record.label;
     model.body_records[after].sets = record.sets;
+    model.body_records[after].visual = record.visual;
     try {
         validate_step(model, row, record.name);
     } catch (const SceneError&) {

@@ -32,6 +32,19 @@ void list_ragged(const std::string& path, Ragged<T>& rows, Archive& archive) {
     archive.column(path + "/item", rows.item);
 }
 
+void list_visuals(SavedVisuals& saved, Archive& archive) {
+    archive.column("visuals/of_body", saved.of_body);
+    list_ragged("visuals/nodes", saved.nodes, archive);
+    list_ragged("visuals/triangles", saved.triangles, archive);
+    list_ragged("visuals/texture_points", saved.texture_points, archive);
+    list_ragged("visuals/texture_corners", saved.texture_corners, archive);
+    list_ragged("visuals/material", saved.material, archive);
+    list_ragged("visuals/file", saved.file, archive);
+    list_ragged("visuals/color", saved.color, archive);
+    list_ragged("visuals/material_name", saved.material_name, archive);
+    list_ragged("visuals/texture", saved.texture, archive);
+}
+
 void list_records(SavedRows& saved, Archive& archive) {
     archive.column("meshes/of_body", saved.meshes.of_body);
     list_ragged("meshes/nodes", saved.meshes.nodes, archive);
@@ -57,6 +70,7 @@ void list_records(SavedRows& saved, Archive& archive) {
     list_ragged("sets/nodes", saved.sets.nodes, archive);
     list_ragged("sets/tetrahedra", saved.sets.tetrahedra, archive);
     list_ragged("sets/faces", saved.sets.faces, archive);
+    list_visuals(saved.visuals, archive);
     list_ragged("records/body_name", saved.body_name, archive);
     list_ragged("records/collider_name", saved.collider_name, archive);
     archive.column("records/shape_kind", saved.shape_kind);

@@ -14,10 +14,6 @@ namespace skerry {
 
 namespace {
 
-std::string text_of(std::span<const std::uint8_t> row) {
-    return {row.begin(), row.end()};
-}
-
 /// All data in which two meshes may differ. A mesh is stored only once if another mesh equals it in all these data.
 struct MeshParts {
     std::span<const Vec3> nodes;
@@ -112,23 +108,6 @@ Shape shape_of(ColliderShape kind, const std::array<Real, 6>& s, const SurfaceMe
             break;
     }
     return mesh;
-}
-
-void expect_rows(const SavedFile& file, const std::string& path, std::size_t found, std::size_t expected,
-                 const char* of) {
-    if (found != expected)
-        file.complain(path, std::to_string(found) + " rows", std::to_string(expected) + ", the number of " + of);
-}
-
-template <class T>
-void expect_ragged(const SavedFile& file, const std::string& path, const Ragged<T>& rows, std::size_t count,
-                   const char* of) {
-    expect_rows(file, path, rows.size(), count, of);
-    if (!rows.offset.empty())
-        expect_all_offsets(file, path + "/offset", rows.offset, rows.item.size());
-    else if (!rows.item.empty())
-        file.complain(path + "/offset", "no offsets for " + std::to_string(rows.item.size()) + " items",
-                      "offsets from 0 to the number of items");
 }
 
 /// Checks that a saved mesh is valid, so that it could be added to a world.
@@ -260,6 +239,7 @@ SavedRows rows_to_save(WorldState& world) {
         append_text(record.name, saved.body_name);
     }
     saved.sets = sets_to_save(model);
+    saved.visuals = visuals_to_save(model);
     for (const ColliderRecord& record : model.collider_records) {
         saved.shape_kind.push_back(static_cast<ColliderShape>(record.shape.index()));
         saved.shape_size.push_back(std::visit(SizeOf{}, record.shape));
@@ -375,6 +355,7 @@ void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
         for (const Index t : parts.covered_item) record.element_tetrahedra.item.push_back(t);
     }
     put_sets(saved.sets, file, model);
+    put_visuals(saved.visuals, file, model);
 
     expect_rows(file, "records/shape_kind", saved.shape_kind.size(), colliders, "colliders");
     expect_rows(file, "records/shape_size", saved.shape_size.size(), colliders, "colliders");

@@ -7,6 +7,7 @@
 #include "components/ragged.h"
 #include "engine/world/save/saved_file.h"
 #include "engine/world/save/saved_sets.h"
+#include "engine/world/save/saved_visuals.h"
 #include "engine/world/world_state.h"
 
 namespace skerry {
@@ -57,6 +58,7 @@ struct SavedRows {
     Ragged<Vec3> mesh_shape;                  // BodyRecord::mesh_shape [m]
     Ragged<Index> tetrahedron_material;       // BodyRecord::tetrahedron_material
     SavedSets sets;
+    SavedVisuals visuals;
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
     // names of the objects of each table that for_each_joining visits, by name of the table; empty: no name was given
     std::map<std::string, Ragged<std::uint8_t>> object_name;

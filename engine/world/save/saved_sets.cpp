@@ -5,24 +5,17 @@
 #include <utility>
 
 #include "engine/mesh/sets.h"
-#include "engine/world/save/checks.h"
 
 namespace skerry {
 
-namespace {
-
-void expect_set_rows(const SavedFile& file, const std::string& path, const auto& rows, std::size_t expected) {
-    expect_size(file, path + "/offset", rows.offset.size(), expected + 1);
-    expect_all_offsets(file, path + "/offset", rows.offset, rows.item.size());
+void expect_rows(const SavedFile& file, const std::string& path, std::size_t found, std::size_t expected,
+                 const char* of) {
+    if (found != expected)
+        file.complain(path, std::to_string(found) + " rows", std::to_string(expected) + ", the number of " + of);
 }
-
-}  // namespace
 
 SavedSets sets_to_save(const Model& model) {
     SavedSets saved;
-    for (Column<Index>* offset :
-         {&saved.label.offset, &saved.name.offset, &saved.nodes.offset, &saved.tetrahedra.offset, &saved.faces.offset})
-        offset->push_back(0);
     for (std::size_t b = 0; b < model.body_records.size(); ++b) {
         const BodyRecord& record = model.body_records[b];
         const std::vector<Index> label(record.label.begin(), record.label.end());
@@ -40,12 +33,12 @@ SavedSets sets_to_save(const Model& model) {
 
 void put_sets(const SavedSets& saved, const SavedFile& file, Model& model) {
     const std::size_t bodies = model.body_records.size(), sets = saved.body.size();
-    expect_set_rows(file, "records/label", saved.label, bodies);
+    expect_ragged(file, "records/label", saved.label, bodies, "bodies");
     expect_rows_of(file, "sets/body", saved.body, bodies);
-    expect_set_rows(file, "sets/name", saved.name, sets);
-    expect_set_rows(file, "sets/nodes", saved.nodes, sets);
-    expect_set_rows(file, "sets/tetrahedra", saved.tetrahedra, sets);
-    expect_set_rows(file, "sets/faces", saved.faces, sets);
+    expect_ragged(file, "sets/name", saved.name, sets, "sets");
+    expect_ragged(file, "sets/nodes", saved.nodes, sets, "sets");
+    expect_ragged(file, "sets/tetrahedra", saved.tetrahedra, sets, "sets");
+    expect_ragged(file, "sets/faces", saved.faces, sets, "sets");
     for (std::size_t b = 0; b < bodies; ++b) {
         BodyRecord& record = model.body_records[b];
         const std::span<const Index> label = saved.label[b];
@@ -57,7 +50,7 @@ void put_sets(const SavedSets& saved, const SavedFile& file, Model& model) {
     for (std::size_t s = 0; s < sets; ++s) {
         const Index body = saved.body[s];
         BodyRecord& record = model.body_records[static_cast<std::size_t>(body)];
-        const std::string name(saved.name[s].begin(), saved.name[s].end());
+        const std::string name = text_of(saved.name[s]);
         MeshSet set{.nodes = {saved.nodes[s].begin(), saved.nodes[s].end()},
                     .faces = {saved.faces[s].begin(), saved.faces[s].end()},
                     .tetrahedra = {saved.tetrahedra[s].begin(), saved.tetrahedra[s].end()}};

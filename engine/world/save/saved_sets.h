@@ -7,6 +7,7 @@
 #include <string>
 
 #include "components/ragged.h"
+#include "engine/world/save/checks.h"
 #include "engine/world/save/saved_file.h"
 #include "engine/world/state/model.h"
 
@@ -21,6 +22,25 @@ void append(std::span<const T> row, Ragged<T>& rows) {
 }
 inline void append_text(const std::string& text, Ragged<std::uint8_t>& rows) {
     append(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()), rows);
+}
+
+inline std::string text_of(std::span<const std::uint8_t> row) {
+    return {row.begin(), row.end()};
+}
+
+/// Checks the number of rows of a column, which is the number of the objects `of`.
+void expect_rows(const SavedFile& file, const std::string& path, std::size_t found, std::size_t expected,
+                 const char* of);
+/// Checks the offsets of a list of lists, and the number of its rows. Without rows, offsets may be missing.
+template <class T>
+void expect_ragged(const SavedFile& file, const std::string& path, const Ragged<T>& rows, std::size_t count,
+                   const char* of) {
+    expect_rows(file, path, rows.size(), count, of);
+    if (!rows.offset.empty())
+        expect_all_offsets(file, path + "/offset", rows.offset, rows.item.size());
+    else if (!rows.item.empty())
+        file.complain(path + "/offset", "no offsets for " + std::to_string(rows.item.size()) + " items",
+                      "offsets from 0 to the number of items");
 }
 
 struct SavedSets {

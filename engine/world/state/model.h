@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -49,6 +50,8 @@
 
 namespace skerry {
 
+struct BoundVisual;  // engine/mesh/visual/bound_visual.h
+
 /// Slot of the attachments that move mesh colliders. Users have no handles to these attachments.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;
 
@@ -70,6 +73,8 @@ struct BodyRecord {
     std::vector<Index> tetrahedron_material;
     std::vector<int> label{};               // Mesh::label
     std::map<std::string, MeshSet> sets{};  // sets by name, in local numbers
+    // Surface that is drawn in place of the body; nullptr if there is none. Bodies with the same mesh may share it.
+    std::shared_ptr<const BoundVisual> visual{};
     // Tetrahedra covered by each element, in the order of the lanes in the element blocks of the body. An unused lane
     // has no tetrahedra.
     Ragged<Index> element_tetrahedra;
@@ -257,6 +262,11 @@ struct Model {
 
     /// True if a body has exactly the given mesh (bitwise).
     bool has_mesh(std::size_t body, const RestMesh& mesh) const;
+    /// Node positions of the mesh of a body, in the frame of the mesh [m].
+    std::span<const Vec3> mesh_shape(std::size_t body) const {
+        if (const std::vector<Vec3>& kept = body_records[body].mesh_shape; !kept.empty()) return kept;
+        return rows_of(nodes.rest_position, bodies.nodes[body]);
+    }
     /// Searches the last few bodies before row `end` for a body with the given mesh. Returns the last such body, or
     /// no_index.
     Index body_of_mesh(std::size_t end, const RestMesh& mesh) const;

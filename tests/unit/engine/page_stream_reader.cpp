@@ -216,7 +216,84 @@ void read_lines(Bytes& in, ReadRun& run, LineTrack& track, ReadFrame& frame) {
     track = std::move(now);
 }
 
+Codes read_changes(Bytes& in, std::size_t count) {
+    Codes values(count);
+    std::int64_t last = 0;
+    for (std::int64_t& value : values) value = last += in.change();
+    return values;
+}
+
+std::vector<std::array<Index, 3>> read_corners(Bytes& in, std::size_t triangles) {
+    const Codes values = read_changes(in, 3 * triangles);
+    std::vector<std::array<Index, 3>> corners(triangles);
+    for (std::size_t i = 0; i < values.size(); ++i) corners[i / 3][i % 3] = static_cast<Index>(values[i]);
+    return corners;
+}
+
+ReadVisual read_visual(Bytes& in) {
+    constexpr Real part = 1.0 / 65536;
+    const auto size = [&] { return static_cast<std::size_t>(in.count()); };
+    const std::size_t nodes = size(), triangles = size(), points = size(), materials = size();
+    ReadVisual visual;
+    visual.node.resize(nodes);
+    visual.weight.resize(nodes);
+    visual.offset.resize(nodes);
+    visual.texture_points.resize(points);
+    const auto step = in.raw<double>();
+    const auto by_node = [&](auto&& put) {
+        const Codes values = read_changes(in, nodes);
+        for (std::size_t i = 0; i < nodes; ++i) put(i, values[i]);
+    };
+    for (std::size_t k = 0; k < 4; ++k)
+        by_node([&](std::size_t i, std::int64_t value) { visual.node[i][k] = static_cast<Index>(value); });
+    for (std::size_t k = 0; k < 3; ++k)
+        by_node([&](std::size_t i, std::int64_t value) { visual.weight[i][k] = part * static_cast<Real>(value); });
+    for (auto& weight : visual.weight) weight[3] = 1 - weight[0] - weight[1] - weight[2];
+    for (Index axis = 0; axis < 3; ++axis)
+        by_node([&](std::size_t i, std::int64_t value) { visual.offset[i][axis] = step * static_cast<Real>(value); });
+    Index node = 0;
+    for (std::int64_t count = in.count(); count > 0; --count) {
+        Index term = node += static_cast<Index>(in.change());
+        auto& terms = visual.gradient[node];
+        terms.resize(size());
+        for (auto& [of, gradient] : terms) {
+            of = term += static_cast<Index>(in.change());
+            for (Index axis = 0; axis < 3; ++axis) gradient[axis] = in.raw<float>();
+        }
+    }
+    visual.triangles = read_corners(in, triangles);
+    for (std::size_t k = 0; k < 2 && points > 0; ++k) {
+        const Codes values = read_changes(in, points);
+        for (std::size_t i = 0; i < points; ++i) visual.texture_points[i][k] = part * static_cast<Real>(values[i]);
+    }
+    if (points > 0) visual.texture_corners = read_corners(in, triangles);
+    if (materials > 0)
+        for (const std::int64_t material : read_changes(in, triangles))
+            visual.material.push_back(static_cast<Index>(material));
+    return visual;
+}
+
 }  // namespace
+
+std::vector<Vec3> ReadVisual::positions(std::span<const Vec3> of_body) const {
+    std::vector<Vec3> positions(node.size(), Vec3::Zero());
+    for (std::size_t i = 0; i < node.size(); ++i)
+        for (std::size_t k = 0; k < 4; ++k) {
+            positions[i] += weight[i][k] * of_body[static_cast<std::size_t>(node[i][k])];
+            if (offset[i].isZero(0) || weight[i][k] == 0) continue;
+            for (const auto& [of, g] : gradient.at(node[i][k]))
+                positions[i] += weight[i][k] * g.dot(offset[i]) * of_body[static_cast<std::size_t>(of)];
+        }
+    return positions;
+}
+
+std::vector<ReadVisual> read_visuals(const std::string& packed) {
+    const std::string bytes = inflate_all(packed);
+    Bytes in(bytes);
+    std::vector<ReadVisual> visuals;
+    while (!in.ended()) visuals.push_back(read_visual(in));
+    return visuals;
+}
 
 std::string inflate_all(const std::string& packed) {
     z_stream z{};

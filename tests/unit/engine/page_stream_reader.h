@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "components/types.h"
@@ -55,6 +58,24 @@ struct ReadRun {
     Vec3 origin_of_lines;
     Real step_of_lines = 0;  // [m]
 };
+
+/// A visual surface and its binding.
+struct ReadVisual {
+    std::vector<std::array<Index, 4>> node;  // nodes of the body, by node of the surface
+    std::vector<std::array<Real, 4>> weight;
+    std::vector<Vec3> offset;  // [m]
+    std::vector<std::array<Index, 3>> triangles;
+    std::vector<std::array<Real, 2>> texture_points;
+    std::vector<std::array<Index, 3>> texture_corners;
+    std::vector<Index> material;
+    std::map<Index, std::vector<std::pair<Index, Vec3>>> gradient;  // terms, by node of the body
+
+    /// Positions of the nodes, given those of the body [m].
+    std::vector<Vec3> positions(std::span<const Vec3> of_body) const;
+};
+
+/// All visual surfaces of VisualStream::packed(). Throws std::runtime_error if bytes are missing.
+std::vector<ReadVisual> read_visuals(const std::string& packed);
 
 /// All frames of packed_frames(). Throws std::runtime_error if bytes are missing.
 ReadRun read_run(const std::string& packed);

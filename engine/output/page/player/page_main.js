@@ -26,7 +26,7 @@
   const run = JSON.parse(find("run").textContent);
   show_summary(find, run);
   show_stages(find("stages"), run.report);
-  const unpacked = { bodies: [], frames: [] };
+  const unpacked = { bodies: [], visuals: [], frames: [] };
   if (typeof DecompressionStream === "undefined") {
     fail("no DecompressionStream", "This browser cannot show the frames of this page, because it lacks "
       + "DecompressionStream. Use Chrome or Edge 80, Firefox 113, Safari 16.4, or a later version. The plots work "
@@ -37,20 +37,24 @@
     library.textContent = new TextDecoder().decode(await decode.inflate(find("three").textContent));
     document.head.append(library);
     Object.assign(unpacked, decode.frames(await decode.inflate(find("frames").textContent), run.bodies, field_names));
+    unpacked.visuals = decode.visuals(await decode.inflate(find("visuals").textContent));
+    unpacked.visuals.forEach((visual, i) => { visual.materials = run.visuals[i]; });
     notice(unpacked.frames.length ? "" : "No frames were recorded.");
   }
   find("three").remove();
   find("frames").remove();
+  find("visuals").remove();
 
   const { bodies: shapes, frames } = unpacked;
   const times = run.rows.time;
   const last = times.length - 1;
   const legend_top = Object.fromEntries(field_names.map((field) => [field, text.round_up(run[field].usual)]));
   const modes = { color: [...field_names, "body"], contacts: ["off", "motion", "region"] };
-  const switches = ["wire", "flat", "xray", "colliders", "lines", "labels", "follow", "light", "panel"];
+  const switches = ["wire", "flat", "xray", "visual", "colliders", "lines", "labels", "follow", "light", "panel"];
   const state = {
     frame: 0, time: 0, playing: false, rate: 1, color: "speed", contacts: "motion", wire: false, flat: false,
-    xray: false, colliders: true, lines: true, labels: false, follow: true, light: false, panel: true, recording: false,
+    xray: false, visual: true, colliders: true, lines: true, labels: false, follow: true, light: false, panel: true,
+    recording: false,
   };
 
   let scene = null;
@@ -58,7 +62,7 @@
     fail("no WebGL", "The three-dimensional view needs WebGL, which is not available in this browser. Enable hardware "
       + "acceleration or use another browser. The plots work without WebGL.");
   else if (!root.dataset.error)
-    scene = make_scene(find, run, shapes, frames, state, legend_top, (follow) => {
+    scene = make_scene(find, run, unpacked, state, legend_top, (follow) => {
       if (state.follow !== follow) set_pressed("follow", follow);
     });
   root.classList.toggle("plain", !scene);
@@ -212,8 +216,8 @@
     }
   }
 
-  // #frame=30&color=stress&contacts=region&wire=1&flat=1&xray=1&colliders=0&lines=0&labels=1&light=1&panel=0&play=1
-  // &rate=0.5&view=turn,lift,distance; in place of a frame, time=0.5 [s]
+  // #frame=30&color=stress&contacts=region&wire=1&flat=1&xray=1&visual=0&colliders=0&lines=0&labels=1&light=1&panel=0
+  // &play=1&rate=0.5&view=turn,lift,distance; in place of a frame, time=0.5 [s]
   function read_hash() {
     const asked = new URLSearchParams(location.hash.slice(1));
     for (const name in modes) if (asked.has(name)) set_mode(name, asked.get(name));
@@ -249,6 +253,7 @@
     [["x"], "transparent bodies", flip("xray")],
     [["w"], "show or hide the edges of surfaces", flip("wire")],
     [["f"], "flat shading", flip("flat")],
+    [["s"], "visual surfaces, or the simulated surfaces", flip("visual")],
     [["o"], "show or hide colliders", flip("colliders")],
     [["j"], "show or hide joints, ties, cables and springs", flip("lines")],
     [["v"], "initial view, which follows the bodies", () => set_switch("follow", true)],
@@ -298,6 +303,7 @@
   }
 
   find("scrub").max = Math.max(last, 0);
+  document.querySelector('[data-switch="visual"]').hidden = run.visuals.length === 0;
   document.querySelector('[data-switch="lines"]').hidden = run.lines.length === 0;
   for (const name in modes) set_mode(name, state[name]);
   for (const name of switches) set_switch(name, state[name]);

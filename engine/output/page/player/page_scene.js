@@ -2,14 +2,15 @@
 "use strict";
 
 // `state` is that of the page, read at each call. changed(follow): somebody moved the camera. Throws without WebGL.
-function make_scene(find, run, shapes, frames, state, legend_top, changed) {
+function make_scene(find, run, { bodies: shapes, visuals, frames }, state, legend_top, changed) {
   const root = document.documentElement;
   const gravity = new THREE.Vector3(...run.gravity);
   const up = gravity.length() > 0 ? gravity.clone().negate().normalize() : new THREE.Vector3(0, 0, 1);
   const box = measure_scene(run, shapes, frames);
   const view = make_view(find("view"), up, box);
   const largest = Object.fromEntries(field_names.map((field) => [field, run[field].max]));
-  const bodies = make_bodies(view.scene, shapes, frames, legend_top, largest);
+  const bodies = make_bodies(view.scene, shapes, run.visual_of_body.map((row) => visuals[row]), frames, legend_top,
+    largest, view.touch);
   const contacts = make_contacts(view.scene, Math.max(0, ...run.rows.contacts), box, run.force.usual || 1);
   const lines = make_lines(view.scene, run.lines, frames, box, run.line_force.usual || 1);
   const colliders = make_colliders(view.scene, run.colliders, box);
@@ -31,10 +32,8 @@ function make_scene(find, run, shapes, frames, state, legend_top, changed) {
   // Names are on a canvas of their own.
   const overlay = find("overlay"), overlay_pen = overlay.getContext("2d");
   function draw_names(pen, width, height, ratio) {
-    const named = bodies.list.filter((body) => body.group.visible).map((body) => {
-      body.box = body.box || new THREE.Box3().setFromArray(body.geometry.getAttribute("position").array);
-      return { name: body.name, box: body.box };
-    });
+    const named = bodies.list.filter((body) => body.group.visible)
+      .map((body) => ({ name: body.name, box: box_of_body(body) }));
     colliders.list.forEach((object, number) => {
       const { name, kind } = run.colliders[number];
       if (object.visible && name && kind !== "plane") named.push({ name, box: new THREE.Box3().setFromObject(object) });
@@ -89,7 +88,7 @@ function make_scene(find, run, shapes, frames, state, legend_top, changed) {
     // What is `blend` of the way from frame `number` to the next.
     show: (number, blend) => {
       const frame = frames[number], then = frames[Math.min(number + 1, frames.length - 1)];
-      root.dataset.bodies = bodies.show(frame, then, blend, state.color);
+      root.dataset.bodies = bodies.show(frame, then, blend, state.color, state.visual);
       contacts.show(frame.contacts, then.contacts, blend, state.contacts);
       root.dataset.lines = lines.show(frame.lines, then.lines, blend, state.lines);
       colliders.show(frame, then, blend, state.colliders);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/output/page/stream/pack.h"
+#include "engine/output/page/stream/visual_stream.h"
 
 namespace skerry {
 
@@ -38,12 +39,14 @@ Vec3 Lattice::point(const Code3& code) const {
 }
 
 BodyStream::BodyStream(const BodyFrame& body) {
-    std::vector<Index> vertex(body.position.size(), no_index);
+    std::vector<bool> used(body.position.size(), false);
     for (const auto& triangle : body.surface)
-        for (const Index node : triangle) vertex[static_cast<std::size_t>(node)] = 0;
+        for (const Index node : triangle) used[static_cast<std::size_t>(node)] = true;
+    if (body.visual) mark_nodes(*body.visual, used);
+    std::vector<Index> vertex(used.size(), no_index);
     std::vector<Vec3> points;
     for (std::size_t node = 0; node < vertex.size(); ++node)
-        if (vertex[node] != no_index) {
+        if (used[node]) {
             vertex[node] = static_cast<Index>(node_.size());
             node_.push_back(static_cast<Index>(node));
             points.push_back(body.position[node]);

@@ -36,8 +36,8 @@ struct Lattice {
     Vec3 point(const Code3& code) const;
 };
 
-/// Encoder of one body. It stores the surface nodes, which are the vertices on the page, and the codes of the last
-/// frame.
+/// Encoder of one body. It stores the vertices on the page, and the codes of the last frame. The vertices are the nodes
+/// of the surface, and the nodes on which the visual surface of the body depends.
 class BodyStream {
 public:
     explicit BodyStream(const BodyFrame& body);

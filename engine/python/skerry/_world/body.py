@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import MappingProxyType
@@ -22,9 +23,10 @@ from .._arrays import (
     require_shape,
     whole,
 )
-from .._errors import scene_error
+from .._errors import Doubt, scene_error
 from .._sets import MeshSet, set_arrays, set_of
 from .._settings import Dynamics, ElementKind, Motion, Pose
+from .._visual import VisualLike, VisualSurface, visual_of
 from .material import MaterialHandle
 from .objects import MovedObject, TouchingObject
 from .probes import PointProbe, point_probe
@@ -188,6 +190,28 @@ class Body(TouchingObject):
     def remove_set(self, name: str) -> None:
         """Removes a set. SceneError: the body has no such set; the message lists the sets that it has."""
         self._core.remove_set(self._handle, name_text(name, "name"))
+
+    @property
+    def visual(self) -> VisualSurface | None:
+        """Surface that is drawn in place of the body; None if there is none. Assignment takes a VisualSurface, a
+        SurfaceMesh, the path of a file, or None. Steps do not depend on it; it is saved and copied with the world. A
+        warning Doubt tells if its size or place does not fit the body."""
+        core = self._core.visual(self._handle)
+        return None if core is None else VisualSurface._of(core)
+
+    @visual.setter
+    def visual(self, surface: VisualLike | None) -> None:
+        if surface is None:
+            self._core.remove_visual(self._handle)
+            return
+        if warning := self._core.set_visual(self._handle, visual_of(surface)._core):
+            warnings.warn(f"{self._label}: {warning}", Doubt, stacklevel=2)
+
+    @property
+    def visual_positions(self) -> Reals:
+        """Present positions of the nodes of the visual surface, shape (n, 3) [m]; no rows without one."""
+        positions: Reals = self._core.visual_positions(self._handle)
+        return positions
 
     def faces(self, name: str) -> Indices:
         """Node numbers of the faces of a set, shape (k, 3): the listed faces, and those of the surface that belong to

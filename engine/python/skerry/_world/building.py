@@ -47,6 +47,7 @@ from .._settings import (
     SurfaceMesh,
     TieKind,
 )
+from .._visual import VisualLike, visual_of
 from .anchor import Anchor, anchor_label, core_anchor
 from .body import Attachment, Body, Indices
 from .cable import Cable, drive_tables
@@ -149,6 +150,7 @@ class Building(CavityBuilding):
         inertia: ArrayLike | None = None,
         collision_group: int = 1,
         collision_mask: int = 0xFFFFFFFF,
+        visual: VisualLike | None = None,
         name: str | None = None,
     ) -> Body:
         """Adds a body and returns it.
@@ -162,12 +164,13 @@ class Building(CavityBuilding):
         elements. self_contact: True: the body can touch itself. contact_distance: default 2 % of the mean edge length
         of the surface [m]. mass: of a rigid body [kg], instead of that by density. center_of_mass (3,) [m] and inertia
         (3, 3) about it [kg m^2]: both in the frame of the mesh; they require the mass, which alone scales the inertia
-        of the shape. collision_group, collision_mask: see Body.set_collision_groups(). name: unique in the world,
-        default "body N".
+        of the shape. collision_group, collision_mask: see Body.set_collision_groups(). visual: see Body.visual. name:
+        unique in the world, default "body N".
 
         SceneError: a value is out of range, or a body has this name. BufferError: arrays of views() are in use. Ctrl-C
         raises KeyboardInterrupt at the end of the call, when the body is already added."""
         name = self._new_name(name, "body", self.bodies)
+        surface = None if visual is None else visual_of(visual)
         given = Arguments(
             of=f"body '{name}'",
             position=vector(position, "position"),
@@ -198,7 +201,14 @@ class Building(CavityBuilding):
             handle = self._core.add_body(mesh._core, self._material(material), by_label, by_set, given)
         else:
             raise TypeError(f"mesh: found {mesh!r}, expected a Mesh, SurfaceMesh, Sphere, Capsule or Cylinder")
-        return Body(self._self, handle, given.name)
+        body = Body(self._self, handle, given.name)
+        if surface is not None:
+            try:
+                body.visual = surface
+            except Exception:
+                body.remove()
+                raise
+        return body
 
     def add_collider(
         self,

@@ -59,6 +59,48 @@ const decode = (() => {
     };
   }
 
+  // Visual surfaces as visual_stream.h packs them, with node numbers of the bodies. No texture: index -1.
+  function visuals(data) {
+    const take = reader(data), out = [], weight_steps = 65536;
+    const list = (Type, count) => {
+      let last = 0;
+      return Type.from({ length: count }, () => (last += take.change()));
+    };
+    while (!take.ended()) {
+      const [nodes, triangles, points, materials] = times(4, take.count), step = take.f64();
+      const follows = times(4, () => list(Uint32Array, nodes)), weights = times(3, () => list(Int32Array, nodes));
+      const offsets = times(3, () => list(Int32Array, nodes)), visual = { nodes, gradients: [] };
+      visual.node = new Uint32Array(4 * nodes);
+      visual.weight = new Float32Array(4 * nodes);
+      visual.offset = new Float32Array(3 * nodes);
+      for (let i = 0; i < nodes; ++i) {
+        let rest = weight_steps;
+        for (let k = 0; k < 4; ++k) {
+          const weight = k < 3 ? weights[k][i] : rest;
+          rest -= weight;
+          visual.node[4 * i + k] = follows[k][i];
+          visual.weight[4 * i + k] = weight / weight_steps;
+        }
+        for (let axis = 0; axis < 3; ++axis) visual.offset[3 * i + axis] = step * offsets[axis][i];
+      }
+      let node = 0;
+      for (let count = take.count(); count > 0; --count) {
+        node += take.change();
+        let term = node;
+        visual.gradients.push({ node, terms: times(take.count(), () =>
+          ({ node: (term += take.change()), gradient: times(3, take.f32) })) });
+      }
+      visual.triangles = list(Uint32Array, 3 * triangles);
+      if (points > 0) {
+        visual.texture_points = times(2, () => Float32Array.from(list(Int32Array, points), (x) => x / weight_steps));
+        visual.texture_corners = list(Int32Array, 3 * triangles);
+      }
+      if (materials > 0) visual.material = list(Int32Array, triangles);
+      out.push(visual);
+    }
+    return out;
+  }
+
   // Codes of the positions, from the least of each axis on: base[3] and what is added to it.
   function positions(take, body) {
     const { vertices, now, before } = body, base = [0, 0, 0], top = [0, 0, 0];
@@ -209,5 +251,5 @@ const decode = (() => {
     return { bodies, frames: out };
   }
 
-  return { words, floats, inflate, frames };
+  return { words, floats, inflate, frames, visuals };
 })();

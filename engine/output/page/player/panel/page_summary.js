@@ -40,6 +40,8 @@ function show_summary(find, run) {
   }
   for (const [name, value] of items) add(name, value);
   if (r.self_crossings.length === 0) add("Self-crossings", "none found");
+  const left_out = new Set(run.visuals.flat().map((material) => material.left_out).filter(Boolean));
+  for (const file of left_out) add_wide("Texture that is not part of the page", file);
   for (const message of r.self_crossings) add_wide("Self-crossing", message, "warning");
   const code = document.createElement("code");
   code.textContent = r.state_hash;

@@ -33,7 +33,8 @@ function show_tip(tip, host, place, { hit, values, body, color, contact, joining
     const shown = [...field_names].sort((a, b) => (b === color) - (a === color));
     for (const field of shown)
       line(fields[field].lower + " " + fields[field].format(values[field].value, values[field].error));
-    line("triangle " + hit.triangle + ", node " + body.shape.node[hit.vertices[nearest]]);
+    line((body.drawn.is_visual ? "visual triangle " : "triangle ") + hit.triangle + ", node "
+      + body.shape.node[hit.vertices[nearest]]);
     line("at " + hit.point.toArray().map((x) => +x.toPrecision(4)).join(", ") + " m");
   }
   // Beside the pointer, on the side where there is room.

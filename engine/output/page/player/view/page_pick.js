@@ -2,16 +2,16 @@
 "use strict";
 
 // The nearest triangle that a ray (origin, unit direction) meets of the bodies shown: {distance, point, body, triangle,
-// vertices[3], weights[3]}, vertices of the body's surface; null if it meets none.
+// vertices, weights}, vertices of the body on which values at the point depend; null if it meets none.
 function pick_body(bodies, origin, direction) {
   const ray = new THREE.Ray(origin, direction), hit = new THREE.Vector3();
   const corners = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()];
   let best = null;
   bodies.forEach((body, number) => {
     if (!body.group.visible) return;
-    const position = body.geometry.getAttribute("position"), index = body.geometry.getIndex().array;
-    body.box = body.box || new THREE.Box3().setFromArray(position.array);
-    if (!ray.intersectsBox(body.box)) return;
+    const { geometry, support } = body.drawn;
+    const position = geometry.getAttribute("position"), index = geometry.getIndex().array;
+    if (!ray.intersectsBox(box_of_body(body))) return;
     for (let t = 0; t < index.length; t += 3) {
       corners.forEach((corner, k) => corner.fromArray(position.array, 3 * index[t + k]));
       if (!ray.intersectTriangle(...corners, false, hit)) continue;
@@ -19,11 +19,19 @@ function pick_body(bodies, origin, direction) {
       if (best && best.distance <= distance) continue;
       const weights = new THREE.Vector3();
       THREE.Triangle.getBarycoord(hit, ...corners, weights);
-      best = { distance, point: hit.clone(), body: number, triangle: t / 3, weights: weights.toArray(),
-        vertices: [0, 1, 2].map((k) => body.source[index[t + k]]) };
+      const depends = weights.toArray().flatMap((share, k) =>
+        support(index[t + k]).map(({ vertex, weight }) => ({ vertex, weight: share * weight })));
+      best = { distance, point: hit.clone(), body: number, triangle: t / 3,
+        weights: depends.map(({ weight }) => weight), vertices: depends.map(({ vertex }) => vertex) };
     }
   });
   return best;
+}
+
+// Box around the drawn surface of a body.
+function box_of_body({ drawn }) {
+  drawn.box = drawn.box || new THREE.Box3().setFromArray(drawn.geometry.getAttribute("position").array);
+  return drawn.box;
 }
 
 // The row of make_lines().shown whose segment is nearest to a place of the picture (pixels), within `reach` of it; -1

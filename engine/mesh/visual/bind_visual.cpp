@@ -1,0 +1,211 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "engine/mesh/repair/triangle_tree.h"
+#include "engine/mesh/visual/bound_visual.h"
+#include "engine/world/complaint.h"
+#include "systems/collision/build_surface.h"
+#include "systems/collision/tree/box.h"
+#include "systems/collision/tree/box_tree.h"
+
+namespace skerry {
+
+namespace {
+
+/// Finds the tetrahedron around a point, and the nearest point of the boundary.
+class RestShape {
+public:
+    /// `boundary`: boundary of the tetrahedra, with at least one triangle.
+    RestShape(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
+              const SurfaceMesh& boundary)
+        : nodes_(nodes), tetrahedra_(tetrahedra), boundary_(boundary), tree_(boundary) {
+        std::vector<Aabb> boxes;
+        for (const std::array<Index, 4>& corners : tetrahedra) {
+            boxes.push_back(empty_box());
+            for (const Index n : corners) grow(boxes.back(), nodes[static_cast<std::size_t>(n)]);
+        }
+        boxes_ = BoxTree(boxes);
+    }
+
+    MaterialPoint nearest(const Vec3& place) const {
+        // Tolerance for rounding errors of barycentric coordinates, so that no point lies between two tetrahedra.
+        constexpr Real rounding = 1e-9;
+        MaterialPoint inside;
+        Real best = -rounding;
+        boxes_.for_each([&](const Aabb& box) { return distance_squared(box, place) <= 0; },
+                        [&](Index t) {
+                            const MaterialPoint point =
+                                point_of_tetrahedron(nodes_, tetrahedra_[static_cast<std::size_t>(t)], place);
+                            const Real least = std::ranges::min(point.weight);
+                            if (!(least > best)) return;
+                            best = least;
+                            inside = point;
+                        });
+        if (best > -rounding) return inside;
+        mesh::NearestTriangle found = tree_.nearest(place);
+        if (found.triangle == no_index) found = {0, {1, 0, 0}, infinity};  // squares of distances overflow
+        const auto& [a, b, c] = boundary_.triangles[static_cast<std::size_t>(found.triangle)];
+        return {{a, b, c, a}, {found.weight[0], found.weight[1], found.weight[2], 0}};
+    }
+
+private:
+    std::span<const Vec3> nodes_;
+    std::span<const std::array<Index, 4>> tetrahedra_;
+    const SurfaceMesh& boundary_;
+    mesh::TriangleTree tree_;
+    BoxTree boxes_;
+};
+
+SurfaceMesh boundary_of(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra) {
+    SurfaceMesh surface{.nodes = {nodes.begin(), nodes.end()}, .triangles = {}};
+    for (const BoundaryTriangle& triangle : boundary_triangles(tetrahedra)) surface.triangles.push_back(triangle.node);
+    return surface;
+}
+
+Vec3 position_of(const MaterialPoint& point, std::span<const Vec3> nodes) {
+    Vec3 place = Vec3::Zero();
+    for (std::size_t k = 0; k < 4; ++k) place += point.weight[k] * nodes[static_cast<std::size_t>(point.node[k])];
+    return place;
+}
+
+/// Terms of the deformation gradients of the nodes in `wanted`. The gradient of a tetrahedron, weighted by its volume,
+/// is the sum over its corners of x a^T / 3, where a is the area vector of the opposite face, pointing inwards.
+Ragged<GradientTerm> gradients_of(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
+                                  const std::vector<bool>& wanted) {
+    std::vector<std::vector<GradientTerm>> terms(nodes.size());
+    std::vector<Real> volume(nodes.size(), 0);
+    for (const std::array<Index, 4>& corners : tetrahedra) {
+        const auto at = [&](std::size_t k) -> const Vec3& { return nodes[static_cast<std::size_t>(corners[k])]; };
+        const Vec3 u = at(1) - at(0), v = at(2) - at(0), w = at(3) - at(0);
+        std::array<Vec3, 4> area{Vec3::Zero(), v.cross(w) / 2, w.cross(u) / 2, u.cross(v) / 2};
+        area[0] = -(area[1] + area[2] + area[3]);
+        for (const Index corner : corners) {
+            const auto n = static_cast<std::size_t>(corner);
+            if (!wanted[n]) continue;
+            volume[n] += u.dot(v.cross(w)) / 6;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const auto known = std::ranges::find(terms[n], corners[k], &GradientTerm::node);
+                if (known != terms[n].end())
+                    known->gradient += area[k] / 3;
+                else
+                    terms[n].push_back({corners[k], area[k] / 3});
+            }
+        }
+    }
+    Ragged<GradientTerm> gradients;
+    gradients.offset.push_back(0);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        for (const GradientTerm& term : terms[n]) gradients.item.push_back({term.node, term.gradient / volume[n]});
+        gradients.offset.push_back(static_cast<Index>(gradients.item.size()));
+    }
+    return gradients;
+}
+
+/// Largest extent of a set of points along an axis [m].
+Real extent_of(std::span<const Vec3> points) {
+    Aabb box = empty_box();
+    for (const Vec3& point : points) grow(box, point);
+    return points.empty() ? 0 : (box.upper - box.lower).maxCoeff();
+}
+
+/// Describes a fit that suggests wrong units or a wrong position. `edge`: mean edge length of the body [m].
+std::string warning_of(const BoundVisual& visual, std::span<const Vec3> nodes, Real edge) {
+    // Surfaces beside a coarse mesh are at most about one edge outside.
+    constexpr Real most_edges = 3;
+    // The same object in two units differs by at least a factor of 10.
+    constexpr Real most_ratio = 5;
+    const Real ratio = extent_of(visual.surface.nodes) / extent_of(nodes);
+    if (ratio > most_ratio || ratio < 1 / most_ratio)
+        return "the visual surface is " + short_text(ratio) +
+               " times as large as the body; check the units of both, and its \"scale\"";
+    if (visual.fit.farthest > most_edges * edge)
+        return "nodes of the visual surface are up to " + short_text(visual.fit.farthest) +
+               " m outside of the body, whose surface has a mean edge length of " + short_text(edge) +
+               " m; check the position and the units of the surface";
+    return {};
+}
+
+Real mean_edge_of(const SurfaceMesh& surface) {
+    Real sum = 0;
+    for (const std::array<Index, 3>& triangle : surface.triangles)
+        for (std::size_t k = 0; k < 3; ++k)
+            sum += (surface.nodes[static_cast<std::size_t>(triangle[k])] -
+                    surface.nodes[static_cast<std::size_t>(triangle[(k + 1) % 3])])
+                       .norm();
+    return sum / static_cast<Real>(3 * surface.triangles.size());
+}
+
+/// Binds all nodes to one tetrahedron, whose corners are nodes of a rigid body.
+void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes) {
+    const std::array<Index, 4> corners = point_of_solid(nodes, nodes[0]).node;
+    for (const Vec3& place : visual.surface.nodes) visual.point.push_back(point_of_tetrahedron(nodes, corners, place));
+    visual.fit.warning = warning_of(visual, nodes, infinity);
+}
+
+}  // namespace
+
+BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
+                        std::span<const std::array<Index, 4>> tetrahedra) {
+    BoundVisual visual{.surface = std::move(surface), .fit = {}, .point = {}, .offset = {}, .gradient = {}};
+    visual.point.reserve(visual.surface.nodes.size());
+    const SurfaceMesh boundary = boundary_of(nodes, tetrahedra);
+    if (boundary.triangles.empty()) {
+        bind_to_solid(visual, nodes);
+        return visual;
+    }
+    const RestShape shape(nodes, tetrahedra, boundary);
+    std::vector<bool> wanted(nodes.size(), false);
+    visual.offset.reserve(visual.surface.nodes.size());
+    for (const Vec3& place : visual.surface.nodes) {
+        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place));
+        // The nearest point of a node inside is the node itself, up to rounding.
+        const bool is_inside = point.node[3] != point.node[0];
+        visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(place - position_of(point, nodes)));
+        const Real distance = visual.offset.back().norm();
+        if (distance == 0) continue;
+        ++visual.fit.outside;
+        visual.fit.farthest = std::max(visual.fit.farthest, distance);
+        for (const Index n : point.node) wanted[static_cast<std::size_t>(n)] = true;
+    }
+    visual.gradient = gradients_of(nodes, tetrahedra, wanted);
+    visual.fit.warning = warning_of(visual, nodes, mean_edge_of(boundary));
+    return visual;
+}
+
+VisualPoints split_at_seams(const VisualSurface& surface) {
+    VisualPoints points;
+    std::map<std::array<Index, 2>, Index> known;  // points by node and texture point
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        std::array<Index, 3>& corners = points.triangles.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index node = surface.triangles[t][k];
+            const Index texture = surface.texture_corners.empty() ? no_index : surface.texture_corners[t][k];
+            const auto [place, is_new] = known.try_emplace({node, texture}, static_cast<Index>(points.node.size()));
+            corners[k] = place->second;
+            if (!is_new) continue;
+            points.node.push_back(node);
+            points.texture_point.push_back(texture);
+        }
+    }
+    return points;
+}
+
+std::vector<Vec3> visual_positions(const BoundVisual& visual, std::span<const Vec3> of_body) {
+    std::vector<Vec3> positions = visual_values(visual, of_body);
+    if (visual.fit.outside == 0) return positions;
+    std::vector<Mat3> gradient(of_body.size(), Mat3::Zero());
+    for (std::size_t n = 0; n < gradient.size(); ++n)
+        for (const GradientTerm& term : visual.gradient[n])
+            gradient[n] += of_body[static_cast<std::size_t>(term.node)] * term.gradient.transpose();
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const MaterialPoint& point = visual.point[i];
+        if (visual.offset[i].isZero(0)) continue;
+        for (std::size_t k = 0; k < 3; ++k)
+            positions[i] += point.weight[k] * (gradient[static_cast<std::size_t>(point.node[k])] * visual.offset[i]);
+    }
+    return positions;
+}
+
+}  // namespace skerry

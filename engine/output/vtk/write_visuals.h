@@ -1,0 +1,24 @@
+// Writes the visual surfaces of one frame as a VTK file.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/output/frame.h"
+
+namespace skerry {
+
+/// Numbers and names of bodies, and the node positions from which displacements are measured [m].
+struct SeriesBodies {
+    const std::map<BodyHandle, Index>& number;
+    std::span<const std::string> names;
+    const std::map<BodyHandle, std::vector<Vec3>>& origin;
+};
+
+/// A node at which texture coordinates jump becomes one point for each of its texture points.
+void write_visuals(const Frame& frame, const SeriesBodies& bodies, const std::filesystem::path& file);
+
+}  // namespace skerry
