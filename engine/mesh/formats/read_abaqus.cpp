@@ -115,8 +115,9 @@ private:
         for (const AbaqusBlock& block : blocks_) {
             if (block.keyword == "PART") {
                 const std::string name = block.value("NAME");
-                part_order.push_back(in_lower_case(name));
-                open = &parts[part_order.back()];
+                const auto [place, added] = parts.try_emplace(in_lower_case(name));
+                if (added) part_order.push_back(place->first);
+                open = &place->second;
                 open->prefix = name + ".";
             } else if (block.keyword == "INSTANCE") {
                 const auto part = parts.find(in_lower_case(block.value("PART")));
@@ -143,10 +144,8 @@ private:
     void read_scope(const Instance& instance) {
         const std::string key = in_lower_case(instance.prefix);
         const auto [place, added] = scopes_.try_emplace(key);
-        if (!added) {
-            go_to_keyword(reader_, instance.pose != nullptr ? *instance.pose : *instance.blocks.front());
-            reader_.complain("NAME", "a second part or instance " + in_quotes(instance.prefix), "different names");
-        }
+        if (instance.pose != nullptr) go_to_keyword(reader_, *instance.pose);
+        if (!added) reader_.complain("NAME", "a second instance " + in_quotes(instance.prefix), "different names");
         AbaqusScope& scope = place->second;
         scope.prefix = instance.prefix;
         scope.first_node = mesh_.nodes.size();
@@ -155,6 +154,9 @@ private:
                 if (block->keyword == keyword) read(*block);
         };
         for_each("NODE", [&](const AbaqusBlock& block) { read_nodes(block, scope); });
+        if (mesh_.nodes.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max() / 4))
+            reader_.complain({}, std::to_string(mesh_.nodes.size()) + " nodes in all instances",
+                             "at most " + std::to_string(std::numeric_limits<Index>::max() / 4));
         if (instance.pose != nullptr) move_nodes(*instance.pose, scope);
         for_each("ELEMENT", [&](const AbaqusBlock& block) { read_elements(block, scope); });
         for_each("ELSET", [&](const AbaqusBlock& block) { read_set(block, element_sets_, scope); });

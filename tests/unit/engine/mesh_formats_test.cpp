@@ -319,12 +319,14 @@ TEST_CASE("a bad Abaqus file is refused with the place and the reason", "[unit]"
     refused("instance=right", "instance=middle", "INSTANCE: found \"middle\", expected the name of an instance");
     refused("10., 0., 0.\n", "10., 0.\n", "*INSTANCE, line 38: found 2 numbers, expected 3 numbers of a translation");
     refused("10., 0., 1., 90.", "10., 0., 0., 90.", "motion: found the same point twice");
-    refused("name=right", "name=left", "found a second part or instance \"left.\"");
+    refused("name=right", "name=left", "*INSTANCE, line 37: NAME: found a second instance \"left.\"");
     refused("*Heading", "*Include, input=mesh.inp", "*INCLUDE, line 1: found the keyword *INCLUDE");
     refused("*NODE,", "*Node, input=nodes.txt,", "*NODE, line 4: found the parameter INPUT");
     refused("*NODE,", "*Node, system=C,", "SYSTEM: found \"C\", expected R");
     CHECK_THAT(refusal_of_mesh("a.inp", "[TITLE]\n"), Contains("line 1: found \"[TITLE]\", expected a keyword line"));
     CHECK_THAT(refusal_of_mesh("a.inp", ""), Contains("found no nodes"));
+    CHECK_THAT(refusal_of_mesh("a.inp", "*PART, NAME=A\n*END PART\n*PART, NAME=A\n*END PART\n"),
+               Contains("found no nodes"));
 }
 
 }  // namespace skerry::test::mesh_formats_test
