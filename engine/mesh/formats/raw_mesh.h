@@ -37,7 +37,7 @@ struct RawMesh {
     std::size_t curved_triangles = 0;                   // number of triangles of third or higher order
     std::map<std::string, MeshSet> sets;                // faces are the corners of triangles of any order
     std::map<std::string, std::vector<Vec3>> vectors;   // of the tetrahedra
-    VisualSurface visual;  // of an .obj file: texture coordinates, names of materials, and both by triangle
+    VisualSurface visual;  // of an .obj or .ply file: texture coordinates, names of materials, and both by triangle
     std::vector<std::string> material_files;  // of an .obj file: names of its .mtl files
     // number of ignored elements of each kind, for example "hexahedra"
     std::map<std::string, std::size_t> others;
@@ -89,9 +89,9 @@ RawMesh read_tetgen(const std::string& path);
 RawMesh read_abaqus(FileReader& reader);
 RawMesh read_medit(FileReader& reader);  // reads Medit files .mesh and .meshb
 RawMesh read_obj(FileReader& reader);
-RawMesh read_ply(FileReader& reader);
 /// Reads a Wavefront .mtl file. Paths of textures are relative to the folder of the file.
 std::vector<VisualMaterial> read_mtl(FileReader& reader);
+RawMesh read_ply(FileReader& reader);
 RawMesh read_stl(FileReader& reader);
 
 }  // namespace skerry::mesh

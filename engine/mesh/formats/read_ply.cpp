@@ -5,7 +5,8 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
-// Reader of PLY files, text and binary. It reads the properties x, y and z of the element "vertex", and the list
+// Reader of PLY files, text and binary. It reads the properties x, y and z of the element "vertex",
+// its texture coordinates, and the list
 // vertex_indices (or vertex_index) of the element "face". All other elements and properties are skipped. Format: G.
 // Turk, "The PLY Polygon File Format", 1994.
 namespace skerry::mesh {
@@ -30,6 +31,7 @@ public:
     RawMesh read() {
         read_header();
         for (const PlyElement& element : elements_) read_element(element);
+        if (!mesh_.visual.texture_points.empty()) mesh_.visual.texture_corners = mesh_.triangles;
         reader_.set_section({});
         return std::move(mesh_);
     }
@@ -103,22 +105,37 @@ private:
             bytes += binary_ ? (property.count_type ? *property.count_type : property.type).size : 2;
         const std::size_t rows = reader_.checked_count(element.count, std::max<std::size_t>(bytes, 1), "count");
         const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
+        const bool has_texture = std::ranges::any_of(
+            element.properties, [](const PlyProperty& property) { return texture_axis(property.name) < 2; });
         if (is_vertex) mesh_.nodes.reserve(rows);
         for (std::size_t row = 0; row < rows; ++row) {
             reader_.set_row("row", row + 1, rows);
             Vec3 position = Vec3::Zero();
+            std::array<Real, 2> texture{};
             for (const PlyProperty& property : element.properties) {
                 const auto axis = std::ranges::find(axes, property.name);
                 if (property.count_type)
                     read_list(property, is_face);
                 else if (is_vertex && axis != axes.end())
                     position[axis - axes.begin()] = reader_.finite(reader_.real(property.type, "position"), "position");
+                else if (is_vertex && texture_axis(property.name) < 2)
+                    texture[texture_axis(property.name)] =
+                        reader_.finite(reader_.real(property.type, "texture"), "texture");
                 else
                     reader_.real(property.type, "number");
             }
-            if (is_vertex) mesh_.nodes.push_back(position);
+            if (!is_vertex) continue;
+            mesh_.nodes.push_back(position);
+            if (has_texture) mesh_.visual.texture_points.push_back(texture);
         }
         if (element.name == "tristrips" && rows > 0) mesh_.others["triangle strips"] += rows;
+    }
+
+    /// 0 or 1 for the first or second texture coordinate of a vertex, 2 for other properties.
+    static std::size_t texture_axis(std::string_view name) {
+        constexpr std::array<std::string_view, 6> names{"s", "u", "texture_u", "t", "v", "texture_v"};
+        const auto found = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+        return found / 3;
     }
 
     void read_list(const PlyProperty& property, bool is_face) {

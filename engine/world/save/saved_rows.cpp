@@ -306,7 +306,7 @@ void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
         const Ragged<std::uint8_t>& names = saved.object_name.at(table);
         expect_ragged(file, std::string("names/") + table, names, rows.slot.size(), table);
         for (std::size_t row = 0; row < names.size(); ++row)
-            if (names[row].size() > 0) handles.names[handles.handle_of_slot(rows.slot[row])] = text_of(names[row]);
+            if (names[row].size() > 0) handles.names[handles.handle_of_slot(rows.slot[row])] = text_of_row(names[row]);
     });
     for (std::size_t m = 0; m < count; ++m) check_mesh(meshes, m, file);
 
@@ -332,7 +332,7 @@ void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
         check_cover(parts, static_cast<std::size_t>(model.bodies.blocks[b].size()) * element_lanes, body, file);
         std::ranges::copy(parts.nodes, model.nodes.rest_position.begin() + nodes.begin);
         BodyRecord& record = model.body_records.emplace_back();
-        record.name = text_of(saved.body_name[b]);
+        record.name = text_of_row(saved.body_name[b]);
         record.element = saved.body_element[b];
         record.requested_element = saved.body_asked[b];
         record.settled = saved.body_settled[b] != 0;
@@ -382,7 +382,7 @@ void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
                           "a valid shape");
         }
         model.collider_records.push_back(
-            {text_of(saved.collider_name[c]), std::move(shape), saved.collider_settled[c] != 0});
+            {text_of_row(saved.collider_name[c]), std::move(shape), saved.collider_settled[c] != 0});
     }
 }
 
@@ -416,7 +416,7 @@ void put_limits(const SavedRows& saved, const SavedFile& file, StepLimits& limit
     for (std::size_t i = 0; i < count; ++i)
         entries[i] = {.limit = saved.limit[i],
                       .body = handle_of<BodyHandle>(saved.limit_slot[i], saved.limit_generation[i], saved.world),
-                      .body_name = text_of(saved.limit_name[i]),
+                      .body_name = text_of_row(saved.limit_name[i]),
                       .steps = saved.limit_steps[i],
                       .tries = saved.limit_tries[i],
                       .seconds = saved.limit_seconds[i]};
@@ -439,8 +439,8 @@ void put_start(const SavedRows& saved, const SavedFile& file, RunRecord& record)
         record.start_overlaps.push_back({.first = handle_of<BodyHandle>(of[0], of[1], saved.world),
                                          .second = handle_of<BodyHandle>(of[2], of[3], saved.world),
                                          .collider = handle_of<ColliderHandle>(of[4], of[5], saved.world),
-                                         .first_name = text_of(start.first_name[i]),
-                                         .second_name = text_of(start.second_name[i]),
+                                         .first_name = text_of_row(start.first_name[i]),
+                                         .second_name = text_of_row(start.second_name[i]),
                                          .kind = start.kind[i],
                                          .depth = m[0],
                                          .direction = {m[1], m[2], m[3]},
@@ -449,7 +449,7 @@ void put_start(const SavedRows& saved, const SavedFile& file, RunRecord& record)
     }
     for (std::size_t i = 0; i < moves; ++i)
         record.start_moves.push_back({.body = handle_of<BodyHandle>(start.moved[i][0], start.moved[i][1], saved.world),
-                                      .name = text_of(start.moved_name[i]),
+                                      .name = text_of_row(start.moved_name[i]),
                                       .translation = start.translation[i]});
 }
 
@@ -463,7 +463,7 @@ void put_self_crossings(const SavedRows& saved, const SavedFile& file, RunRecord
     expect_rows(file, "run/self_crossings/places", found.places.size(), count, of);
     for (std::size_t i = 0; i < count; ++i)
         record.self_crossings.push_back({.body = handle_of<BodyHandle>(found.body[i][0], found.body[i][1], saved.world),
-                                         .name = text_of(found.name[i]),
+                                         .name = text_of_row(found.name[i]),
                                          .self_contact = found.self_contact[i] != 0,
                                          .first_time = found.time[i][0],
                                          .last_time = found.time[i][1],

@@ -50,7 +50,7 @@ void put_sets(const SavedSets& saved, const SavedFile& file, Model& model) {
     for (std::size_t s = 0; s < sets; ++s) {
         const Index body = saved.body[s];
         BodyRecord& record = model.body_records[static_cast<std::size_t>(body)];
-        const std::string name = text_of(saved.name[s]);
+        const std::string name = text_of_row(saved.name[s]);
         MeshSet set{.nodes = {saved.nodes[s].begin(), saved.nodes[s].end()},
                     .faces = {saved.faces[s].begin(), saved.faces[s].end()},
                     .tetrahedra = {saved.tetrahedra[s].begin(), saved.tetrahedra[s].end()}};

@@ -24,7 +24,7 @@ inline void append_text(const std::string& text, Ragged<std::uint8_t>& rows) {
     append(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()), rows);
 }
 
-inline std::string text_of(std::span<const std::uint8_t> row) {
+inline std::string text_of_row(std::span<const std::uint8_t> row) {
     return {row.begin(), row.end()};
 }
 

@@ -21,13 +21,13 @@ VisualSurface surface_of(const SavedVisuals& saved, std::size_t row, std::size_t
                           .texture_corners = list(saved.texture_corners),
                           .materials = {},
                           .material = list(saved.material),
-                          .file = text_of(saved.file[row])};
+                          .file = text_of_row(saved.file[row])};
     for (const std::array<Real, 4>& color : saved.color[row]) {
         const std::size_t material = first_material + surface.materials.size();
-        surface.materials.push_back({.name = text_of(saved.material_name[material]),
+        surface.materials.push_back({.name = text_of_row(saved.material_name[material]),
                                      .color = {color[0], color[1], color[2]},
                                      .opacity = color[3],
-                                     .texture = text_of(saved.texture[material])});
+                                     .texture = text_of_row(saved.texture[material])});
     }
     return surface;
 }

@@ -5,6 +5,7 @@
 
 #include "mesh_samples.h"
 #include "skerry/error.h"
+#include "skerry/visual.h"
 
 namespace skerry::test::mesh_read_test {
 
@@ -363,6 +364,18 @@ TEST_CASE("polygons of a PLY file become triangles, and a bad file is refused wi
     refused("property float z\n", "property half z\n", "type: found \"half\"");
     refused("element vertex", "element point", "found no element vertex");
     refused("element vertex 4\n", "", "line 3: found \"property float x\", expected format NAME 1.0");
+}
+
+TEST_CASE("a PLY file gives the texture coordinates of its vertices to a visual surface", "[unit]") {
+    const TemporaryFolder folder;
+    const VisualSurface visual = mesh::read_visual(folder.write(
+        "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float u\nproperty float v\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
+        "0 0 0 0 0.25\n1 0 0 1 0.25\n1 1 0 0.5 1\n3 2 1 0\n"));
+    CHECK(visual.texture_points == std::vector<std::array<Real, 2>>{{0, 0.25}, {1, 0.25}, {0.5, 1}});
+    CHECK(visual.texture_corners == std::vector<std::array<Index, 3>>{{2, 1, 0}});
+    CHECK(visual.triangles == visual.texture_corners);
 }
 
 TEST_CASE("polygons of a VTK file become triangles, its lines are passed over", "[unit]") {
