@@ -2,6 +2,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -58,7 +59,10 @@ Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings
     const FileLock lock(file);
     const std::filesystem::path cache = cache_file(file, settings);
     if (std::filesystem::exists(cache)) try {
-            return read(cache.string());
+            Mesh mesh = read(cache.string());
+            // A mesh without labels is written with the label 1 everywhere.
+            if (std::ranges::all_of(mesh.label, [](int label) { return label == 1; })) mesh.label.clear();
+            return mesh;
         } catch (const SceneError&) {
             // A damaged file is replaced below.
         }

@@ -52,6 +52,16 @@ RawMesh read_file(const std::string& path, bool surface) {
     return format->read(reader);
 }
 
+}  // namespace
+
+bool is_surface_format(const std::string& path) {
+    const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
+    const auto* const format = std::ranges::find(formats, extension, &Format::extension);
+    return format != formats.end() && format->surface_only;
+}
+
+namespace {
+
 /// Notes the elements with a volume that are not tetrahedra and therefore no part of the mesh.
 void note_left_out(RawMesh& mesh) {
     static constexpr std::array<std::string_view, 6> flat{"points",         "lines",           "quadrilaterals",

@@ -2,11 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <iostream>
 #include <optional>
 
+#include "engine/mesh/formats/raw_mesh.h"
 #include "engine/mesh/repair/surface_measures.h"
 #include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
@@ -251,13 +251,6 @@ int report_surface(const InspectOptions& options, const SurfaceMesh& surface) {
     return exit_ok;
 }
 
-/// True if the format of the file has no tetrahedra.
-bool is_surface_file(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return ending == ".obj" || ending == ".ply" || ending == ".stl";
-}
-
 /// Reads the surface of a file whose tetrahedra cannot be read. Returns nothing if the file has no surface either.
 std::optional<SurfaceMesh> surface_instead(const InspectOptions& options) {
     try {
@@ -279,7 +272,7 @@ int inspect_mesh(const InspectOptions& options) {
                   .hint = "omit the option, or give the scene"}
             .raise();
     const bool repairs = !options.repair.empty();  // only a mesh of tetrahedra can be repaired
-    if (!repairs && is_surface_file(options.file))
+    if (!repairs && mesh::is_surface_format(options.file.string()))
         return report_surface(options, mesh::read_surface(options.file.string()));
     std::optional<Mesh> mesh;
     std::vector<std::string> notes;

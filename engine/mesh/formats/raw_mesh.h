@@ -94,4 +94,7 @@ std::vector<VisualMaterial> read_mtl(FileReader& reader);
 RawMesh read_ply(FileReader& reader);
 RawMesh read_stl(FileReader& reader);
 
+/// True if files with the extension of this path have triangles but no tetrahedra (read.cpp).
+bool is_surface_format(const std::string& path);
+
 }  // namespace skerry::mesh

@@ -210,6 +210,7 @@ TEST_CASE("a surface of a scene is filled again only after a change of the surfa
         std::filesystem::remove(folder.path() / "runs");
         const Mesh mesh = mesh::fill_cached(file, settings);
         CHECK(mesh.tetrahedra.size() == 1);
+        CHECK(mesh.label.empty());
         std::ifstream runs(folder.path() / "runs");
         return std::distance(std::istream_iterator<std::string>(runs), std::istream_iterator<std::string>());
     };
