@@ -94,8 +94,10 @@ void print_text(const FillOptions& options, const mesh::FilledMesh& filled, cons
     if (filled.surface_volume && *filled.surface_volume > 0)
         volume += ", " + percent(std::abs(report.volume / *filled.surface_volume - 1)) + " from that of the surface";
     std::cout << summary_line("volume", volume);
+    const std::string merged =
+        filled.surface.merged > 0 ? " after " + grouped(filled.surface.merged) + " nodes were merged with others" : "";
     if (filled.exact)
-        std::cout << summary_line("distance", "0, the surface is unchanged");
+        std::cout << summary_line("distance", "0, the surface is unchanged" + merged);
     else
         std::cout << summary_line("distance", "from the surface to the mesh up to " +
                                                   with_unit(distance.from_first, "m") + ", mean " +

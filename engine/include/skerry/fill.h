@@ -48,9 +48,9 @@ struct SurfaceDistance {
 struct FilledMesh {
     Mesh mesh;
     std::string mesher;          // "Netgen", "fTetWild", or "fTetWild and Netgen"
-    bool exact = false;          // true if the new surface is the given surface, bitwise
+    bool exact = false;          // true if the new surface is SurfaceReport::cleaned, bitwise
     SurfaceReport surface;       // check of the given surface
-    SurfaceDistance distance{};  // from the given (first) to the new surface (second)
+    SurfaceDistance distance{};  // from SurfaceReport::cleaned (first) to the new surface (second)
     Real tolerance = 0;          // largest distance that was allowed [m]
     // Volume inside the given surface; empty if it is not closed or if its shells cross each other [m^3].
     std::optional<Real> surface_volume{};
@@ -61,11 +61,12 @@ struct FilledMesh {
 /// Receives a description of the current activity many times a second. An exception ends the filling.
 using FillProgress = std::function<void(const std::string&)>;
 
-/// Fills surfaces with tetrahedra. Nodes at equal positions are merged. Clean surfaces (closed manifolds that do not
-/// cross) are filled by Netgen, which keeps them bitwise, unless `edge` asks for other triangles. Other surfaces are
-/// filled by fTetWild (Hu et al., Fast tetrahedral meshing in the wild, 2020) within the tolerance: holes are closed,
-/// and crossing shells are united; repeated runs give slightly different meshes. Each mesher runs in its own process.
-/// Of several meshes the one with the longest stable step is returned (docs/decisions/0026-filling-surfaces.md).
+/// Fills surfaces with tetrahedra. Nodes are first merged as by check_surface. Clean surfaces (closed manifolds that do
+/// not cross) are filled by Netgen, which keeps them bitwise, unless `edge` asks for other triangles. Other surfaces
+/// are filled by fTetWild (Hu et al., Fast tetrahedral meshing in the wild, 2020) within the tolerance: holes are
+/// closed, and crossing shells are united; repeated runs give slightly different meshes. Each mesher runs in its own
+/// process. Of several meshes the one with the longest stable step is returned
+/// (docs/decisions/0026-filling-surfaces.md).
 ///
 /// If shells are nested, regions have the labels 1, 2, ..., beginning with the region of the largest shell. The faces
 /// of each shell are a set: with the name of the file if each file has one shell, otherwise shell_1, shell_2, ...
