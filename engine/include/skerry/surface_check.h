@@ -98,7 +98,7 @@ struct SurfaceReport {
         return nullptr;
     }
     /// True if `cleaned` bounds volumes and can be filled with tetrahedra without moving it: every edge has two
-    /// triangles, and no triangles cross or overlap.
+    /// triangles, no triangles cross or overlap, and there are no slivers.
     bool can_be_filled() const;
 };
 

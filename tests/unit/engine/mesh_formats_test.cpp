@@ -13,12 +13,6 @@ using Numbers = std::vector<Index>;
 
 namespace {
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const std::size_t at = text.find(from);
-    REQUIRE(at != std::string::npos);
-    return text.replace(at, from.size(), to);
-}
-
 /// Corners 1 to 4 of a tetrahedron, then the middles of the edges 12, 23, 31, 14, 24 and 34. The diagonal between the
 /// nodes 6 and 8 is the shortest.
 const std::vector<Vec3> second_order_nodes{{0, 0, 0},     {1, 0, 0},   {0, 1, 0},       {1, 1, 1},     {0.5, 0, 0},

@@ -29,12 +29,6 @@ Mesh one_tetrahedron() {
     return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const std::size_t at = text.find(from);
-    REQUIRE(at != std::string::npos);
-    return text.replace(at, from.size(), to);
-}
-
 bool is_surface_file(const std::string& name) {
     return name.ends_with(".obj") || name.ends_with(".ply") || name.ends_with(".stl");
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,13 @@
 namespace skerry::test {
 
 enum class Bytes { text, native, foreign };  // foreign: the other byte order
+
+/// Replaces the first `from` in a text. Throws std::invalid_argument if there is none.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    if (at == std::string::npos) throw std::invalid_argument("the text does not contain \"" + from + "\"");
+    return text.replace(at, from.size(), to);
+}
 
 /// Gmsh files that also contain a triangle, a line and a point, which readers of tetrahedra skip, and an unused node.
 std::string gmsh1_file(const Mesh& mesh);

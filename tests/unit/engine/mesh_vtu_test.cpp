@@ -27,12 +27,6 @@ std::string by_zlib(const std::string& bytes) {
     return packed;
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const std::size_t at = text.find(from);
-    REQUIRE(at != std::string::npos);
-    return text.replace(at, from.size(), to);
-}
-
 void expect_sample(const Mesh& found, bool wide) {
     const Mesh mesh = sample();
     CHECK(found.tetrahedra == mesh.tetrahedra);
