@@ -337,15 +337,15 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
         find_held_impulses(E,
                            C.transpose() * r + couplings(mobilities, of_equations, group.kept_impulse) * known_impulses,
                            group.kept_velocity);
-        const Eigen::MatrixXd less = C * (inverse_of(E) * C.transpose());
+        const Eigen::MatrixXd product = C * (inverse_of(E) * C.transpose());
+        const Eigen::MatrixXd less = (product + product.transpose()) / 2;  // symmetric without rounding errors
         const Eigen::VectorXd more = known * known_impulses + C * impulses_of(group.kept_velocity) + less * r;
         for (std::size_t i = 0; i < group.contacts.size(); ++i) {
             const auto row = static_cast<Index>(3 * i);
             problem.q[static_cast<std::size_t>(group.contacts[i])] += more.segment<3>(row);
             for (std::size_t j = 0; j < group.contacts.size(); ++j) {
                 const auto column = static_cast<Index>(3 * j);
-                const Mat3 block = (less.block<3, 3>(row, column) + less.block<3, 3>(column, row).transpose()) / 2;
-                parts.push_back({group.contacts[i], group.contacts[j], -block});
+                parts.push_back({group.contacts[i], group.contacts[j], -less.block<3, 3>(row, column)});
             }
         }
     }

@@ -105,7 +105,9 @@ struct KeptVelocities {
     // Positions of nodes and rigid bodies at the start of the step [m]. Stored only if there are rigid or implicit
     // bodies.
     Column<Vec3> position, center;
-    Column<Mat3> rotation;          // orientation of rigid bodies at the start of the step
+    // Orientations and principal axes of rigid bodies at the start of the step (RigidBodyTable). At large strain the
+    // axes of an implicit body change in the step.
+    Column<Mat3> rotation, axes;
     Column<Vec3> angular_momentum;  // angular momentum of rigid bodies at the start of the step [kg m^2/s]
     // Deformation velocities of implicit bodies [m/s]: after the kick (before contacts are solved), and at the start of
     // the step.

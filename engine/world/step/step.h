@@ -162,13 +162,14 @@ void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTab
 /// State of rigid bodies, and deformation velocities of implicit bodies, before contacts are solved.
 struct KeptFrames {
     std::span<const Vec3> center, angular_momentum;     // RigidBodyTable
-    std::span<const Mat3> rotation;                     // RigidBodyTable
+    std::span<const Mat3> rotation, axes;               // RigidBodyTable
     std::span<const Vec3> deforming, deforming_before;  // ImplicitNodeTable
 
     static KeptFrames bind(const Binder& binder, const RigidBodyTable& rigid, const ImplicitNodeTable& implicit) {
         return {.center = binder.read(rigid.center),
                 .angular_momentum = binder.read(rigid.angular_momentum),
                 .rotation = binder.read(rigid.rotation),
+                .axes = binder.read(rigid.axes),
                 .deforming = binder.read(implicit.velocity_next),
                 .deforming_before = binder.read(implicit.velocity)};
     }

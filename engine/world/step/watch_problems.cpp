@@ -54,6 +54,7 @@ void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> veloc
     copy(position, kept.position);
     copy(frames.center, kept.center);
     copy(frames.rotation, kept.rotation);
+    copy(frames.axes, kept.axes);
     copy(frames.angular_momentum, kept.angular_momentum);
     copy(frames.deforming, kept.deforming);
     copy(frames.deforming_before, kept.deforming_before);
@@ -74,6 +75,7 @@ void show_contact_problem(const WorldState& world, Real time) {
     inputs.rigid.center = kept.center;
     inputs.rigid.spins.angular_momentum = kept.angular_momentum;
     inputs.implicit.rotation = kept.rotation;
+    inputs.implicit.axes = kept.axes;
     inputs.implicit.velocity = kept.deforming;
     inputs.implicit.velocity_before = kept.deforming_before;
     const bool any_held = !std::ranges::all_of(model.attachments.held.span(), holds_completely);

@@ -338,4 +338,72 @@ TEST_CASE("joints, ties, rollers and cables are eliminated from problems, and th
     CHECK(worst < 1e-10);
 }
 
+namespace {
+
+/// A soft implicit body that slides on a plane below a rigid plate. A weld connects them, and the plate slides along a
+/// vertical joint.
+struct Padded {
+    World world;
+    std::vector<StepProblem> problems;
+    Real worst = 0;  // largest relative error of the impulses of a step
+
+    explicit Padded(Real modulus, Real friction = 0.5, bool is_welded = true) : world(settings()) {
+        const auto rubber = world.add_material({.young_modulus = modulus, .density = 500, .friction = friction});
+        world.add_collider(Plane{});
+        const Mesh block = mesh::box({0.2, 0.2, 0.1}, {2, 2, 1});
+        const BodyHandle pad = world.add_body(block, {.material = rubber,
+                                                      .position = {0, 0, 0.052},
+                                                      .velocity = {0.3, 0, -0.5},
+                                                      .contact_distance = 0.002,
+                                                      .dynamics = BodyDynamics::implicit_elastic});
+        if (is_welded) {
+            const BodyHandle plate =
+                world.add_body(mesh::box({0.2, 0.2, 0.02}, {1, 1, 1}),
+                               {.material = rubber, .position = {0, 0, 0.114}, .dynamics = BodyDynamics::rigid});
+            std::vector<Index> upper;
+            for (std::size_t n = 0; n < block.nodes.size(); ++n)
+                if (block.nodes[n].z() > 0.049) upper.push_back(static_cast<Index>(n));
+            Ties(world).add({.body = pad, .nodes = upper, .to_body = plate});
+            Joints(world).add({.kind = JointKind::slider, .first = plate, .point = {0, 0, 0.114}, .axis = {0, 0, 1}});
+        }
+        world.watch_contact_problems([this](const StepProblem& step) {
+            problems.push_back(step);
+            worst = std::max(worst, problem_error(step.problem, step.impulse).relative);
+        });
+    }
+    static Settings settings() {
+        Settings settings = Stack::exact();
+        settings.tolerance = 1e-13;
+        settings.step_size = 5e-3;
+        return settings;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("the impulses of a step at large strain solve its problem, with and without equations", "[unit][problem]") {
+    const bool is_welded = GENERATE(false, true);
+    const auto modulus = GENERATE(2e4, 1e6);  // [Pa]; large strain with the first
+    Padded padded(modulus, 0.5, is_welded);
+    const StepReport report = padded.world.advance(0.1);
+    REQUIRE(report.ok());
+    REQUIRE(report.unconverged == 0);
+    CHECK(padded.problems.size() > 15);
+    CHECK(padded.worst < 1e-10);
+}
+
+TEST_CASE("a problem with eliminated equations gives the velocities of other impulses", "[unit][problem]") {
+    const auto modulus = GENERATE(2e4, 1e6);  // [Pa]
+    // In the first step the worlds differ only in friction. So the impulses of one are other impulses for the other.
+    Padded rough(modulus, 0.5), smooth(modulus, 0.2);
+    REQUIRE(rough.world.advance(5e-3).unconverged == 0);
+    REQUIRE(smooth.world.advance(5e-3).unconverged == 0);
+    REQUIRE(rough.problems.size() == 1);
+    const StepProblem &of_rough = rough.problems[0], &of_smooth = smooth.problems[0];
+    const std::vector<Vec3> u = velocities(of_smooth.problem, of_smooth.impulse);
+    CHECK(distance(of_smooth.impulse, of_rough.impulse) > 0.1 * largest(of_rough.impulse));
+    CHECK(distance(velocities(of_rough.problem, of_rough.impulse), u) > 0.01 * largest(u));
+    CHECK(distance(velocities(of_rough.problem, of_smooth.impulse), u) < 1e-10 * largest(of_rough.problem.q));
+}
+
 }  // namespace skerry::test::problem_export_test

@@ -180,16 +180,19 @@ TEST_CASE("probes find their body and nodes", "[unit]") {
 
 TEST_CASE("probes of stress and volume are refused on rigid bodies", "[unit]") {
     const TemporaryFolder folder;
-    for (const char* const quantity : {"stress", "volume"}) {
-        const std::string scene = body_with(R"("dynamics": "rigid")");
-        const std::string probes =
-            R"(, "probes": [{"name": "p", "quantity": ")" + std::string(quantity) + R"(", "body": "block"}]})";
-        CHECK_THROWS_WITH(
-            plan_scene(folder.write("rigid.json", scene.substr(0, scene.size() - 1) + probes)),
-            Catch::Contains("probes[0].body: found the rigid body \"block\", expected a body that deforms, "
-                            "for the quantity \"" +
-                            std::string(quantity) + "\""));
-    }
+    const std::string of_mesh = body_with(R"("dynamics": "rigid")");
+    const std::string of_shape = R"({"materials": {"rubber": {}},
+        "bodies": [{"name": "block", "shape": {"sphere": {"radius": 1}}, "material": "rubber"}]})";
+    for (const std::string& scene : {of_mesh, of_shape})
+        for (const std::string quantity : {"stress", "volume"}) {
+            const std::string probes =
+                R"(, "probes": [{"name": "p", "quantity": ")" + quantity + R"(", "body": "block"}]})";
+            CHECK_THROWS_WITH(
+                plan_scene(folder.write("rigid.json", scene.substr(0, scene.size() - 1) + probes)),
+                Catch::Contains("probes[0].body: found the rigid body \"block\", expected a body that deforms, "
+                                "for the quantity \"" +
+                                quantity + "\""));
+        }
 }
 
 TEST_CASE("fibres that exert no force are refused", "[unit]") {
