@@ -147,8 +147,8 @@ class ProgramStartTest(ProgramCase):
         scene["bodies"].pop()
         scene["fibres"] = [{"body": scene["bodies"][0]["name"], "direction": [0, 0, 1], "stiffness": 1e13}]
         note = first_line(scene)
-        self.assertRegex(note, 'the springs, cables, cavities, fibres or loads that act on it need steps of .* times as '
-                               'many as otherwise; reduce their stiffness')
+        self.assertRegex(note, 'the springs, cables, cavities, fibres or loads that act on it need steps of .* times '
+                               'as many as otherwise; reduce their stiffness')
 
     def test_a_run_without_any_contact_says_so_with_the_shortest_distance(self):
         scene = {**SCENE, "settings": {"gravity": [0, 0, 0]}}

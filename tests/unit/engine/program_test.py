@@ -287,12 +287,6 @@ class ProgramTest(ProgramCase):
         for name in steps:  # the same run gives the same bytes
             self.assertEqual((self.folder / "again" / name).read_bytes(), (self.folder / "steps" / name).read_bytes())
 
-    def test_regions_with_rollers_are_named_as_left_out(self):
-        for pins, named in (([], False), ([{"nodes": [0], "axes": ["x"]}], True)):
-            scene = {**SCENE, "seconds": 0.01, "bodies": [{**SCENE["bodies"][0], "dynamics": "explicit", "pin": pins}]}
-            done = self.skerry("run", self.write("rollers.json", scene), "--export-problems", self.folder / "problems")
-            self.assertEqual("nodes on rollers" in done.stdout, named)
-
     def test_exporting_changes_nothing(self):
         hashes = []
         for flags in ([], ["--export-problems", self.folder / "problems", "--export-every", 7]):
