@@ -22,6 +22,8 @@ constexpr Real least_ratio = 2.0 / 3, most_ratio = 1.5;
 constexpr Real envelope_share = 0.5;
 // Netgen's mesh of a surface of fTetWild must have this share of the number of tetrahedra of fTetWild.
 constexpr Real least_count = 0.7;
+// Largest number of cubes of the wanted edge in the bounding box. More tetrahedra do not fit the memory of a computer.
+constexpr Real most_cells = 1e9;
 
 const char* const install_ftetwild = "install the Python package of fTetWild: pip install wildmeshing==0.4.1";
 
@@ -63,6 +65,7 @@ public:
         for (const SurfaceFault& fault : result_.surface.faults)
             if (!nested || fault.kind != SurfaceFaultKind::doubled_volumes)  // the notes on regions say this
                 result_.notes.push_back(fault_text(fault));
+        check_edge();
         const bool clean = result_.surface.can_be_filled();
         if (!clean || !keeps_triangles() || !fill_exactly()) fill_within_tolerance(clean);
         name_shells();
@@ -92,6 +95,19 @@ private:
                 "a fraction of the diagonal of at least 0 and below 1");
         require(settings_.limits.seconds > 0, "time limit", settings_.limits.seconds, "a time above 0 s");
         require(settings_.limits.bytes > 0, "memory limit", settings_.limits.bytes, "a number of bytes above 0");
+    }
+
+    /// Refuses an edge length that does not fit the size of the surface, as in another unit.
+    void check_edge() const {
+        if (!settings_.edge) return;
+        const Real edge = *settings_.edge, diagonal = box_diagonal(surface());
+        const std::string size = "the surface measures " + short_text(diagonal) + " m across its bounding box";
+        if (edge > diagonal)
+            refuse(short_text(edge) + " m", "an edge length below the size of the surface", size, "edge");
+        const Real count = (result_.surface.upper - result_.surface.lower).prod() / (edge * edge * edge);
+        if (count > most_cells)
+            refuse(short_text(edge) + " m, which divides the bounding box into " + short_text(count) + " cubes",
+                   "an edge length that gives at most " + short_text(most_cells) + " cubes", size, "edge");
     }
 
     /// True if the wanted tetrahedra have about the size of the triangles of the surface.
@@ -186,7 +202,7 @@ private:
     void name_shells() {
         const std::size_t shells = shells_.shell.size(), files = given_.names.size();
         if (crossing()) {
-            result_.notes.emplace_back("crossing shells were united to one body");
+            result_.notes.emplace_back("crossing shells were united");
             return;
         }
         if (shells < 2 || (files < 2 && !shells_.has_regions() && shells_.cavity_count() == 0)) return;

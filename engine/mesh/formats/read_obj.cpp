@@ -122,8 +122,11 @@ std::vector<VisualMaterial> read_mtl(FileReader& reader) {
                 material.color[k] = std::clamp<Real>(parse_reals<3>(reader, words, "Kd", "numbers")[k], 0, 1);
         if (key == "d" && words.size() == 2)
             material.opacity = std::clamp<Real>(parse_reals<1>(reader, words, "d", "numbers")[0], 0, 1);
-        if (key == "Tr")
-            material.opacity = std::clamp<Real>(1 - parse_reals<1>(reader, words, "Tr", "numbers")[0], 0, 1);
+        if (key == "Tr") {
+            // some programs write the opacity here: a value of 1 would make the surface invisible, so it is ignored
+            const Real transparency = parse_reals<1>(reader, words, "Tr", "numbers")[0];
+            if (transparency < 1) material.opacity = std::clamp<Real>(1 - transparency, 0, 1);
+        }
         if (key == "map_Kd") {
             // options such as "-s 1 1 1" precede the name of the file
             const std::string file =
