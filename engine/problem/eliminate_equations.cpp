@@ -210,26 +210,38 @@ void list_cables(const CableBlockTable& cables, const Mobilities& mobilities, st
     }
 }
 
-/// Pseudoinverse of a symmetric matrix whose rows may have different units. Rows may depend on each other.
+/// Part of an inverse mass that counts as zero. It is the square of an angle of 3e-4 rad: the solver's tolerance lets
+/// redundant joints drift apart by smaller angles.
+constexpr Real negligible_part = 1e-7;
+
+/// Part of its inverse mass along the normal below which a contact counts as immovable: the square of an angle of
+/// 1e-3 rad. The bound is larger, because q keeps the impulses of these contacts.
+constexpr Real immovable_part = 1e-6;
+
+/// Pseudoinverse of a symmetric matrix whose rows may have different units. Rows may depend on each other: eigenvalues
+/// below `negligible_part` of a row count as zero.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
+    if (matrix.rows() == 0) return matrix;
     const Eigen::VectorXd scale =
         matrix.diagonal().unaryExpr([](Real of) { return of > 0 ? 1 / std::sqrt(of) : Real(0); });
-    if (matrix.rows() == 0) return matrix;
-    // The sizes are given, because Eigen does not resize here (EIGEN_NO_AUTOMATIC_RESIZING).
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors(matrix.rows(), matrix.cols());
-    factors.setThreshold(1e-11);
-    factors.compute(scale.asDiagonal() * matrix * scale.asDiagonal());
-    return scale.asDiagonal() * factors.pseudoInverse() * scale.asDiagonal();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+    // The size is given, because Eigen does not resize here (EIGEN_NO_AUTOMATIC_RESIZING).
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> factors(matrix.rows());
+    factors.compute(scaled);
+    const Eigen::VectorXd roots =
+        factors.eigenvalues().unaryExpr([](Real of) { return of > negligible_part ? 1 / std::sqrt(of) : Real(0); });
+    const Eigen::MatrixXd half = scale.asDiagonal() * factors.eigenvectors() * roots.asDiagonal();
+    return half * half.transpose();
 }
 
-/// Norms of the diagonal blocks of W [1/kg].
-std::vector<Real> sizes_of_diagonal(const ContactProblem& problem) {
-    std::vector<Real> sizes(problem.q.size());
-    for (std::size_t i = 0; i < sizes.size(); ++i)
+/// Normal velocity of each contact by its own normal impulse [1/kg].
+std::vector<Real> normal_mobilities(const ContactProblem& problem) {
+    std::vector<Real> mobilities(problem.q.size());
+    for (std::size_t i = 0; i < mobilities.size(); ++i)
         for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
             if (problem.column[static_cast<std::size_t>(k)] == static_cast<Index>(i))
-                sizes[i] = problem.block[static_cast<std::size_t>(k)].norm();
-    return sizes;
+                mobilities[i] = problem.block[static_cast<std::size_t>(k)](0, 0);
+    return mobilities;
 }
 
 /// Rows of equations and contacts whose masses are coupled.
@@ -350,18 +362,21 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
         }
     }
     if (!any) return {};
-    const std::vector<Real> before = sizes_of_diagonal(problem);
+    const std::vector<Real> before = normal_mobilities(problem);
     gather_blocks(std::move(parts), problem);
-    const std::vector<Real> after = sizes_of_diagonal(problem);
-    constexpr Real rounding = 1e-9;
+    const std::vector<Real> after = normal_mobilities(problem);
     std::vector<Index> immovable;
     for (std::size_t i = 0; i < after.size(); ++i)
-        if (!(after[i] > rounding * before[i])) immovable.push_back(static_cast<Index>(i));
-    // Only rounding errors are left of their blocks.
+        if (!(after[i] > immovable_part * before[i])) immovable.push_back(static_cast<Index>(i));
+    // Immovable contacts act on the others with their impulses of the step.
     const auto is_immovable = [&](Index i) { return std::ranges::binary_search(immovable, i); };
     for (Index i = 0; i < problem.contacts(); ++i)
-        for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
-            if (is_immovable(i) || is_immovable(problem.column[k])) problem.block[k].setZero();
+        for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k) {
+            const Index j = problem.column[k];
+            if (!is_immovable(i) && !is_immovable(j)) continue;
+            if (!is_immovable(i)) problem.q[i] += problem.block[k] * impulse[j];
+            problem.block[k].setZero();
+        }
     return immovable;
 }
 

@@ -37,7 +37,8 @@ struct StepEquations {
 /// so that the velocities of the rows stay those of the step, and r* solves the new problem if it solved the problem of
 /// the step. Slides, cables, and motors, limits and passive forces of joint axes keep their impulses of the step.
 /// `contact`: row of each contact of the problem in `inputs`. `impulse`: r*, in the contact frames. Returns the
-/// numbers of the contacts that impulses can no longer move; nothing if no row acts on a contact.
+/// numbers of the contacts that impulses can no longer move along their normals; nothing if no row acts on a contact.
+/// These contacts have no blocks, and q includes their impulses of the step.
 std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equations, const RegionInputs& inputs,
                                                       std::span<const Index> contact, std::span<const Vec3> impulse,
                                                       ContactProblem& problem);

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "systems/solver/local/load_contact.h"
@@ -180,6 +181,9 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
         result.problem.description +=
             "; W and q include the joints, ties and rollers of the bodies, and the impulses of their motors, limits, "
             "slides and cables in the step";
+        if (!immovable->empty())
+            result.problem.description += "; contacts left out because no impulse moves them along their normals: " +
+                                          std::to_string(immovable->size()) + "; q includes their impulses in the step";
     }
     return result;
 }

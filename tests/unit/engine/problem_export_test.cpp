@@ -329,8 +329,8 @@ TEST_CASE("joints, ties, rollers and cables are eliminated from problems, and th
     Real worst = 0;
     world.watch_contact_problems([&](const StepProblem& step) {
         contacts += step.contact.size();
-        // The contacts of the two welded nodes cannot move.
-        CHECK(step.contact.size() + 2 >= world.contacts().size());
+        // The contacts of the two welded nodes and of the three nodes straight below a hinge cannot move.
+        CHECK(step.contact.size() + 5 >= world.contacts().size());
         worst = std::max(worst, problem_error(step.problem, step.impulse).relative);
     });
     REQUIRE(world.advance(0.03).ok());
@@ -404,6 +404,78 @@ TEST_CASE("a problem with eliminated equations gives the velocities of other imp
     CHECK(distance(of_smooth.impulse, of_rough.impulse) > 0.1 * largest(of_rough.impulse));
     CHECK(distance(velocities(of_rough.problem, of_rough.impulse), u) > 0.01 * largest(u));
     CHECK(distance(velocities(of_rough.problem, of_smooth.impulse), u) < 1e-10 * largest(of_rough.problem.q));
+}
+
+TEST_CASE("contacts whose normals a joint holds are left out of problems", "[unit][problem]") {
+    Settings settings;
+    settings.step_size = 5e-3;
+    World world(settings);
+    const auto rubber = world.add_material({.density = 500, .friction = 0.5});
+    const Mesh box = mesh::box({0.5, 0.5, 0.5}, {1, 1, 1});
+    const BodyHandle block = world.add_body(box, {.material = rubber, .dynamics = BodyDynamics::rigid});
+    world.add_body(box, {.material = rubber, .position = {2, 0, -1}, .dynamics = BodyDynamics::rigid});
+    world.add_collider(Plane{.normal = {1, 0, 0}, .point = {-0.2501, 0, 0}}, {.friction = 0});
+    world.add_collider(Plane{.point = {0, 0, -1.2501}});
+    Joints(world).add({.kind = JointKind::slider, .first = block, .axis = {0, 0, 1}});
+    int steps = 0;
+    world.watch_contact_problems([&](const StepProblem& step) {
+        ++steps;
+        CHECK(step.contact.size() == 4);
+        CHECK(problem_error(step.problem, step.impulse).relative < 1e-3);
+        const ProblemSolution again = solve_problem(step.problem, {.tolerance = 1e-9});
+        CHECK(again.converged);
+        CHECK(largest(again.reaction) <= 2 * largest(step.impulse));
+        CHECK(step.problem.description.find("along their normals: 4") != std::string::npos);
+    });
+    REQUIRE(world.advance(0.01).ok());
+    CHECK(steps == 2);
+}
+
+TEST_CASE("redundant hinges leave a gate its rotation in exported problems", "[unit][problem]") {
+    struct Case {
+        int hinges;
+        Real tilt, gap;  // [rad], [m]
+    };
+    const auto [hinges, tilt, gap] = GENERATE(Case{1, 0, 0.05}, Case{2, 0, 0.05}, Case{3, 0, 0.05}, Case{2, 1e-6, 0.05},
+                                              Case{2, 1e-5, 0.05}, Case{1, 0, 5e-4}, Case{3, 0, 5e-4});
+    const bool is_close = gap < 0.01;  // the wall also touches the gate at its hinges
+    INFO(hinges << " hinges, tilt " << tilt << ", gap " << gap);
+    Settings settings;
+    settings.step_size = 5e-3;
+    settings.gravity = {0, 5, -9.81};
+    World world(settings);
+    const auto wood = world.add_material({.density = 1000, .friction = 0.5});
+    const BodyHandle gate = world.add_body(mesh::box({1, 0.1, 2}, {1, 1, 1}), {.material = wood,
+                                                                               .position = {0.5, 0, 1},
+                                                                               .velocity = {0, 1, 0},
+                                                                               .angular_velocity = {0, 0, 2},
+                                                                               .dynamics = BodyDynamics::rigid});
+    world.add_collider(Plane{.normal = {0, -1, 0}, .point = {0, gap + 0.05, 0}});
+    Joints joints(world);
+    for (int k = 0; k < hinges; ++k)
+        joints.add({.kind = JointKind::hinge,
+                    .first = gate,
+                    .point = {0, 0, 1.5 - 0.4 * k},
+                    .axis = {k == 1 ? tilt : 0, 0, 1}});
+    const Real mass = 200, inertia = mass * (1.01 / 12 + 0.25);  // [kg], [kg m^2] about the hinges
+    std::size_t contacts = 0, left_out = 0;
+    world.watch_contact_problems([&](const StepProblem& step) {
+        contacts += step.contact.size();
+        left_out += world.contacts().size() - step.contact.size();
+        CHECK(problem_error(step.problem, step.impulse).relative < 1e-3);
+        const ProblemSolution again = solve_problem(step.problem, {.tolerance = 1e-9});
+        CHECK(again.converged);
+        CHECK(largest(again.reaction) <= 2 * largest(step.impulse));
+        for (std::size_t i = 0; i < step.contact.size(); ++i) {
+            const Real arm = world.contacts()[step.contact[i]].point.x();
+            for (Index k = step.problem.row_offset[i]; k < step.problem.row_offset[i + 1]; ++k)
+                if (step.problem.column[k] == static_cast<Index>(i))
+                    CHECK(step.problem.block[k](0, 0) == Approx(arm * arm / inertia).epsilon(1e-2));
+        }
+    });
+    REQUIRE(world.advance(is_close ? 0.015 : 0.1).ok());
+    CHECK(contacts >= (is_close ? 6 : 20));
+    CHECK(left_out == (is_close ? 6 : 0));
 }
 
 }  // namespace skerry::test::problem_export_test
