@@ -3,9 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
 #include <utility>
@@ -19,15 +18,17 @@ namespace skerry::mesh {
 namespace {
 
 // A change of this number makes earlier cache files unused. Raise it when fill() returns other meshes than before.
-constexpr std::uint64_t cache_version = 1;
+constexpr std::uint64_t cache_version = 2;
 
 /// Name of the cache file: the name of the surface file, a hash, and .msh.
-std::filesystem::path cache_file(const std::filesystem::path& file, const FillSettings& settings) {
-    std::ifstream in(file, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+std::filesystem::path cache_file(const std::filesystem::path& file, const SurfaceMesh& surface,
+                                 const FillSettings& settings) {
     Hash hash;
     hash.add(cache_version);
-    hash.add(std::span<const char>(bytes));
+    // A format may divide the surface among several files, so the hash covers the arrays and not the named file.
+    hash.add(surface.nodes.size());
+    for (const Vec3& node : surface.nodes) hash.add(node.data(), sizeof(Real) * 3);
+    hash.add(std::span<const std::array<Index, 3>>(surface.triangles));
     const Real numbers[] = {settings.edge.value_or(0), settings.tolerance, settings.cavities ? 1.0 : 0.0};
     hash.add(std::span<const Real>(numbers));
     char text[32];
@@ -57,7 +58,8 @@ Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings
                  std::vector<std::string>* notes) {
     // Only one case of a sweep fills the surface. The other cases wait for it and then read the cache file.
     const FileLock lock(file);
-    const std::filesystem::path cache = cache_file(file, settings);
+    const SurfaceMesh surface = read_surface(file.string(), notes);
+    const std::filesystem::path cache = cache_file(file, surface, settings);
     if (std::filesystem::exists(cache)) try {
             Mesh mesh = read(cache.string());
             // A mesh without labels is written with the label 1 everywhere.
@@ -68,7 +70,7 @@ Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings
         }
     FillSettings of_cache = settings;
     of_cache.material = {};
-    FilledMesh filled = fill(std::vector{file}, of_cache, progress);
+    FilledMesh filled = fill(surface, file.string(), of_cache, progress);
     if (notes)
         for (const std::string& note : filled.notes) notes->push_back(file.string() + ": " + note);
     try {

@@ -82,9 +82,9 @@ FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillS
                 const FillProgress& progress = {});
 
 /// Reads the mesh that fills a surface file from the cache file beside it, or else fills the surface and writes the
-/// cache file. The name of the cache file contains a hash of the surface file, `edge`, `tolerance` and `cavities`; the
-/// stable steps of meshes are compared for the default material. If the file cannot be written, the mesh is returned
-/// all the same. `notes`: gets the notes of the filling.
+/// cache file. The name of the cache file contains a hash of the surface, `edge`, `tolerance` and `cavities`; the stable
+/// steps of meshes are compared for the default material. If the file cannot be written, the mesh is returned all the
+/// same. `notes`: gets the notes of reading and filling.
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings = {},
                  const FillProgress& progress = {}, std::vector<std::string>* notes = nullptr);
 

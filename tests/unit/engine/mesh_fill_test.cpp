@@ -225,9 +225,9 @@ TEST_CASE("a surface of a scene is filled again only after a change of the surfa
     const std::filesystem::path cache = cache_of();
     CHECK_THAT(cache.filename().string(), Contains("part.obj."));
     CHECK(runs_of({.edge = 2, .tolerance = 0}) > 0);
-    folder.write("part.obj", "# changed\n" + obj);
+    folder.write("part.obj", obj.substr(0, obj.find('f')) + "f 3 2 1\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
     CHECK(runs_of(exact) > 0);
-    folder.write("part.obj", obj);
+    folder.write("part.obj", "# a comment\n" + obj);
     CHECK(runs_of(exact) == 0);
     std::ofstream(cache) << "damaged";
     CHECK(runs_of(exact) > 0);
@@ -236,6 +236,21 @@ TEST_CASE("a surface of a scene is filled again only after a change of the surfa
     std::filesystem::remove(cache);
     std::filesystem::create_directory(cache);
     CHECK(runs_of(exact) > 0);
+}
+
+TEST_CASE("a surface of two TetGen files is filled again after a change of either") {
+    const TemporaryFolder folder;
+    const Variable netgen("SKERRY_FILL", stub(folder, "fill", fill_tetrahedron).string());
+    const std::filesystem::path file = folder.write("part.ele", "1 4 0\n1 1 2 3 4\n");
+    const auto meshes_with = [&](const std::string& last_node) {
+        folder.write("part.node", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 " + last_node + "\n");
+        mesh::fill_cached(file, {.tolerance = 0});
+        return std::ranges::count_if(std::filesystem::directory_iterator(folder.path()),
+                                     [](const auto& entry) { return entry.path().extension() == ".msh"; });
+    };
+    CHECK(meshes_with("0 0 1") == 1);
+    // The other position has the same volume, which the mesh of the mesher in this test fits.
+    CHECK(meshes_with("0.25 0 1") == 2);
 }
 
 TEST_CASE("surfaces with the faults of users' files are filled with the volume of their solid, or refused") {
