@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "components/hash.h"
-#include "engine/world/complaint.h"
 #include "skerry/error.h"
 #include "skerry/fill.h"
 
@@ -117,8 +116,7 @@ Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings
     if (filled.may_change)
         note("the mesh was not kept, as Netgen was missing, crashed or reached a limit: every run fills the surface");
     else if (!write_cache(cache, filled))
-        note("the mesh could not be kept, as " + in_quotes(cache.string()) +
-             " cannot be written: every run fills the surface");
+        note("the mesh could not be kept, as " + cache.string() + " cannot be written: every run fills the surface");
     return std::move(filled.mesh);
 }
 
