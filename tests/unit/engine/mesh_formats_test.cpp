@@ -5,6 +5,8 @@
 #include "engine/mesh/tetrahedron.h"
 #include "mesh_samples.h"
 #include "skerry/error.h"
+#include "skerry/visual.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skerry::test::mesh_formats_test {
 
