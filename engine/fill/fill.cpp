@@ -7,6 +7,7 @@
 #include "engine/fill/explicit_body.h"
 #include "engine/mesh/repair/surface_distance.h"
 #include "engine/mesh/repair/surface_measures.h"
+#include "engine/mesh/surface/check_shells.h"
 #include "engine/world/complaint.h"
 
 namespace skerry::mesh {
@@ -54,7 +55,9 @@ public:
           setup_{.limits = settings.limits, .python = settings.python, .progress = progress} {
         check_settings();
         say("checking the surface");
-        result_.surface = check_surface(given.surface, default_weld, given.names.front());
+        result_.surface = settings.cavities
+                              ? check_surface_with_walls(given.surface, default_weld, given.names.front())
+                              : check_surface(given.surface, default_weld, given.names.front());
         if (surface().triangles.empty()) refuse("no triangles", "a surface with triangles");
         result_.tolerance = settings.tolerance * box_diagonal(surface());
         shells_ = shells_of(result_.surface, settings.cavities);
@@ -135,6 +138,7 @@ private:
     bool fill_exactly() {
         BestMesh best =
             best_mesh_of(whole_surface(shells_), settings_.edge.value_or(mean_edge(surface())), result_.tolerance, 0);
+        result_.may_change = best.may_change;
         if (best.step > 0) {
             take(std::move(best), "Netgen");
             return true;
@@ -174,6 +178,7 @@ private:
                                                                   (1 - envelope_share) * result_.tolerance,
                                                                   least_count * static_cast<Real>(report.tetrahedra))
                                                    : BestMesh{};
+            result_.may_change = result_.may_change || best.may_change;
             if (best.step > step) {
                 take(std::move(best), "fTetWild and Netgen");
                 return;
@@ -265,8 +270,11 @@ FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSetti
                 const FillProgress& progress) {
     if (files.empty()) Complaint{{}, "surface", {}, "no files", "at least one file of a surface", {}}.raise();
     GivenSurface given;
-    for (const std::filesystem::path& file : files) given.add(read_surface(file.string()), file.string());
-    return Filling(given, settings, progress).run();
+    std::vector<std::string> notes;
+    for (const std::filesystem::path& file : files) given.add(read_surface(file.string(), &notes), file.string());
+    FilledMesh filled = Filling(given, settings, progress).run();
+    filled.notes.insert(filled.notes.begin(), notes.begin(), notes.end());
+    return filled;
 }
 
 }  // namespace skerry::mesh

@@ -3,12 +3,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "components/hash.h"
 #include "skerry/error.h"
@@ -19,15 +21,17 @@ namespace skerry::mesh {
 namespace {
 
 // A change of this number makes earlier cache files unused. Raise it when fill() returns other meshes than before.
-constexpr std::uint64_t cache_version = 1;
+constexpr std::uint64_t cache_version = 2;
 
 /// Name of the cache file: the name of the surface file, a hash, and .msh.
-std::filesystem::path cache_file(const std::filesystem::path& file, const FillSettings& settings) {
-    std::ifstream in(file, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+std::filesystem::path cache_file(const std::filesystem::path& file, const SurfaceMesh& surface,
+                                 const FillSettings& settings) {
     Hash hash;
     hash.add(cache_version);
-    hash.add(std::span<const char>(bytes));
+    // A format may divide the surface among several files, so the hash covers the arrays and not the named file.
+    hash.add(surface.nodes.size());
+    for (const Vec3& node : surface.nodes) hash.add(node.data(), sizeof(Real) * 3);
+    hash.add(std::span<const std::array<Index, 3>>(surface.triangles));
     const Real numbers[] = {settings.edge.value_or(0), settings.tolerance, settings.cavities ? 1.0 : 0.0};
     hash.add(std::span<const Real>(numbers));
     char text[32];
@@ -51,31 +55,68 @@ private:
     int descriptor_;
 };
 
+/// Name of the text file with the notes of the filling, one in each line.
+std::filesystem::path notes_file(std::filesystem::path cache) {
+    return cache.replace_extension(".txt");
+}
+
+std::vector<std::string> read_notes(const std::filesystem::path& cache) {
+    std::ifstream in(notes_file(cache));
+    std::vector<std::string> notes;
+    for (std::string line; std::getline(in, line);) notes.push_back(line);
+    return notes;
+}
+
+/// Writes the notes, then the mesh, so that a mesh is never without its notes. Returns false if this is not possible.
+bool write_cache(const std::filesystem::path& cache, const FilledMesh& filled) {
+    const std::filesystem::path beside = notes_file(cache);
+    std::error_code failure;
+    std::filesystem::remove(beside, failure);
+    if (failure) return false;
+    if (!filled.notes.empty()) {
+        std::ofstream out(beside);
+        for (std::string note : filled.notes) {
+            std::ranges::replace(note, '\n', ' ');
+            out << note << '\n';
+        }
+        if (!out.flush()) return false;
+    }
+    try {
+        write(cache.string(), filled.mesh);
+    } catch (const SceneError&) {
+        return false;  // the folder may be read-only
+    }
+    return true;
+}
+
 }  // namespace
 
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings, const FillProgress& progress,
                  std::vector<std::string>* notes) {
     // Only one case of a sweep fills the surface. The other cases wait for it and then read the cache file.
     const FileLock lock(file);
-    const std::filesystem::path cache = cache_file(file, settings);
+    const auto note = [&](const std::string& text) {
+        if (notes) notes->push_back(file.string() + ": " + text);
+    };
+    const SurfaceMesh surface = read_surface(file.string(), notes);
+    const std::filesystem::path cache = cache_file(file, surface, settings);
     if (std::filesystem::exists(cache)) try {
             Mesh mesh = read(cache.string());
             // A mesh without labels is written with the label 1 everywhere.
             if (std::ranges::all_of(mesh.label, [](int label) { return label == 1; })) mesh.label.clear();
+            std::ranges::for_each(read_notes(cache), note);
             return mesh;
         } catch (const SceneError&) {
             // A damaged file is replaced below.
         }
     FillSettings of_cache = settings;
     of_cache.material = {};
-    FilledMesh filled = fill(std::vector{file}, of_cache, progress);
-    if (notes)
-        for (const std::string& note : filled.notes) notes->push_back(file.string() + ": " + note);
-    try {
-        write(cache.string(), filled.mesh);
-    } catch (const SceneError&) {
-        // The folder may be read-only.
-    }
+    FilledMesh filled = fill(surface, file.string(), of_cache, progress);
+    std::ranges::for_each(filled.notes, note);
+    if (filled.may_change)
+        note("the mesh was not kept, as Netgen was missing, crashed or reached a limit: every run fills the surface");
+    else if (!write_cache(cache, filled))
+        note("the mesh could not be kept, as " + cache.string() + " cannot be written: every run fills the surface");
     return std::move(filled.mesh);
 }
 

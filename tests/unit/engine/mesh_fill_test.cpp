@@ -1,6 +1,9 @@
 // Filling of surfaces: exact filling by Netgen, regions, limits and failures of meshers, and the cache.
+#include <unistd.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <clocale>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +14,7 @@
 #include "engine/mesh/repair/surface_measures.h"
 #include "skerry/error.h"
 #include "skerry/fill.h"
+#include "skerry/scene.h"
 #include "tests/support/draws.h"
 #include "tests/support/surface_corpus.h"
 #include "tests/support/temporary_folder.h"
@@ -227,9 +231,9 @@ TEST_CASE("a surface of a scene is filled again only after a change of the surfa
     const std::filesystem::path cache = cache_of();
     CHECK_THAT(cache.filename().string(), Contains("part.obj."));
     CHECK(runs_of({.edge = 2, .tolerance = 0}) > 0);
-    folder.write("part.obj", "# changed\n" + obj);
+    folder.write("part.obj", obj.substr(0, obj.find('f')) + "f 3 2 1\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
     CHECK(runs_of(exact) > 0);
-    folder.write("part.obj", obj);
+    folder.write("part.obj", "# a comment\n" + obj);
     CHECK(runs_of(exact) == 0);
     std::ofstream(cache) << "damaged";
     CHECK(runs_of(exact) > 0);
@@ -238,6 +242,114 @@ TEST_CASE("a surface of a scene is filled again only after a change of the surfa
     std::filesystem::remove(cache);
     std::filesystem::create_directory(cache);
     CHECK(runs_of(exact) > 0);
+    std::vector<std::string> notes;
+    mesh::fill_cached(file, exact, {}, &notes);
+    REQUIRE(notes.size() == 1);
+    CHECK_THAT(notes.front(), Contains("part.obj: the mesh could not be kept") && Contains("every run fills"));
+}
+
+TEST_CASE("notes of a filling are given again with the mesh of the cache file") {
+    const TemporaryFolder folder;
+    const Variable netgen("SKERRY_FILL", stub(folder, "fill", fill_tetrahedron).string());
+    // The last triangle is repeated, which is noted.
+    const std::filesystem::path file =
+        folder.write("part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 4 3\n");
+    std::vector<std::string> first, second;
+    mesh::fill_cached(file, {}, {}, &first);
+    const Variable none("SKERRY_FILL", "/nowhere/fill");
+    mesh::fill_cached(file, {}, {}, &second);
+    CHECK_FALSE(first.empty());
+    CHECK(second == first);
+}
+
+TEST_CASE("a mesh of fTetWild is not kept if Netgen is missing or crashes") {
+    const TemporaryFolder folder;
+    const Variable python("SKERRY_FILL_PYTHON", stub(folder, "python", fill_tetrahedron).string());
+    const std::filesystem::path file =
+        folder.write("part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    for (const std::string& program : {stub(folder, "fill", "kill -SEGV $$").string(), std::string("/nowhere/fill")}) {
+        const Variable netgen("SKERRY_FILL", program);
+        std::vector<std::string> notes;
+        mesh::fill_cached(file, {}, {}, &notes);
+        REQUIRE(notes.size() == 2);
+        CHECK_THAT(notes[0], Contains("filled by fTetWild"));
+        CHECK_THAT(notes[1], Contains("the mesh was not kept"));
+        for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+            CHECK(entry.path().extension() != ".msh");
+    }
+}
+
+TEST_CASE("a scene fills a surface that is also the file of a rigid body, and has the notes of the filling") {
+    const TemporaryFolder folder;
+    const Variable netgen("SKERRY_FILL", "/nowhere/fill");
+    const std::string python = stub(folder, "python", fill_tetrahedron).string();
+    folder.write("part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    const std::string text = R"({"materials": {"rubber": {}}, "bodies": [
+        {"mesh": {"file": "part.obj"}, "dynamics": "rigid", "material": "rubber"},
+        {"mesh": {"surface": "part.obj"}, "material": "rubber", "position": [3, 0, 0]}]})";
+    const Scene scene = load_scene_text(text, folder.path(), {.fill_python = python});
+    REQUIRE(scene.world.bodies().size() == 2);
+    CHECK(std::ranges::any_of(scene.notes, [](const std::string& note) { return Contains("fTetWild").match(note); }));
+    const auto stop = [](const std::string&) { throw std::runtime_error("stopped by the user"); };
+    CHECK_THROWS_WITH(load_scene_text(text, folder.path(), {.fill_python = python}, stop), "stopped by the user");
+}
+
+TEST_CASE("with cavities a shell close inside another one bounds a cavity, otherwise it counts as repeated") {
+    const TemporaryFolder folder;
+    const Variable netgen("SKERRY_FILL", "/nowhere/fill");
+    // The mesher in this test writes one tetrahedron, whatever the surface.
+    const std::string python = stub(folder, "python", fill_tetrahedron).string();
+    SurfaceMesh wall = tetrahedron;
+    const Vec3 centroid(0.25, 0.25, 0.25);
+    for (const Vec3& x : tetrahedron.nodes) wall.nodes.push_back(centroid + 0.9995 * (x - centroid));
+    for (const auto& [a, b, c] : tetrahedron.triangles) wall.triangles.push_back({a + 4, b + 4, c + 4});
+    const mesh::FilledMesh hollow = mesh::fill(wall, "wall", {.cavities = true, .python = python});
+    CHECK(hollow.surface.shells.size() == 2);
+    CHECK(notes_contain(hollow, "an empty cavity"));
+    const mesh::FilledMesh solid = mesh::fill(wall, "wall", {.python = python});
+    CHECK(solid.surface.shells.size() == 1);
+    CHECK(notes_contain(solid, "m apart"));
+}
+
+TEST_CASE("a mesher that ends leaves no process behind, and its numbers do not depend on the locale") {
+    const TemporaryFolder folder;
+    const std::filesystem::path left = folder.path() / "left";
+    const Variable netgen("SKERRY_FILL", stub(folder, "fill",
+                                              "sleep 100 & echo $! > " + left.string() + "\ncat > " +
+                                                  (folder.path() / "given").string() + "\n" + fill_tetrahedron)
+                                             .string());
+    // Not every machine has this locale.
+    const std::string before = std::setlocale(LC_NUMERIC, nullptr);
+    std::setlocale(LC_NUMERIC, "de_DE.UTF-8");
+    mesh::fill(tetrahedron, "part.stl", {.edge = 1.25, .tolerance = 0});
+    std::setlocale(LC_NUMERIC, before.c_str());
+    pid_t process = 0;
+    REQUIRE(std::ifstream(left) >> process);
+    // A killed process that nobody waits for may stay in the list of processes as a zombie.
+    const auto runs = [&] {
+        std::string number, name, state = "Z";
+        std::ifstream("/proc/" + std::to_string(process) + "/stat") >> number >> name >> state;
+        return state != "Z";
+    };
+    for (int i = 0; runs() && i < 100; ++i) usleep(1000);
+    CHECK_FALSE(runs());
+    std::ifstream given(folder.path() / "given");
+    CHECK(std::string(std::istreambuf_iterator<char>(given), {}).find(',') == std::string::npos);
+}
+
+TEST_CASE("a surface of two TetGen files is filled again after a change of either") {
+    const TemporaryFolder folder;
+    const Variable netgen("SKERRY_FILL", stub(folder, "fill", fill_tetrahedron).string());
+    const std::filesystem::path file = folder.write("part.ele", "1 4 0\n1 1 2 3 4\n");
+    const auto meshes_with = [&](const std::string& last_node) {
+        folder.write("part.node", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 " + last_node + "\n");
+        mesh::fill_cached(file, {.tolerance = 0});
+        return std::ranges::count_if(std::filesystem::directory_iterator(folder.path()),
+                                     [](const auto& entry) { return entry.path().extension() == ".msh"; });
+    };
+    CHECK(meshes_with("0 0 1") == 1);
+    // The other position has the same volume, which the mesh of the mesher in this test fits.
+    CHECK(meshes_with("0.25 0 1") == 2);
 }
 
 TEST_CASE("surfaces with the faults of users' files are filled with the volume of their solid, or refused") {
