@@ -35,7 +35,7 @@ public:
         constexpr Real rounding = 1e-9;
         MaterialPoint inside;
         Real best = -rounding;
-        boxes_.for_each([&](const Aabb& box) { return distance_squared(box, place) <= 0; },
+        if (!tetrahedra_.empty()) boxes_.for_each([&](const Aabb& box) { return distance_squared(box, place) <= 0; },
                         [&](Index t) {
                             const MaterialPoint point =
                                 point_of_tetrahedron(nodes_, tetrahedra_[static_cast<std::size_t>(t)], place);
@@ -128,22 +128,52 @@ std::string warning_of(const BoundVisual& visual, std::span<const Vec3> nodes, R
     return {};
 }
 
-/// Binds all nodes to one tetrahedron, whose corners are nodes of a rigid body.
-void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes) {
+/// Binds all nodes to a rigid body, each to the nearest point of its triangles. Offsets from these points turn with one
+/// tetrahedron of distant nodes. Without triangles all nodes are bound to this tetrahedron.
+void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes,
+                   std::span<const std::array<Index, 3>> triangles) {
     const std::array<Index, 4> corners = point_of_solid(nodes, nodes[0]).node;
-    for (const Vec3& place : visual.surface.nodes) visual.point.push_back(point_of_tetrahedron(nodes, corners, place));
     visual.fit.warning = warning_of(visual, nodes, infinity);
+    if (triangles.empty()) {
+        for (const Vec3& place : visual.surface.nodes)
+            visual.point.push_back(point_of_tetrahedron(nodes, corners, place));
+        return;
+    }
+    const SurfaceMesh surface{.nodes = {nodes.begin(), nodes.end()}, .triangles = {triangles.begin(), triangles.end()}};
+    const RestShape shape(nodes, {}, surface);
+    std::vector<bool> wanted(nodes.size(), false);
+    for (const Vec3& place : visual.surface.nodes) {
+        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place));
+        visual.offset.push_back(place - position_of(point, nodes));
+        for (const Index n : point.node) wanted[static_cast<std::size_t>(n)] = true;
+    }
+    const auto at = [&](std::size_t k) -> const Vec3& { return nodes[static_cast<std::size_t>(corners[k])]; };
+    std::array<GradientTerm, 4> terms{};  // gradients of the weights of the corners
+    terms[0] = {corners[0], Vec3::Zero()};
+    const Vec3 u = at(1) - at(0), v = at(2) - at(0), w = at(3) - at(0);
+    const std::array<Vec3, 3> area{v.cross(w), w.cross(u), u.cross(v)};
+    for (std::size_t k = 1; k < 4; ++k) {
+        terms[k] = {corners[k], area[k - 1] / u.dot(v.cross(w))};
+        terms[0].gradient -= terms[k].gradient;
+    }
+    visual.gradient.offset.push_back(0);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (wanted[n])
+            for (const GradientTerm& term : terms) visual.gradient.item.push_back(term);
+        visual.gradient.offset.push_back(static_cast<Index>(visual.gradient.item.size()));
+    }
 }
 
 }  // namespace
 
 BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
-                        std::span<const std::array<Index, 4>> tetrahedra) {
+                        std::span<const std::array<Index, 4>> tetrahedra,
+                        std::span<const std::array<Index, 3>> triangles) {
     BoundVisual visual{.surface = std::move(surface), .fit = {}, .point = {}, .offset = {}, .gradient = {}};
     visual.point.reserve(visual.surface.nodes.size());
     const SurfaceMesh boundary = boundary_of(nodes, tetrahedra);
     if (boundary.triangles.empty()) {
-        bind_to_solid(visual, nodes);
+        bind_to_solid(visual, nodes, triangles);
         return visual;
     }
     const RestShape shape(nodes, tetrahedra, boundary);
@@ -185,7 +215,7 @@ VisualPoints split_at_seams(const VisualSurface& surface) {
 
 std::vector<Vec3> visual_positions(const BoundVisual& visual, std::span<const Vec3> of_body) {
     std::vector<Vec3> positions = visual_values(visual, of_body);
-    if (visual.fit.outside == 0) return positions;
+    if (visual.gradient.item.empty()) return positions;
     std::vector<Mat3> gradient(of_body.size(), Mat3::Zero());
     for (std::size_t n = 0; n < gradient.size(); ++n)
         for (const GradientTerm& term : visual.gradient[n])

@@ -91,8 +91,12 @@ std::vector<Vec3> DrawnSurface::vectors(const BodyFrame& body, std::span<const V
     return visual_ != nullptr ? visual_positions(*body.visual, of_nodes) : gathered(node_, of_nodes);
 }
 
-std::vector<Real> DrawnSurface::values(const BodyFrame& body, std::span<const Real> of_nodes) const {
-    return visual_ != nullptr ? visual_values(*body.visual, of_nodes) : gathered(node_, of_nodes);
+std::vector<Real> DrawnSurface::values(const BodyFrame& body, std::span<const Real> of_nodes, FilmColor color) const {
+    if (visual_ == nullptr) return gathered(node_, of_nodes);
+    if (color != FilmColor::speed) return visual_values(*body.visual, of_nodes);
+    std::vector<Real> speeds;
+    for (const Vec3& velocity : visual_positions(*body.visual, body.velocity)) speeds.push_back(velocity.norm());
+    return speeds;
 }
 
 void require_positive(const std::filesystem::path& file, const char* setting, Real value) {

@@ -139,7 +139,7 @@ void UsdFilm::put_body(const BodyFrame& body, std::span<const Real> quantity) {
     }
     if (!quantity.empty()) {
         std::vector<float> values;
-        for (const Real value : surface.values(body, quantity)) {
+        for (const Real value : surface.values(body, quantity, settings_.color)) {
             values.push_back(static_cast<float>(value));
             quantity_.add(value);
         }

@@ -259,7 +259,7 @@ void write_gltf(const World& world, const std::filesystem::path& file, FilmColor
         mesh.color = color_of_body(b);
         if (body.visual != nullptr) mesh.visual = &body.visual->surface;
         if (quantity[b].empty()) continue;
-        for (const Real value : surface.values(body, quantity[b])) {
+        for (const Real value : surface.values(body, quantity[b], color)) {
             mesh.values.push_back(static_cast<float>(value));
             values.add(value);
         }

@@ -136,6 +136,21 @@ TEST_CASE("values of nodes are interpolated inside, and taken from the nearest p
     CHECK(values[1] == Approx(0.9 - 0.1 + 1));  // at z = 0.5
 }
 
+TEST_CASE("values on a rigid body without tetrahedra are those of the nearest point of its surface", "[unit][visual]") {
+    const SurfaceMesh box = mesh::boundary(coarse_box());
+    const BoundVisual bound = bind_visual(fine_ball(), box.nodes, {}, box.triangles);
+    std::vector<Real> of_body;
+    for (const Vec3& x : box.nodes) of_body.push_back(x.z() < -0.4 ? 1 : 0);
+    const std::vector<Real> values = visual_values<Real>(bound, of_body);
+    CHECK(std::ranges::min(values) > -1e-12);
+    CHECK(std::ranges::max(values) < 1 + 1e-12);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (bound.surface.nodes[i].z() < -0.5) CHECK(values[i] == Approx(1));
+    const Mat3 turn = Eigen::AngleAxis<Real>(2, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    const auto motion = [&](const Vec3& x) -> Vec3 { return turn * x + Vec3(0.3, -0.2, 0.5); };
+    CHECK(largest_error(visual_positions(bound, moved(box.nodes, motion)), moved(bound.surface.nodes, motion)) < 1e-14);
+}
+
 TEST_CASE("a surface in other units, or far from its body, is reported", "[unit][visual]") {
     const Mesh box = coarse_box();
     const auto warning = [&](VisualSurface surface) {
