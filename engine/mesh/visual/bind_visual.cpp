@@ -15,13 +15,20 @@ namespace skerry {
 
 namespace {
 
+// Surfaces beside a coarse mesh are at most about this number of mean edges outside of the body.
+constexpr Real most_edges_outside = 3;
+
 /// Finds the tetrahedron around a point, and the nearest point of the boundary.
 class RestShape {
 public:
     /// `boundary`: boundary of the tetrahedra, with at least one triangle.
     RestShape(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
               const SurfaceMesh& boundary)
-        : nodes_(nodes), tetrahedra_(tetrahedra), boundary_(boundary), tree_(boundary) {
+        : nodes_(nodes),
+          tetrahedra_(tetrahedra),
+          boundary_(boundary),
+          tree_(boundary),
+          reach_(most_edges_outside * mesh::mean_edge(boundary)) {
         std::vector<Aabb> boxes;
         for (const std::array<Index, 4>& corners : tetrahedra) {
             boxes.push_back(empty_box());
@@ -30,7 +37,10 @@ public:
         boxes_ = BoxTree(boxes);
     }
 
-    MaterialPoint nearest(const Vec3& place) const {
+    /// `normal`: normal of the visual surface at this place. Of the triangles near a place outside of the body, those
+    /// that face the same way come first, so that surfaces on both sides of a gap follow different sides. If there are
+    /// none, the nearest triangle counts.
+    MaterialPoint nearest(const Vec3& place, const Vec3& normal) const {
         // Tolerance for rounding errors of barycentric coordinates, so that no point lies between two tetrahedra.
         constexpr Real rounding = 1e-9;
         MaterialPoint inside;
@@ -45,7 +55,8 @@ public:
                             inside = point;
                         });
         if (best > -rounding) return inside;
-        mesh::NearestTriangle found = tree_.nearest(place);
+        mesh::NearestTriangle found = tree_.nearest_facing(place, normal, reach_ * reach_);
+        if (found.triangle == no_index) found = tree_.nearest(place);
         if (found.triangle == no_index) found = {0, {1, 0, 0}, infinity};  // squares of distances overflow
         const auto& [a, b, c] = boundary_.triangles[static_cast<std::size_t>(found.triangle)];
         return {{a, b, c, a}, {found.weight[0], found.weight[1], found.weight[2], 0}};
@@ -56,8 +67,22 @@ private:
     std::span<const std::array<Index, 4>> tetrahedra_;
     const SurfaceMesh& boundary_;
     mesh::TriangleTree tree_;
+    Real reach_;  // largest distance of triangles that are preferred for their normal [m]
     BoxTree boxes_;
 };
+
+/// Normals of the nodes of a surface: sums over their triangles, weighted by area [m^2].
+std::vector<Vec3> normals_of_nodes(const VisualSurface& surface) {
+    std::vector<Vec3> normals(surface.nodes.size(), Vec3::Zero());
+    for (const std::array<Index, 3>& corners : surface.triangles) {
+        const auto at = [&](std::size_t k) -> const Vec3& {
+            return surface.nodes[static_cast<std::size_t>(corners[k])];
+        };
+        const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0));
+        for (const Index n : corners) normals[static_cast<std::size_t>(n)] += normal;
+    }
+    return normals;
+}
 
 SurfaceMesh boundary_of(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra) {
     SurfaceMesh surface{.nodes = {nodes.begin(), nodes.end()}, .triangles = {}};
@@ -113,15 +138,13 @@ Real extent_of(std::span<const Vec3> points) {
 
 /// Describes a fit that suggests wrong units or a wrong position. `edge`: mean edge length of the body [m].
 std::string warning_of(const BoundVisual& visual, std::span<const Vec3> nodes, Real edge) {
-    // Surfaces beside a coarse mesh are at most about one edge outside.
-    constexpr Real most_edges = 3;
     // A wrong unit changes sizes by a factor of at least 10.
     constexpr Real most_ratio = 5;
     const Real ratio = extent_of(visual.surface.nodes) / extent_of(nodes);
     if (ratio > most_ratio || ratio < 1 / most_ratio)
         return "the visual surface is " + short_text(ratio) +
                " times as large as the body; check the units of both, and its \"scale\"";
-    if (visual.fit.farthest > most_edges * edge)
+    if (visual.fit.farthest > most_edges_outside * edge)
         return "nodes of the visual surface are up to " + short_text(visual.fit.farthest) +
                " m outside of the body, whose surface has a mean edge length of " + short_text(edge) +
                " m; check the position and the units of the surface";
@@ -143,7 +166,7 @@ void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes,
     const RestShape shape(nodes, {}, surface);
     std::vector<bool> wanted(nodes.size(), false);
     for (const Vec3& place : visual.surface.nodes) {
-        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place));
+        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place, Vec3::Zero()));
         visual.offset.push_back(place - position_of(point, nodes));
         for (const Index n : point.node) wanted[static_cast<std::size_t>(n)] = true;
     }
@@ -179,8 +202,10 @@ BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
     const RestShape shape(nodes, tetrahedra, boundary);
     std::vector<bool> wanted(nodes.size(), false);
     visual.offset.reserve(visual.surface.nodes.size());
-    for (const Vec3& place : visual.surface.nodes) {
-        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place));
+    const std::vector<Vec3> normals = normals_of_nodes(visual.surface);
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const Vec3& place = visual.surface.nodes[i];
+        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place, normals[i]));
         // The nearest point of a node inside is the node itself, up to rounding.
         const bool is_inside = point.node[3] != point.node[0];
         visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(place - position_of(point, nodes)));

@@ -125,6 +125,26 @@ TEST_CASE("a visual surface stays connected where its body deforms unevenly", "[
     CHECK(fine < 0.11 * coarse);
 }
 
+TEST_CASE("a visual surface beside a gap of its body follows the side that faces the same way", "[unit][visual]") {
+    // Two blocks with a gap of 0.2 m. The visual square of the first block is 0.12 m in front of it.
+    Mesh blocks = mesh::box({0.4, 0.4, 0.4}, {2, 2, 2});
+    const auto count = static_cast<Index>(blocks.nodes.size());
+    const Mesh one = blocks;
+    for (const Vec3& node : one.nodes) blocks.nodes.push_back(node + Vec3(0.6, 0, 0));
+    for (const auto& [a, b, c, d] : one.tetrahedra)
+        blocks.tetrahedra.push_back({a + count, b + count, c + count, d + count});
+    const VisualSurface square{.nodes = {{0.32, -0.1, -0.1}, {0.32, 0.1, -0.1}, {0.32, 0.1, 0.1}, {0.32, -0.1, 0.1}},
+                               .triangles = {{0, 1, 2}, {0, 2, 3}}};
+    const auto second_away = [](const Vec3& x) -> Vec3 { return x.x() > 0.3 ? Vec3(x + Vec3(0.5, 0, 0)) : x; };
+    const BoundVisual bound = bind_visual(square, blocks.nodes, blocks.tetrahedra);
+    CHECK(largest_error(visual_positions(bound, moved(blocks.nodes, second_away)), square.nodes) < 1e-14);
+    // The turned square belongs to the second block.
+    VisualSurface turned = square;
+    for (auto& triangle : turned.triangles) std::swap(triangle[0], triangle[1]);
+    const BoundVisual behind = bind_visual(turned, blocks.nodes, blocks.tetrahedra);
+    CHECK(visual_positions(behind, moved(blocks.nodes, second_away))[0].x() == Approx(0.82));
+}
+
 TEST_CASE("values of nodes are interpolated inside, and taken from the nearest point outside", "[unit][visual]") {
     const Mesh box = coarse_box();
     const VisualSurface surface{.nodes = {{0.1, 0.2, 0.05}, {0.3, 0.1, 0.8}, {0, 0, 0}}, .triangles = {{0, 1, 2}}};
