@@ -35,32 +35,51 @@ std::vector<T> gathered(std::span<const Index> nodes, std::span<const T> of_node
     return values;
 }
 
-/// Normal forces of the contacts, divided by the area of the surface that belongs to each node [Pa].
+/// Area of the surface that belongs to each node [m^2].
+std::vector<Real> areas_of_nodes(const BodyFrame& body) {
+    std::vector<Real> area(body.position.size(), 0);
+    for (const auto& triangle : body.surface) {
+        const auto corner = [&](std::size_t k) { return body.position[static_cast<std::size_t>(triangle[k])]; };
+        const Real third = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
+        for (const Index node : triangle) area[static_cast<std::size_t>(node)] += third;
+    }
+    return area;
+}
+
+/// Returns the node with an area that is nearest to a point, or `node` if no node has an area.
+std::size_t nearest_drawn(const BodyFrame& body, std::span<const Real> area, const Vec3& point, std::size_t node) {
+    Real least = infinity;
+    for (std::size_t n = 0; n < area.size(); ++n) {
+        const Real distance = (body.position[n] - point).squaredNorm();
+        if (area[n] == 0 || !(distance < least)) continue;
+        least = distance;
+        node = n;
+    }
+    return node;
+}
+
+/// Normal forces of the contacts, divided by the area of the surface that belongs to each node [Pa]. The forces on the
+/// core nodes of round bodies, which are not drawn, count at the drawn node nearest to the contact point.
 std::vector<std::vector<Real>> contact_pressures(const Frame& frame) {
-    std::vector<std::vector<Real>> pressure;
+    std::vector<std::vector<Real>> pressure, area;
     std::map<BodyHandle, std::size_t> number;
     for (const BodyFrame& body : frame.bodies) {
         number.emplace(body.handle, pressure.size());
         pressure.emplace_back(body.position.size(), 0);
+        area.push_back(areas_of_nodes(body));
     }
     for (const Contact& contact : frame.contacts)
         for (std::size_t a = 0; a < contact.node.size(); ++a) {
             const auto found = number.find(contact.weight[a] > 0 ? contact.first : contact.second);
             if (contact.weight[a] == 0 || found == number.end()) continue;
-            pressure[found->second][static_cast<std::size_t>(contact.node[a])] +=
-                std::abs(contact.weight[a] * contact.force().dot(contact.normal));
+            const std::size_t b = found->second;
+            auto node = static_cast<std::size_t>(contact.node[a]);
+            if (area[b][node] == 0) node = nearest_drawn(frame.bodies[b], area[b], contact.point, node);
+            pressure[b][node] += std::abs(contact.weight[a] * contact.force().dot(contact.normal));
         }
-    for (std::size_t b = 0; b < frame.bodies.size(); ++b) {
-        const BodyFrame& body = frame.bodies[b];
-        std::vector<Real> area(body.position.size(), 0);
-        for (const auto& triangle : body.surface) {
-            const auto corner = [&](std::size_t k) { return body.position[static_cast<std::size_t>(triangle[k])]; };
-            const Real third = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
-            for (const Index node : triangle) area[static_cast<std::size_t>(node)] += third;
-        }
-        for (std::size_t n = 0; n < area.size(); ++n)
-            if (area[n] > 0) pressure[b][n] /= area[n];
-    }
+    for (std::size_t b = 0; b < pressure.size(); ++b)
+        for (std::size_t n = 0; n < pressure[b].size(); ++n)
+            if (area[b][n] > 0) pressure[b][n] /= area[b][n];
     return pressure;
 }
 
