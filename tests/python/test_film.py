@@ -215,6 +215,7 @@ usemtl picture
 f 1/1 3/3 4/2
 """
 MTL = "newmtl red skin\nKd 1 0.5 0.25\nd 0.5\nnewmtl picture\nmap_Kd picture.png\n"
+LINEAR = [1, 0.2140411, 0.0508761]  # the colour of "red skin", which is sRGB
 PNG = bytes.fromhex(  # one red pixel
     "89504e470d0a1a0a0000000d4948445200000001000000010802000000907753de0000000c4944415408d763f8cfc0000003010100"
     "18dd8db00000000049454e44ae426082"
@@ -256,7 +257,7 @@ def test_a_visual_surface_is_filmed_with_texture_and_materials(tmp_path: Path) -
         materials[material.GetPrim().GetName()] = (list(subset.GetIndicesAttr().Get()), material)
     assert {name: faces for name, (faces, _) in materials.items()} == {"red_skin": [0], "picture": [1]}
     surface = materials["red_skin"][1].ComputeSurfaceSource()[0]
-    assert surface.GetInput("diffuseColor").Get() == (1, 0.5, 0.25) and surface.GetInput("opacity").Get() == 0.5
+    assert tuple(surface.GetInput("diffuseColor").Get()) == pytest.approx(LINEAR) and surface.GetInput("opacity").Get() == 0.5
     reader = materials["picture"][1].ComputeSurfaceSource()[0].GetInput("diffuseColor").GetConnectedSource()[0]
     image = UsdShade.Shader(reader).GetInput("file").Get()
     assert image.path == "../picture.png" and Path(image.resolvedPath).read_bytes() == PNG
@@ -293,7 +294,7 @@ def test_a_gltf_file_has_the_materials_of_a_visual_surface(tmp_path: Path) -> No
     found = gltf_json(tmp_path / "a.glb")
     assert [material["name"] for material in found["materials"]] == ["red skin", "picture"]
     red, picture = (material["pbrMetallicRoughness"] for material in found["materials"])
-    assert red["baseColorFactor"] == [1, 0.5, 0.25, 0.5] and found["materials"][0]["alphaMode"] == "BLEND"
+    assert red["baseColorFactor"] == pytest.approx([*LINEAR, 0.5]) and found["materials"][0]["alphaMode"] == "BLEND"
     assert picture["baseColorTexture"]["index"] == 0
     view = found["bufferViews"][found["images"][0]["bufferView"]]
     start = (tmp_path / "a.glb").read_bytes().index(PNG)

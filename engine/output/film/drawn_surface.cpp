@@ -18,12 +18,14 @@ constexpr std::uint32_t body_colors[] = {0x6fa8dc, 0xe6a15c, 0x7fbf7b, 0xd98cb3,
                                          0xd8c25f, 0x6cc5c1, 0xe07f72, 0xa9b665, 0x8f9fb8};
 constexpr std::uint32_t collider_color = 0x9fb0c0;
 
+/// Converts a channel in [0, 1] from sRGB.
+float linear_channel(float value) {
+    return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
+}
+
 /// Converts a colour from sRGB with eight bits per channel.
 Color linear(std::uint32_t srgb) {
-    const auto channel = [srgb](int shift) {
-        const float value = static_cast<float>(srgb >> shift & 255) / 255;
-        return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
-    };
+    const auto channel = [srgb](int shift) { return linear_channel(static_cast<float>(srgb >> shift & 255) / 255); };
     return {channel(16), channel(8), channel(0)};
 }
 
@@ -181,6 +183,12 @@ Color color_of_body(std::size_t number) {
 
 Color color_of_colliders() {
     return linear(collider_color);
+}
+
+Color color_of_material(const VisualMaterial& material) {
+    Color color;
+    for (std::size_t k = 0; k < color.size(); ++k) color[k] = linear_channel(static_cast<float>(material.color[k]));
+    return color;
 }
 
 }  // namespace skerry

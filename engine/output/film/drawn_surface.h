@@ -61,5 +61,6 @@ Color color_of_value(Real value, Real top);
 /// Colour of a body by its number, for FilmColor::none.
 Color color_of_body(std::size_t number);
 Color color_of_colliders();
+Color color_of_material(const VisualMaterial& material);
 
 }  // namespace skerry

@@ -20,7 +20,7 @@ class VisualMaterial:
     """Material of a visual surface.
 
     name: name of the material.
-    color: red, green and blue, each from 0 to 1.
+    color: red, green and blue of sRGB, each from 0 to 1.
     opacity: from 0 to 1.
     texture: path of the image that replaces the colour; empty: none.
     """
