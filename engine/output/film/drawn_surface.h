@@ -63,4 +63,7 @@ Color color_of_body(std::size_t number);
 Color color_of_colliders();
 Color color_of_material(const VisualMaterial& material);
 
+/// Throws SceneError if this library was built without glTF.
+void require_gltf();
+
 }  // namespace skerry

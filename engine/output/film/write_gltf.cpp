@@ -243,6 +243,8 @@ private:
 
 }  // namespace
 
+void require_gltf() {}
+
 void write_gltf(const World& world, const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max) {
     require_extension(file, {".glb"});
     if (color_max) require_positive(file, "color_max", *color_max);
