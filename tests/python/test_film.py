@@ -220,7 +220,8 @@ def test_a_visual_surface_is_filmed_with_texture_and_materials(tmp_path: Path) -
         materials[material.GetPrim().GetName()] = (list(subset.GetIndicesAttr().Get()), material)
     assert {name: faces for name, (faces, _) in materials.items()} == {"red_skin": [0], "picture": [1]}
     surface = materials["red_skin"][1].ComputeSurfaceSource()[0]
-    assert tuple(surface.GetInput("diffuseColor").Get()) == pytest.approx(LINEAR) and surface.GetInput("opacity").Get() == 0.5
+    assert tuple(surface.GetInput("diffuseColor").Get()) == pytest.approx(LINEAR)
+    assert surface.GetInput("opacity").Get() == 0.5
     reader = materials["picture"][1].ComputeSurfaceSource()[0].GetInput("diffuseColor").GetConnectedSource()[0]
     image = UsdShade.Shader(reader).GetInput("file").Get()
     assert image.path == "../picture.png" and Path(image.resolvedPath).read_bytes() == PNG

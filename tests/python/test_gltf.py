@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import skerry as sk
-from worlds import LINEAR, PNG, ball_world, painted_world
+from worlds import LINEAR, PNG, RUBBER, ball_world, painted_world
 
 
 def gltf_json(file: Path) -> Any:
@@ -19,6 +19,41 @@ def gltf_json(file: Path) -> Any:
     assert data[:4] == b"glTF" and struct.unpack("<I", data[8:12])[0] == len(data)
     length = struct.unpack("<I", data[12:16])[0]
     return json.loads(data[20 : 20 + length])
+
+
+def gltf_values(file: Path, attribute: str) -> Any:
+    """Values of an attribute at the vertices of the first mesh."""
+    data, found = file.read_bytes(), gltf_json(file)
+    accessor = found["accessors"][found["meshes"][0]["primitives"][0]["attributes"][attribute]]
+    start = 28 + struct.unpack("<I", data[12:16])[0] + found["bufferViews"][accessor["bufferView"]]["byteOffset"]
+    width = {"SCALAR": 1, "VEC3": 3}[accessor["type"]]
+    return np.frombuffer(data, np.float32, accessor["count"] * width, start).reshape(-1, width).squeeze()
+
+
+def test_speeds_on_the_visual_surface_of_a_round_body_are_those_of_its_points(tmp_path: Path) -> None:
+    world = sk.World(threads=1)
+    nodes = np.array([[0.5, 0.5, 0.5], [-0.5, 0.5, 0.5], [-0.5, -0.5, 0.5], [0.1, 0, 0]])
+    visual = sk.VisualSurface(nodes, [[0, 1, 2], [0, 2, 3]])
+    world.add_body(
+        sk.Sphere(radius=0.3), RUBBER, dynamics="rigid", velocity=(1, 0, 0), angular_velocity=(0, 0, 10), visual=visual
+    )
+    world.gltf(tmp_path / "a.glb", color="speed")
+    expected = np.linalg.norm(np.cross([0, 0, 10], nodes) + [1, 0, 0], axis=1)
+    np.testing.assert_allclose(gltf_values(tmp_path / "a.glb", "_SPEED"), expected, rtol=1e-5)
+
+
+@pytest.mark.parametrize("shape", [sk.Sphere(radius=0.1), sk.Capsule(radius=0.1, length=0.2)])
+def test_contact_pressures_of_round_bodies_are_at_drawn_nodes(shape: Any, tmp_path: Path) -> None:
+    world = sk.World(threads=1)
+    world.add_collider(sk.Plane())
+    world.add_body(shape, RUBBER, dynamics="rigid", position=(0, 0, 0.3))
+    while not len(world.contacts) or not np.any(world.contacts["force"]):
+        world.advance(0.01)
+    world.gltf(tmp_path / "a.glb", color="contact")
+    pressure = gltf_values(tmp_path / "a.glb", "_CONTACT_PRESSURE")
+    height = gltf_values(tmp_path / "a.glb", "POSITION")[:, 2]
+    assert pressure.min() == 0 and pressure.max() > 0
+    assert height[pressure.argmax()] < height.min() + 0.02
 
 
 def test_a_gltf_file_has_the_state_of_the_world(tmp_path: Path) -> None:
