@@ -2,6 +2,7 @@
 // reading a compressed VTK file, then throws SceneError.
 #include "engine/absent/refuse_absent.h"
 #include "engine/mesh/formats/inflate.h"
+#include "engine/output/film/drawn_surface.h"
 #include "skerry/output.h"
 
 namespace skerry {
@@ -15,8 +16,12 @@ PageWriter::~PageWriter() = default;
 void PageWriter::add_frame(const World&) {}
 void PageWriter::close(const World&) {}
 
-void write_gltf(const World&, const std::filesystem::path&, FilmColor, std::optional<Real>) {
+void require_gltf() {
     refuse_absent("write_gltf", "SKERRY_PAGES");
+}
+
+void write_gltf(const World&, const std::filesystem::path&, FilmColor, std::optional<Real>) {
+    require_gltf();
 }
 
 std::optional<std::string> mesh::inflated(std::string_view, std::size_t) {

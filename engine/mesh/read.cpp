@@ -264,6 +264,9 @@ void read_materials(const std::string& path, const std::vector<std::string>& fil
             if (used == materials.end()) continue;
             missing.erase(found.name);
             *used = std::move(found);
+            // A saved world must find the image from any working folder.
+            if (!used->texture.empty())
+                used->texture = std::filesystem::absolute(used->texture).lexically_normal().string();
         }
     }
     if (!notes) return;

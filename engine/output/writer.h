@@ -57,6 +57,7 @@ std::unique_ptr<Writer> probe_series(const std::filesystem::path& file, const Sc
 /// file is .usd or .usdc.
 std::unique_ptr<Writer> usd_film(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max);
 /// Output of the state at the end of the run as glTF. Throws SceneError unless the extension of the file is .glb.
+/// Also throws if glTF is not built in.
 std::unique_ptr<Writer> gltf_state(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max);
 /// Output of a trace of the activities of all threads, for Perfetto.
 std::unique_ptr<Writer> thread_trace(const std::filesystem::path& file);

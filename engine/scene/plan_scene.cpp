@@ -216,7 +216,8 @@ std::shared_ptr<const BoundVisual> plan_visual(const BodyEntry& entry, const std
         called_at(visual.place, [&] { return mesh::read_visual(visual.file.path.string(), &plan.notes); });
     for (Vec3& node : surface.nodes) node *= scale;
     const Mesh& mesh = plan.meshes[of_plan];
-    bound = std::make_shared<const BoundVisual>(bind_visual(std::move(surface), mesh.nodes, mesh.tetrahedra));
+    bound = std::make_shared<const BoundVisual>(
+        bind_visual(std::move(surface), mesh.nodes, mesh.tetrahedra, mesh.triangles));
     if (!bound->fit.warning.empty()) plan.notes.push_back("body '" + name + "': " + bound->fit.warning);
     return bound;
 }

@@ -29,7 +29,7 @@ VisualFit Visuals::set(BodyHandle body, VisualSurface surface) {
     const BodyRecord& record = state.model.body_records[row];
     require_visual(surface, "visual surface of body '" + record.name + "'");
     auto visual = std::make_shared<const BoundVisual>(
-        bind_visual(std::move(surface), state.model.mesh_shape(row), record.tetrahedra));
+        bind_visual(std::move(surface), state.model.mesh_shape(row), record.tetrahedra, record.surface));
     set_bound_visual(*world_, body, visual);
     return visual->fit;
 }

@@ -1,9 +1,7 @@
-"""Films (USD) and single states (glTF), read back with the libraries of their formats."""
+"""Films (USD), read back with the library of their format."""
 
 from __future__ import annotations
 
-import json
-import struct
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +9,7 @@ import numpy as np
 import pytest
 
 import skerry as sk
-from worlds import RUBBER, ball_world
+from worlds import LINEAR, PNG, RUBBER, ball_world, painted_world
 
 pxr = pytest.importorskip("pxr")
 from pxr import Usd, UsdGeom, UsdShade  # noqa: E402
@@ -201,40 +199,6 @@ def test_wrong_films_are_refused_and_leave_no_file(tmp_path: Path) -> None:
     assert [file.name for file in tmp_path.iterdir()] == ["file"]
 
 
-OBJ = """mtllib skin.mtl
-v -0.04 -0.04 0
-v 0.04 -0.04 0
-v 0.04 0.04 0
-v -0.04 0.04 0
-vt 0 0
-vt 1 0
-vt 1 1
-usemtl red skin
-f 1 2 3
-usemtl picture
-f 1/1 3/3 4/2
-"""
-MTL = "newmtl red skin\nKd 1 0.5 0.25\nd 0.5\nnewmtl picture\nmap_Kd picture.png\n"
-PNG = bytes.fromhex(  # one red pixel
-    "89504e470d0a1a0a0000000d4948445200000001000000010802000000907753de0000000c4944415408d763f8cfc0000003010100"
-    "18dd8db00000000049454e44ae426082"
-)
-
-
-def painted_world(folder: Path) -> sk.World:
-    """A ball that falls freely, drawn as a square with two materials."""
-    (folder / "skin.obj").write_text(OBJ)
-    (folder / "skin.mtl").write_text(MTL)
-    (folder / "picture.png").write_bytes(PNG)
-    scene = {
-        "settings": {"threads": 1},
-        "materials": {"rubber": {"E": 2e5, "nu": 0.4, "rho": 1000}},
-        "bodies": [{"name": "ball", "mesh": {"ball": {"radius": 0.05, "resolution": 4}}, "material": "rubber"}],
-    }
-    scene["bodies"][0].update(position=[0, 0, 1], visual="skin.obj")  # type: ignore[index]
-    return sk.load_scene(scene, folder=folder).world
-
-
 def test_a_visual_surface_is_filmed_with_texture_and_materials(tmp_path: Path) -> None:
     world = painted_world(tmp_path)
     ball = world.bodies["ball"]
@@ -256,54 +220,8 @@ def test_a_visual_surface_is_filmed_with_texture_and_materials(tmp_path: Path) -
         materials[material.GetPrim().GetName()] = (list(subset.GetIndicesAttr().Get()), material)
     assert {name: faces for name, (faces, _) in materials.items()} == {"red_skin": [0], "picture": [1]}
     surface = materials["red_skin"][1].ComputeSurfaceSource()[0]
-    assert surface.GetInput("diffuseColor").Get() == (1, 0.5, 0.25) and surface.GetInput("opacity").Get() == 0.5
+    assert tuple(surface.GetInput("diffuseColor").Get()) == pytest.approx(LINEAR)
+    assert surface.GetInput("opacity").Get() == 0.5
     reader = materials["picture"][1].ComputeSurfaceSource()[0].GetInput("diffuseColor").GetConnectedSource()[0]
     image = UsdShade.Shader(reader).GetInput("file").Get()
     assert image.path == "../picture.png" and Path(image.resolvedPath).read_bytes() == PNG
-
-
-def gltf_json(file: Path) -> Any:
-    data = file.read_bytes()
-    assert data[:4] == b"glTF" and struct.unpack("<I", data[8:12])[0] == len(data)
-    length = struct.unpack("<I", data[12:16])[0]
-    return json.loads(data[20 : 20 + length])
-
-
-def test_a_gltf_file_has_the_state_of_the_world(tmp_path: Path) -> None:
-    pyvista = pytest.importorskip("pyvista")
-    world, ball, _ = ball_world()
-    world.run(0.1)
-    world.gltf(tmp_path / "a.glb", color="speed")
-    found = pyvista.read(tmp_path / "a.glb")
-    mesh = found[0][0].combine()
-    triangles = mesh.cells.reshape(-1, 4)[:, 1:]
-    # x, y and z of the world are x, -z and y of glTF
-    points, normals = (rows[:, [0, 2, 1]] * (1, -1, 1) for rows in (mesh.points, mesh["NORMAL"]))
-    np.testing.assert_allclose(points[triangles], np.asarray(ball.positions)[ball.surface], atol=1e-7)
-    speed = np.linalg.norm(ball.velocities, axis=1)
-    np.testing.assert_allclose(np.ravel(mesh["_SPEED"])[triangles], speed[ball.surface], rtol=1e-6)
-    assert mesh["COLOR_0"].shape[0] == len(points)
-    outward = points - points.mean(axis=0)
-    outward /= np.linalg.norm(outward, axis=1)[:, None]
-    assert ((normals * outward).sum(axis=1) > 0.9).all()
-
-
-def test_a_gltf_file_has_the_materials_of_a_visual_surface(tmp_path: Path) -> None:
-    painted_world(tmp_path).gltf(tmp_path / "a.glb")
-    found = gltf_json(tmp_path / "a.glb")
-    assert [material["name"] for material in found["materials"]] == ["red skin", "picture"]
-    red, picture = (material["pbrMetallicRoughness"] for material in found["materials"])
-    assert red["baseColorFactor"] == [1, 0.5, 0.25, 0.5] and found["materials"][0]["alphaMode"] == "BLEND"
-    assert picture["baseColorTexture"]["index"] == 0
-    view = found["bufferViews"][found["images"][0]["bufferView"]]
-    start = (tmp_path / "a.glb").read_bytes().index(PNG)
-    assert view["byteLength"] == len(PNG) and start > 0
-
-
-def test_wrong_gltf_files_are_refused(tmp_path: Path) -> None:
-    world, _, _ = ball_world()
-    with pytest.raises(sk.SceneError, match=r"found the extension \.gltf, expected \.glb"):
-        world.gltf(tmp_path / "a.gltf")
-    with pytest.raises(sk.SceneError, match="color_max: found -1.000000, expected a number above 0"):
-        world.gltf(tmp_path / "a.glb", color="speed", color_max=-1)
-    assert list(tmp_path.iterdir()) == []

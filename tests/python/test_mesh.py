@@ -383,3 +383,10 @@ def test_a_surface_check_finds_faults_and_shells() -> None:
     assert len(report.cleaned.triangles) == len(report.number) == len(report.shell) == 2 * count
     with pytest.raises(sk.SceneError, match="triangle 0: node: found 7"):
         sk.check_surface(sk.SurfaceMesh(nodes=np.zeros((3, 3)), triangles=[[0, 1, 7]]))
+
+
+def test_a_surface_check_reads_a_file(tmp_path: Path) -> None:
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    report = sk.check_surface(tmp_path / "a.obj")
+    assert report.area == 0.5
+    assert report.faults == sk.check_surface(str(tmp_path / "a.obj")).faults != ()

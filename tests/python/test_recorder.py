@@ -3,6 +3,7 @@
 import math
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -261,3 +262,24 @@ def test_a_world_does_not_jump_in_time_while_a_recorder_follows_it() -> None:
     assert len(recorder) == 3
     world.reset(saved)
     assert world.time == 0
+
+
+def test_a_write_error_of_a_film_is_raised_as_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class FullDisk:
+        """A film writer that fails at its third frame, and then refuses calls as a closed one."""
+
+        def __init__(self, *_: Any) -> None:
+            self.frames = 0
+
+        def add_frame(self, _: Any) -> None:
+            self.frames += 1
+            if self.frames >= 3:
+                raise OSError("disk full" if self.frames == 3 else "closed")
+
+        def close(self) -> None:
+            raise OSError("closed")
+
+    monkeypatch.setattr(_core, "FilmWriter", FullDisk)
+    world, _, _ = ball_world()
+    with pytest.raises(OSError, match="disk full"), world.usd(tmp_path / "a.usd", every=0.01):
+        world.run(0.05, dt=0.01)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import pickle
 import re
 from pathlib import Path
 
@@ -75,3 +76,21 @@ def test_a_page_has_the_materials_and_names_missing_textures(tmp_path: Path) -> 
     values = json.loads(run[1])
     assert values["visual_of_body"] == [0]
     assert values["visuals"][0][0]["left_out"].endswith("gone.png")
+
+
+def test_a_visual_surface_can_be_copied_pickled_and_compared(tmp_path: Path) -> None:
+    (tmp_path / "a.mtl").write_text("newmtl red\nKd 1 0 0\nmap_Kd red.png\n")
+    (tmp_path / "a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 1\nusemtl red\nf 1/1 2/1 3/1\n")
+    surface = sk.VisualSurface.read(tmp_path / "a.obj")
+    for same in (copy.copy(surface), copy.deepcopy(surface), pickle.loads(pickle.dumps(surface))):
+        assert same == surface and hash(same) == hash(surface) and same.file == surface.file
+        assert same.materials == surface.materials
+    assert surface != sk.VisualSurface(surface.nodes, surface.triangles)
+    assert surface != 1
+
+
+def test_paths_of_textures_are_absolute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("a.mtl").write_text("newmtl red\nmap_Kd red.png\n")
+    Path("a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n")
+    assert sk.VisualSurface.read("a.obj").materials[0].texture == str(tmp_path / "red.png")

@@ -10,6 +10,7 @@ import sys
 import textwrap
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import skerry as sk
@@ -62,3 +63,38 @@ def run_program(program: str, *, check: bool = True, **options: Any) -> subproce
     if check:
         assert (done.returncode, done.stderr) == (0, ""), done.stdout + done.stderr
     return done
+
+
+OBJ = """mtllib skin.mtl
+v -0.04 -0.04 0
+v 0.04 -0.04 0
+v 0.04 0.04 0
+v -0.04 0.04 0
+vt 0 0
+vt 1 0
+vt 1 1
+usemtl red skin
+f 1 2 3
+usemtl picture
+f 1/1 3/3 4/2
+"""
+MTL = "newmtl red skin\nKd 1 0.5 0.25\nd 0.5\nnewmtl picture\nmap_Kd picture.png\n"
+LINEAR = [1, 0.2140411, 0.0508761]  # the colour of "red skin", which is sRGB
+PNG = bytes.fromhex(  # one red pixel
+    "89504e470d0a1a0a0000000d4948445200000001000000010802000000907753de0000000c4944415408d763f8cfc0000003010100"
+    "18dd8db00000000049454e44ae426082"
+)
+
+
+def painted_world(folder: Path) -> sk.World:
+    """A ball that falls freely, drawn as a square with two materials."""
+    (folder / "skin.obj").write_text(OBJ)
+    (folder / "skin.mtl").write_text(MTL)
+    (folder / "picture.png").write_bytes(PNG)
+    scene = {
+        "settings": {"threads": 1},
+        "materials": {"rubber": {"E": 2e5, "nu": 0.4, "rho": 1000}},
+        "bodies": [{"name": "ball", "mesh": {"ball": {"radius": 0.05, "resolution": 4}}, "material": "rubber"}],
+    }
+    scene["bodies"][0].update(position=[0, 0, 1], visual="skin.obj")  # type: ignore[index]
+    return sk.load_scene(scene, folder=folder).world

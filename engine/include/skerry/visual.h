@@ -15,7 +15,7 @@ class World;
 
 struct VisualMaterial {
     std::string name;
-    std::array<Real, 3> color{0.8, 0.8, 0.8};  // red, green and blue, each in [0, 1]
+    std::array<Real, 3> color{0.8, 0.8, 0.8};  // red, green and blue of sRGB, each in [0, 1]
     Real opacity = 1;                          // in [0, 1]
     std::string texture{};                     // path of the image that replaces the colour; empty: none
 

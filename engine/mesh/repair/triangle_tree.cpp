@@ -1,5 +1,6 @@
 #include "engine/mesh/repair/triangle_tree.h"
 
+#include <Eigen/Geometry>
 #include <utility>
 
 #include "systems/collision/tree/box.h"
@@ -14,11 +15,24 @@ TriangleTree::TriangleTree(SurfaceMesh surface) : surface_(std::move(surface)) {
 
 NearestTriangle TriangleTree::nearest(const Vec3& point, Real limit) const {
     NearestTriangle nearest{.distance_squared = limit};
-    search(0, point, nearest);
+    search(0, point, nullptr, nearest);
     return nearest;
 }
 
-void TriangleTree::search(Index row, const Vec3& point, NearestTriangle& nearest) const {
+NearestTriangle TriangleTree::nearest_facing(const Vec3& point, const Vec3& facing, Real limit) const {
+    NearestTriangle nearest{.distance_squared = limit};
+    search(0, point, &facing, nearest);
+    return nearest;
+}
+
+bool TriangleTree::faces(Index triangle, const Vec3& point, const Vec3& facing) const {
+    const auto& corners = surface_.triangles[static_cast<std::size_t>(triangle)];
+    const auto at = [&](std::size_t k) -> const Vec3& { return surface_.nodes[static_cast<std::size_t>(corners[k])]; };
+    const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0));
+    return normal.dot(facing) > 0 && normal.dot(point - at(0)) > 0;
+}
+
+void TriangleTree::search(Index row, const Vec3& point, const Vec3* facing, NearestTriangle& nearest) const {
     const BvhNode& node = bvh_.node[static_cast<std::size_t>(row)];
     if (node.leaf != no_index) {
         for (const Index t : leaves_.triangle[static_cast<std::size_t>(node.leaf)]) {
@@ -27,7 +41,8 @@ void TriangleTree::search(Index row, const Vec3& point, NearestTriangle& nearest
             const PointTriangle found = closest_point_on_triangle(point, surface_.nodes[static_cast<std::size_t>(a)],
                                                                   surface_.nodes[static_cast<std::size_t>(b)],
                                                                   surface_.nodes[static_cast<std::size_t>(c)]);
-            if (found.distance_squared < nearest.distance_squared) nearest = {t, found.weight, found.distance_squared};
+            if (found.distance_squared < nearest.distance_squared && (!facing || faces(t, point, *facing)))
+                nearest = {t, found.weight, found.distance_squared};
         }
         return;
     }
@@ -37,7 +52,7 @@ void TriangleTree::search(Index row, const Vec3& point, NearestTriangle& nearest
     for (int i = 0; i < 2; ++i) gap[i] = skerry::distance_squared(bvh_.box[static_cast<std::size_t>(child[i])], point);
     const int first = gap[1] < gap[0];
     for (const int i : {first, 1 - first})
-        if (gap[i] < nearest.distance_squared) search(child[i], point, nearest);
+        if (gap[i] < nearest.distance_squared) search(child[i], point, facing, nearest);
 }
 
 }  // namespace skerry::mesh

@@ -28,9 +28,13 @@ public:
     /// If no triangle is nearer than the root of `limit` [m^2], `triangle` is no_index and `distance_squared` is
     /// `limit`.
     NearestTriangle nearest(const Vec3& point, Real limit = infinity) const;
+    /// The same among the triangles whose normal is within 90 degrees of `facing` and that the point is in front of.
+    NearestTriangle nearest_facing(const Vec3& point, const Vec3& facing, Real limit) const;
 
 private:
-    void search(Index row, const Vec3& point, NearestTriangle& nearest) const;
+    /// `facing`: see nearest_facing; nullptr: all triangles.
+    void search(Index row, const Vec3& point, const Vec3* facing, NearestTriangle& nearest) const;
+    bool faces(Index triangle, const Vec3& point, const Vec3& facing) const;
 
     SurfaceMesh surface_;
     BvhTable bvh_;

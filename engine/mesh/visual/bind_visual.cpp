@@ -15,13 +15,20 @@ namespace skerry {
 
 namespace {
 
+// Surfaces beside a coarse mesh are at most about this number of mean edges outside of the body.
+constexpr Real most_edges_outside = 3;
+
 /// Finds the tetrahedron around a point, and the nearest point of the boundary.
 class RestShape {
 public:
     /// `boundary`: boundary of the tetrahedra, with at least one triangle.
     RestShape(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
               const SurfaceMesh& boundary)
-        : nodes_(nodes), tetrahedra_(tetrahedra), boundary_(boundary), tree_(boundary) {
+        : nodes_(nodes),
+          tetrahedra_(tetrahedra),
+          boundary_(boundary),
+          tree_(boundary),
+          reach_(most_edges_outside * mesh::mean_edge(boundary)) {
         std::vector<Aabb> boxes;
         for (const std::array<Index, 4>& corners : tetrahedra) {
             boxes.push_back(empty_box());
@@ -30,12 +37,15 @@ public:
         boxes_ = BoxTree(boxes);
     }
 
-    MaterialPoint nearest(const Vec3& place) const {
+    /// `normal`: normal of the visual surface at this place. Of the triangles near a place outside of the body, those
+    /// that face the same way come first, so that surfaces on both sides of a gap follow different sides. If there are
+    /// none, the nearest triangle counts.
+    MaterialPoint nearest(const Vec3& place, const Vec3& normal) const {
         // Tolerance for rounding errors of barycentric coordinates, so that no point lies between two tetrahedra.
         constexpr Real rounding = 1e-9;
         MaterialPoint inside;
         Real best = -rounding;
-        boxes_.for_each([&](const Aabb& box) { return distance_squared(box, place) <= 0; },
+        if (!tetrahedra_.empty()) boxes_.for_each([&](const Aabb& box) { return distance_squared(box, place) <= 0; },
                         [&](Index t) {
                             const MaterialPoint point =
                                 point_of_tetrahedron(nodes_, tetrahedra_[static_cast<std::size_t>(t)], place);
@@ -45,7 +55,8 @@ public:
                             inside = point;
                         });
         if (best > -rounding) return inside;
-        mesh::NearestTriangle found = tree_.nearest(place);
+        mesh::NearestTriangle found = tree_.nearest_facing(place, normal, reach_ * reach_);
+        if (found.triangle == no_index) found = tree_.nearest(place);
         if (found.triangle == no_index) found = {0, {1, 0, 0}, infinity};  // squares of distances overflow
         const auto& [a, b, c] = boundary_.triangles[static_cast<std::size_t>(found.triangle)];
         return {{a, b, c, a}, {found.weight[0], found.weight[1], found.weight[2], 0}};
@@ -56,8 +67,22 @@ private:
     std::span<const std::array<Index, 4>> tetrahedra_;
     const SurfaceMesh& boundary_;
     mesh::TriangleTree tree_;
+    Real reach_;  // largest distance of triangles that are preferred for their normal [m]
     BoxTree boxes_;
 };
+
+/// Normals of the nodes of a surface: sums over their triangles, weighted by area [m^2].
+std::vector<Vec3> normals_of_nodes(const VisualSurface& surface) {
+    std::vector<Vec3> normals(surface.nodes.size(), Vec3::Zero());
+    for (const std::array<Index, 3>& corners : surface.triangles) {
+        const auto at = [&](std::size_t k) -> const Vec3& {
+            return surface.nodes[static_cast<std::size_t>(corners[k])];
+        };
+        const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0));
+        for (const Index n : corners) normals[static_cast<std::size_t>(n)] += normal;
+    }
+    return normals;
+}
 
 SurfaceMesh boundary_of(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra) {
     SurfaceMesh surface{.nodes = {nodes.begin(), nodes.end()}, .triangles = {}};
@@ -113,44 +138,74 @@ Real extent_of(std::span<const Vec3> points) {
 
 /// Describes a fit that suggests wrong units or a wrong position. `edge`: mean edge length of the body [m].
 std::string warning_of(const BoundVisual& visual, std::span<const Vec3> nodes, Real edge) {
-    // Surfaces beside a coarse mesh are at most about one edge outside.
-    constexpr Real most_edges = 3;
     // A wrong unit changes sizes by a factor of at least 10.
     constexpr Real most_ratio = 5;
     const Real ratio = extent_of(visual.surface.nodes) / extent_of(nodes);
     if (ratio > most_ratio || ratio < 1 / most_ratio)
         return "the visual surface is " + short_text(ratio) +
                " times as large as the body; check the units of both, and its \"scale\"";
-    if (visual.fit.farthest > most_edges * edge)
+    if (visual.fit.farthest > most_edges_outside * edge)
         return "nodes of the visual surface are up to " + short_text(visual.fit.farthest) +
                " m outside of the body, whose surface has a mean edge length of " + short_text(edge) +
                " m; check the position and the units of the surface";
     return {};
 }
 
-/// Binds all nodes to one tetrahedron, whose corners are nodes of a rigid body.
-void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes) {
+/// Binds all nodes to a rigid body, each to the nearest point of its triangles. Offsets from these points turn with one
+/// tetrahedron of distant nodes. Without triangles all nodes are bound to this tetrahedron.
+void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes,
+                   std::span<const std::array<Index, 3>> triangles) {
     const std::array<Index, 4> corners = point_of_solid(nodes, nodes[0]).node;
-    for (const Vec3& place : visual.surface.nodes) visual.point.push_back(point_of_tetrahedron(nodes, corners, place));
     visual.fit.warning = warning_of(visual, nodes, infinity);
+    if (triangles.empty()) {
+        for (const Vec3& place : visual.surface.nodes)
+            visual.point.push_back(point_of_tetrahedron(nodes, corners, place));
+        return;
+    }
+    const SurfaceMesh surface{.nodes = {nodes.begin(), nodes.end()}, .triangles = {triangles.begin(), triangles.end()}};
+    const RestShape shape(nodes, {}, surface);
+    std::vector<bool> wanted(nodes.size(), false);
+    for (const Vec3& place : visual.surface.nodes) {
+        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place, Vec3::Zero()));
+        visual.offset.push_back(place - position_of(point, nodes));
+        for (const Index n : point.node) wanted[static_cast<std::size_t>(n)] = true;
+    }
+    const auto at = [&](std::size_t k) -> const Vec3& { return nodes[static_cast<std::size_t>(corners[k])]; };
+    std::array<GradientTerm, 4> terms{};  // gradients of the weights of the corners
+    terms[0] = {corners[0], Vec3::Zero()};
+    const Vec3 u = at(1) - at(0), v = at(2) - at(0), w = at(3) - at(0);
+    const std::array<Vec3, 3> area{v.cross(w), w.cross(u), u.cross(v)};
+    for (std::size_t k = 1; k < 4; ++k) {
+        terms[k] = {corners[k], area[k - 1] / u.dot(v.cross(w))};
+        terms[0].gradient -= terms[k].gradient;
+    }
+    visual.gradient.offset.push_back(0);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (wanted[n])
+            for (const GradientTerm& term : terms) visual.gradient.item.push_back(term);
+        visual.gradient.offset.push_back(static_cast<Index>(visual.gradient.item.size()));
+    }
 }
 
 }  // namespace
 
 BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
-                        std::span<const std::array<Index, 4>> tetrahedra) {
+                        std::span<const std::array<Index, 4>> tetrahedra,
+                        std::span<const std::array<Index, 3>> triangles) {
     BoundVisual visual{.surface = std::move(surface), .fit = {}, .point = {}, .offset = {}, .gradient = {}};
     visual.point.reserve(visual.surface.nodes.size());
     const SurfaceMesh boundary = boundary_of(nodes, tetrahedra);
     if (boundary.triangles.empty()) {
-        bind_to_solid(visual, nodes);
+        bind_to_solid(visual, nodes, triangles);
         return visual;
     }
     const RestShape shape(nodes, tetrahedra, boundary);
     std::vector<bool> wanted(nodes.size(), false);
     visual.offset.reserve(visual.surface.nodes.size());
-    for (const Vec3& place : visual.surface.nodes) {
-        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place));
+    const std::vector<Vec3> normals = normals_of_nodes(visual.surface);
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const Vec3& place = visual.surface.nodes[i];
+        const MaterialPoint& point = visual.point.emplace_back(shape.nearest(place, normals[i]));
         // The nearest point of a node inside is the node itself, up to rounding.
         const bool is_inside = point.node[3] != point.node[0];
         visual.offset.push_back(is_inside ? Vec3::Zero() : Vec3(place - position_of(point, nodes)));
@@ -185,7 +240,7 @@ VisualPoints split_at_seams(const VisualSurface& surface) {
 
 std::vector<Vec3> visual_positions(const BoundVisual& visual, std::span<const Vec3> of_body) {
     std::vector<Vec3> positions = visual_values(visual, of_body);
-    if (visual.fit.outside == 0) return positions;
+    if (visual.gradient.item.empty()) return positions;
     std::vector<Mat3> gradient(of_body.size(), Mat3::Zero());
     for (std::size_t n = 0; n < gradient.size(); ++n)
         for (const GradientTerm& term : visual.gradient[n])

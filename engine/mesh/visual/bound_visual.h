@@ -42,9 +42,10 @@ VisualPoints split_at_seams(const VisualSurface& surface);
 void require_visual(const VisualSurface& surface, const std::string& object);
 
 /// Binds a valid surface to a body at rest. `nodes`: at rest [m]. A body without tetrahedra is rigid; `nodes` must then
-/// not lie in one plane.
+/// not lie in one plane. `triangles`: surface of a rigid body, at which values are taken.
 BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
-                        std::span<const std::array<Index, 4>> tetrahedra);
+                        std::span<const std::array<Index, 4>> tetrahedra,
+                        std::span<const std::array<Index, 3>> triangles = {});
 
 /// Positions of the nodes of the surface, given those of the body [m]; or velocities, given those of the body [m/s].
 std::vector<Vec3> visual_positions(const BoundVisual& visual, std::span<const Vec3> of_body);

@@ -18,12 +18,14 @@ constexpr std::uint32_t body_colors[] = {0x6fa8dc, 0xe6a15c, 0x7fbf7b, 0xd98cb3,
                                          0xd8c25f, 0x6cc5c1, 0xe07f72, 0xa9b665, 0x8f9fb8};
 constexpr std::uint32_t collider_color = 0x9fb0c0;
 
+/// Converts a channel in [0, 1] from sRGB.
+float linear_channel(float value) {
+    return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
+}
+
 /// Converts a colour from sRGB with eight bits per channel.
 Color linear(std::uint32_t srgb) {
-    const auto channel = [srgb](int shift) {
-        const float value = static_cast<float>(srgb >> shift & 255) / 255;
-        return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
-    };
+    const auto channel = [srgb](int shift) { return linear_channel(static_cast<float>(srgb >> shift & 255) / 255); };
     return {channel(16), channel(8), channel(0)};
 }
 
@@ -35,32 +37,51 @@ std::vector<T> gathered(std::span<const Index> nodes, std::span<const T> of_node
     return values;
 }
 
-/// Normal forces of the contacts, divided by the area of the surface that belongs to each node [Pa].
+/// Area of the surface that belongs to each node [m^2].
+std::vector<Real> areas_of_nodes(const BodyFrame& body) {
+    std::vector<Real> area(body.position.size(), 0);
+    for (const auto& triangle : body.surface) {
+        const auto corner = [&](std::size_t k) { return body.position[static_cast<std::size_t>(triangle[k])]; };
+        const Real third = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
+        for (const Index node : triangle) area[static_cast<std::size_t>(node)] += third;
+    }
+    return area;
+}
+
+/// Returns the node with an area that is nearest to a point, or `node` if no node has an area.
+std::size_t nearest_drawn(const BodyFrame& body, std::span<const Real> area, const Vec3& point, std::size_t node) {
+    Real least = infinity;
+    for (std::size_t n = 0; n < area.size(); ++n) {
+        const Real distance = (body.position[n] - point).squaredNorm();
+        if (area[n] == 0 || !(distance < least)) continue;
+        least = distance;
+        node = n;
+    }
+    return node;
+}
+
+/// Normal forces of the contacts, divided by the area of the surface that belongs to each node [Pa]. The forces on the
+/// core nodes of round bodies, which are not drawn, count at the drawn node nearest to the contact point.
 std::vector<std::vector<Real>> contact_pressures(const Frame& frame) {
-    std::vector<std::vector<Real>> pressure;
+    std::vector<std::vector<Real>> pressure, area;
     std::map<BodyHandle, std::size_t> number;
     for (const BodyFrame& body : frame.bodies) {
         number.emplace(body.handle, pressure.size());
         pressure.emplace_back(body.position.size(), 0);
+        area.push_back(areas_of_nodes(body));
     }
     for (const Contact& contact : frame.contacts)
         for (std::size_t a = 0; a < contact.node.size(); ++a) {
             const auto found = number.find(contact.weight[a] > 0 ? contact.first : contact.second);
             if (contact.weight[a] == 0 || found == number.end()) continue;
-            pressure[found->second][static_cast<std::size_t>(contact.node[a])] +=
-                std::abs(contact.weight[a] * contact.force().dot(contact.normal));
+            const std::size_t b = found->second;
+            auto node = static_cast<std::size_t>(contact.node[a]);
+            if (area[b][node] == 0) node = nearest_drawn(frame.bodies[b], area[b], contact.point, node);
+            pressure[b][node] += std::abs(contact.weight[a] * contact.force().dot(contact.normal));
         }
-    for (std::size_t b = 0; b < frame.bodies.size(); ++b) {
-        const BodyFrame& body = frame.bodies[b];
-        std::vector<Real> area(body.position.size(), 0);
-        for (const auto& triangle : body.surface) {
-            const auto corner = [&](std::size_t k) { return body.position[static_cast<std::size_t>(triangle[k])]; };
-            const Real third = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
-            for (const Index node : triangle) area[static_cast<std::size_t>(node)] += third;
-        }
-        for (std::size_t n = 0; n < area.size(); ++n)
-            if (area[n] > 0) pressure[b][n] /= area[n];
-    }
+    for (std::size_t b = 0; b < pressure.size(); ++b)
+        for (std::size_t n = 0; n < pressure[b].size(); ++n)
+            if (area[b][n] > 0) pressure[b][n] /= area[b][n];
     return pressure;
 }
 
@@ -91,8 +112,12 @@ std::vector<Vec3> DrawnSurface::vectors(const BodyFrame& body, std::span<const V
     return visual_ != nullptr ? visual_positions(*body.visual, of_nodes) : gathered(node_, of_nodes);
 }
 
-std::vector<Real> DrawnSurface::values(const BodyFrame& body, std::span<const Real> of_nodes) const {
-    return visual_ != nullptr ? visual_values(*body.visual, of_nodes) : gathered(node_, of_nodes);
+std::vector<Real> DrawnSurface::values(const BodyFrame& body, std::span<const Real> of_nodes, FilmColor color) const {
+    if (visual_ == nullptr) return gathered(node_, of_nodes);
+    if (color != FilmColor::speed) return visual_values(*body.visual, of_nodes);
+    std::vector<Real> speeds;
+    for (const Vec3& velocity : visual_positions(*body.visual, body.velocity)) speeds.push_back(velocity.norm());
+    return speeds;
 }
 
 void require_positive(const std::filesystem::path& file, const char* setting, Real value) {
@@ -158,6 +183,12 @@ Color color_of_body(std::size_t number) {
 
 Color color_of_colliders() {
     return linear(collider_color);
+}
+
+Color color_of_material(const VisualMaterial& material) {
+    Color color;
+    for (std::size_t k = 0; k < color.size(); ++k) color[k] = linear_channel(static_cast<float>(material.color[k]));
+    return color;
 }
 
 }  // namespace skerry

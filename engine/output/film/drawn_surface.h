@@ -22,8 +22,8 @@ public:
     const std::vector<std::array<Index, 3>>& triangles() const { return triangles_; }
     /// Positions or velocities of the vertices, given those of the nodes of `body`.
     std::vector<Vec3> vectors(const BodyFrame& body, std::span<const Vec3> of_nodes) const;
-    /// Values at the vertices, given those at the nodes of `body`.
-    std::vector<Real> values(const BodyFrame& body, std::span<const Real> of_nodes) const;
+    /// Values of a quantity at the vertices, given those at the nodes of `body`.
+    std::vector<Real> values(const BodyFrame& body, std::span<const Real> of_nodes, FilmColor color) const;
 
 private:
     const BoundVisual* visual_;  // visual surface in the first frame, only for comparison
@@ -61,5 +61,9 @@ Color color_of_value(Real value, Real top);
 /// Colour of a body by its number, for FilmColor::none.
 Color color_of_body(std::size_t number);
 Color color_of_colliders();
+Color color_of_material(const VisualMaterial& material);
+
+/// Throws SceneError if this library was built without glTF.
+void require_gltf();
 
 }  // namespace skerry

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/output/collect_frame.h"
+#include "engine/output/film/drawn_surface.h"
 #include "engine/output/film/usd_film.h"
 #include "engine/output/write_file.h"
 #include "engine/output/writer.h"
@@ -118,6 +119,7 @@ public:
     GltfOutput(const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max)
         : file_(file), color_(color), color_max_(color_max) {
         require_extension(file, {".glb"});
+        require_gltf();
     }
 
     void close(const World& world) override { write_gltf(world, file_, color_, color_max_); }

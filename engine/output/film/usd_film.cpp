@@ -139,7 +139,7 @@ void UsdFilm::put_body(const BodyFrame& body, std::span<const Real> quantity) {
     }
     if (!quantity.empty()) {
         std::vector<float> values;
-        for (const Real value : surface.values(body, quantity)) {
+        for (const Real value : surface.values(body, quantity, settings_.color)) {
             values.push_back(static_cast<float>(value));
             quantity_.add(value);
         }
@@ -369,8 +369,7 @@ std::string UsdFilm::material_path(const VisualMaterial& material) {
     const std::string path = looks_path + unique_name(material.name, "material");
     materials_.emplace_back(material, path);
     if (material.texture.empty()) {
-        const auto& [r, g, b] = material.color;
-        const Vec3f color{static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)};
+        const Color color = color_of_material(material);
         add_material(path, attribute("inputs:diffuseColor", "color3f", file_.scalar(CrateType::vec3_float, color)),
                      material.opacity, {});
         return path;

@@ -202,7 +202,11 @@ private:
     std::size_t material_number(const GltfMesh& mesh, Index material) {
         VisualMaterial shown{.name = "vertex_color", .color = {1, 1, 1}};
         if (mesh.values.empty()) shown = {.name = mesh.name, .color = {mesh.color[0], mesh.color[1], mesh.color[2]}};
-        if (material != no_index) shown = mesh.visual->materials[static_cast<std::size_t>(material)];
+        if (material != no_index) {
+            shown = mesh.visual->materials[static_cast<std::size_t>(material)];
+            const Color color = color_of_material(shown);
+            shown.color = {color[0], color[1], color[2]};
+        }
         const auto known = std::ranges::find(materials_, shown);
         if (known != materials_.end()) return static_cast<std::size_t>(known - materials_.begin());
         const auto& [r, g, b] = shown.color;
@@ -239,6 +243,8 @@ private:
 
 }  // namespace
 
+void require_gltf() {}
+
 void write_gltf(const World& world, const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max) {
     require_extension(file, {".glb"});
     if (color_max) require_positive(file, "color_max", *color_max);
@@ -259,7 +265,7 @@ void write_gltf(const World& world, const std::filesystem::path& file, FilmColor
         mesh.color = color_of_body(b);
         if (body.visual != nullptr) mesh.visual = &body.visual->surface;
         if (quantity[b].empty()) continue;
-        for (const Real value : surface.values(body, quantity[b])) {
+        for (const Real value : surface.values(body, quantity[b], color)) {
             mesh.values.push_back(static_cast<float>(value));
             values.add(value);
         }

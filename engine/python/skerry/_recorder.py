@@ -164,16 +164,21 @@ class _Frames:
     def __init__(self, world: World, every: float, add: Callable[[], None]) -> None:
         self._world, self._every, self._add = world, every, add
         self._last = -math.inf
+        self._failed = False
         self._take()
         world._followers.append(self)
 
-    def end(self) -> None:
+    def end(self) -> bool:
+        """Adds the last frame. False: an earlier frame raised an error, so no frame can be added."""
         self._world._followers.remove(self)
-        if self._world.time > self._last:
+        if self._world.time > self._last and not self._failed:
             self._take()
+        return not self._failed
 
     def _take(self) -> None:
+        self._failed = True
         self._add()
+        self._failed = False
         self._last = self._world.time
 
     def require_ready(self) -> None:
@@ -368,8 +373,8 @@ class WorldOutput:
         try:
             yield
         finally:
-            frames.end()
-            writer.close()
+            if frames.end():
+                writer.close()
 
     def gltf(self, path: Path, *, color: FilmColor = "none", color_max: float | None = None) -> None:
         """Writes the present state to a binary glTF file (.glb), with the colours of usd()."""

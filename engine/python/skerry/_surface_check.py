@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._arrays import Vector, read_only, real
+from ._mesh import Path, read_surface
 from ._settings import SurfaceMesh
 
 SurfaceFaultKind: TypeAlias = Literal[
@@ -114,11 +115,14 @@ class SurfaceReport:
     shell: NDArray[np.int32]
 
 
-def check_surface(surface: SurfaceMesh, *, tolerance: float = 1e-6) -> SurfaceReport:
+def check_surface(surface: SurfaceMesh | Path, *, tolerance: float = 1e-6) -> SurfaceReport:
     """Finds the faults and shells of a surface, such as holes, crossings and repeated triangles, and cleans it.
 
+    surface: a surface, or the path of a file for read_surface().
     tolerance: nodes up to this fraction of the diagonal of the bounding box apart are merged; 0 merges equal nodes
     only. SceneError: a node is not finite, a triangle has a node that does not exist, or there are no triangles."""
+    if not isinstance(surface, SurfaceMesh):
+        surface = read_surface(surface)
     values = _core.check_surface(surface.nodes, surface.triangles, real(tolerance, "tolerance"))
     nodes, triangles = values.pop("cleaned")
     return SurfaceReport(

@@ -20,7 +20,7 @@ class VisualMaterial:
     """Material of a visual surface.
 
     name: name of the material.
-    color: red, green and blue, each from 0 to 1.
+    color: red, green and blue of sRGB, each from 0 to 1.
     opacity: from 0 to 1.
     texture: path of the image that replaces the colour; empty: none.
     """
@@ -64,6 +64,7 @@ class VisualSurface:
             index_array(texture_corners, "texture_corners", ("k", 3)),
             rows,
             index_array(material, "material", ("k",)),
+            "",
         )
 
     @classmethod
@@ -119,8 +120,26 @@ class VisualSurface:
         """File from which the surface was read; empty: none."""
         return str(self._core.file())
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, VisualSurface):
+            return NotImplemented
+        return bool(self._core == other._core)
+
+    def __hash__(self) -> int:
+        return hash((self.nodes.tobytes(), self.triangles.tobytes()))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        rows = [(item.name, item.color, item.opacity, item.texture) for item in self.materials]
+        arrays = self.nodes, self.triangles, self.texture_points, self.texture_corners, rows, self.material
+        return (_restored, (*arrays, self.file))
+
     def __repr__(self) -> str:
         return f"<skerry.VisualSurface {len(self.nodes):,} nodes, {len(self.triangles):,} triangles>"
+
+
+def _restored(*parts: Any) -> VisualSurface:
+    """The surface of a pickle."""
+    return VisualSurface._of(_core.new_visual(*parts))
 
 
 VisualLike: TypeAlias = VisualSurface | SurfaceMesh | Path

@@ -19,14 +19,15 @@ using MaterialTuple = std::tuple<std::string, std::array<Real, 3>, Real, std::st
 
 VisualSurface new_visual(const Vectors& nodes, const IndexRows<3>& triangles, const TexturePoints& texture_points,
                          const IndexRows<3>& texture_corners, const std::vector<MaterialTuple>& materials,
-                         const Indices& material) {
+                         const Indices& material, const std::string& file) {
     const auto list = [](const auto& rows) { return std::vector(rows.begin(), rows.end()); };
     const auto* points = reinterpret_cast<const std::array<Real, 2>*>(texture_points.data());
     VisualSurface surface{.nodes = list(span_of(nodes)),
                           .triangles = list(span_of(triangles)),
                           .texture_points{points, points + texture_points.shape(0)},
                           .texture_corners = list(span_of(texture_corners)),
-                          .material = list(span_of(material))};
+                          .material = list(span_of(material)),
+                          .file = file};
     for (const auto& [name, color, opacity, texture] : materials)
         surface.materials.push_back({name, color, opacity, texture});
     return surface;
@@ -63,7 +64,8 @@ void bind_visual_surface(nb::module_& module) {
              })
         .def("material",
              [](const VisualSurface& surface) { return array_of<Index>(std::span<const Index>(surface.material)); })
-        .def("file", [](const VisualSurface& surface) { return surface.file; });
+        .def("file", [](const VisualSurface& surface) { return surface.file; })
+        .def("__eq__", [](const VisualSurface& surface, const VisualSurface& other) { return surface == other; });
     module.def("new_visual", &new_visual);
     module.def("read_visual", &read_visual);
 }

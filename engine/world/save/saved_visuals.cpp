@@ -88,7 +88,8 @@ void put_visuals(const SavedVisuals& saved, const SavedFile& file, Model& model)
             file.complain("visuals/of_body", "a visual surface of body " + std::to_string(b) + ", which has no nodes",
                           "no visual surface");
         if (!is_new && std::ranges::equal(nodes, model.mesh_shape(first->second)) &&
-            record.tetrahedra == model.body_records[first->second].tetrahedra) {
+            record.tetrahedra == model.body_records[first->second].tetrahedra &&
+            record.surface == model.body_records[first->second].surface) {
             record.visual = model.body_records[first->second].visual;
             continue;
         }
@@ -99,7 +100,8 @@ void put_visuals(const SavedVisuals& saved, const SavedFile& file, Model& model)
         } catch (const SceneError& error) {
             file.complain("visuals", std::string("an invalid surface (") + error.what() + ")", "a valid surface");
         }
-        record.visual = std::make_shared<const BoundVisual>(bind_visual(std::move(surface), nodes, record.tetrahedra));
+        record.visual = std::make_shared<const BoundVisual>(
+            bind_visual(std::move(surface), nodes, record.tetrahedra, record.surface));
     }
 }
 

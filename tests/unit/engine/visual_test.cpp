@@ -125,6 +125,26 @@ TEST_CASE("a visual surface stays connected where its body deforms unevenly", "[
     CHECK(fine < 0.11 * coarse);
 }
 
+TEST_CASE("a visual surface beside a gap of its body follows the side that faces the same way", "[unit][visual]") {
+    // Two blocks with a gap of 0.2 m. The visual square of the first block is 0.12 m in front of it.
+    Mesh blocks = mesh::box({0.4, 0.4, 0.4}, {2, 2, 2});
+    const auto count = static_cast<Index>(blocks.nodes.size());
+    const Mesh one = blocks;
+    for (const Vec3& node : one.nodes) blocks.nodes.push_back(node + Vec3(0.6, 0, 0));
+    for (const auto& [a, b, c, d] : one.tetrahedra)
+        blocks.tetrahedra.push_back({a + count, b + count, c + count, d + count});
+    const VisualSurface square{.nodes = {{0.32, -0.1, -0.1}, {0.32, 0.1, -0.1}, {0.32, 0.1, 0.1}, {0.32, -0.1, 0.1}},
+                               .triangles = {{0, 1, 2}, {0, 2, 3}}};
+    const auto second_away = [](const Vec3& x) -> Vec3 { return x.x() > 0.3 ? Vec3(x + Vec3(0.5, 0, 0)) : x; };
+    const BoundVisual bound = bind_visual(square, blocks.nodes, blocks.tetrahedra);
+    CHECK(largest_error(visual_positions(bound, moved(blocks.nodes, second_away)), square.nodes) < 1e-14);
+    // The turned square belongs to the second block.
+    VisualSurface turned = square;
+    for (auto& triangle : turned.triangles) std::swap(triangle[0], triangle[1]);
+    const BoundVisual behind = bind_visual(turned, blocks.nodes, blocks.tetrahedra);
+    CHECK(visual_positions(behind, moved(blocks.nodes, second_away))[0].x() == Approx(0.82));
+}
+
 TEST_CASE("values of nodes are interpolated inside, and taken from the nearest point outside", "[unit][visual]") {
     const Mesh box = coarse_box();
     const VisualSurface surface{.nodes = {{0.1, 0.2, 0.05}, {0.3, 0.1, 0.8}, {0, 0, 0}}, .triangles = {{0, 1, 2}}};
@@ -134,6 +154,21 @@ TEST_CASE("values of nodes are interpolated inside, and taken from the nearest p
     const std::vector<Real> values = visual_values<Real>(bound, of_body);
     CHECK(values[0] == Approx(0.2));
     CHECK(values[1] == Approx(0.9 - 0.1 + 1));  // at z = 0.5
+}
+
+TEST_CASE("values on a rigid body without tetrahedra are those of the nearest point of its surface", "[unit][visual]") {
+    const SurfaceMesh box = mesh::boundary(coarse_box());
+    const BoundVisual bound = bind_visual(fine_ball(), box.nodes, {}, box.triangles);
+    std::vector<Real> of_body;
+    for (const Vec3& x : box.nodes) of_body.push_back(x.z() < -0.4 ? 1 : 0);
+    const std::vector<Real> values = visual_values<Real>(bound, of_body);
+    CHECK(std::ranges::min(values) > -1e-12);
+    CHECK(std::ranges::max(values) < 1 + 1e-12);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (bound.surface.nodes[i].z() < -0.5) CHECK(values[i] == Approx(1));
+    const Mat3 turn = Eigen::AngleAxis<Real>(2, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    const auto motion = [&](const Vec3& x) -> Vec3 { return turn * x + Vec3(0.3, -0.2, 0.5); };
+    CHECK(largest_error(visual_positions(bound, moved(box.nodes, motion)), moved(bound.surface.nodes, motion)) < 1e-14);
 }
 
 TEST_CASE("a surface in other units, or far from its body, is reported", "[unit][visual]") {
