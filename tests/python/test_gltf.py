@@ -32,7 +32,7 @@ def gltf_values(file: Path, attribute: str) -> Any:
 
 def test_speeds_on_the_visual_surface_of_a_round_body_are_those_of_its_points(tmp_path: Path) -> None:
     world = sk.World(threads=1)
-    nodes = np.array([[0.5, 0.5, 0.5], [-0.5, 0.5, 0.5], [-0.5, -0.5, 0.5], [0.1, 0, 0]])
+    nodes = 0.3 * np.array([[1, 1, 1], [-1, 1, 1], [-1, -1, 1], [0.2, 0, 0]])
     visual = sk.VisualSurface(nodes, [[0, 1, 2], [0, 2, 3]])
     world.add_body(
         sk.Sphere(radius=0.3), RUBBER, dynamics="rigid", velocity=(1, 0, 0), angular_velocity=(0, 0, 10), visual=visual

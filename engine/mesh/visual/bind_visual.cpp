@@ -45,15 +45,16 @@ public:
         constexpr Real rounding = 1e-9;
         MaterialPoint inside;
         Real best = -rounding;
-        if (!tetrahedra_.empty()) boxes_.for_each([&](const Aabb& box) { return distance_squared(box, place) <= 0; },
-                        [&](Index t) {
-                            const MaterialPoint point =
-                                point_of_tetrahedron(nodes_, tetrahedra_[static_cast<std::size_t>(t)], place);
-                            const Real least = std::ranges::min(point.weight);
-                            if (!(least > best)) return;
-                            best = least;
-                            inside = point;
-                        });
+        if (!tetrahedra_.empty())
+            boxes_.for_each([&](const Aabb& box) { return distance_squared(box, place) <= 0; },
+                            [&](Index t) {
+                                const MaterialPoint point =
+                                    point_of_tetrahedron(nodes_, tetrahedra_[static_cast<std::size_t>(t)], place);
+                                const Real least = std::ranges::min(point.weight);
+                                if (!(least > best)) return;
+                                best = least;
+                                inside = point;
+                            });
         if (best > -rounding) return inside;
         mesh::NearestTriangle found = tree_.nearest_facing(place, normal, reach_ * reach_);
         if (found.triangle == no_index) found = tree_.nearest(place);
@@ -153,8 +154,7 @@ std::string warning_of(const BoundVisual& visual, std::span<const Vec3> nodes, R
 
 /// Binds all nodes to a rigid body, each to the nearest point of its triangles. Offsets from these points turn with one
 /// tetrahedron of distant nodes. Without triangles all nodes are bound to this tetrahedron.
-void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes,
-                   std::span<const std::array<Index, 3>> triangles) {
+void bind_to_solid(BoundVisual& visual, std::span<const Vec3> nodes, std::span<const std::array<Index, 3>> triangles) {
     const std::array<Index, 4> corners = point_of_solid(nodes, nodes[0]).node;
     visual.fit.warning = warning_of(visual, nodes, infinity);
     if (triangles.empty()) {

@@ -18,8 +18,9 @@ struct GradientTerm {
 };
 
 /// Each node of the surface is at p + F d: p is the nearest point of the body, d the offset from p at rest, and F a
-/// deformation gradient. F is interpolated between nodes of the body, where it is the mean over the tetrahedra around
-/// the node, weighted by volume. All node numbers are local to the body.
+/// deformation gradient. Outside of a deformable body p is on a face that faces the same way, if one is near. F is
+/// interpolated between nodes of the body, where it is the mean over the tetrahedra around the node, weighted by
+/// volume. For a rigid body F comes from one tetrahedron of distant nodes. All node numbers are local to the body.
 struct BoundVisual {
     VisualSurface surface;
     VisualFit fit;

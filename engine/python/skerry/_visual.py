@@ -123,7 +123,7 @@ class VisualSurface:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, VisualSurface):
             return NotImplemented
-        return bool(self._core == other._core)
+        return bool(self._core.equals(other._core))
 
     def __hash__(self) -> int:
         return hash((self.nodes.tobytes(), self.triangles.tobytes()))

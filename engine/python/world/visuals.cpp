@@ -65,7 +65,7 @@ void bind_visual_surface(nb::module_& module) {
         .def("material",
              [](const VisualSurface& surface) { return array_of<Index>(std::span<const Index>(surface.material)); })
         .def("file", [](const VisualSurface& surface) { return surface.file; })
-        .def("__eq__", [](const VisualSurface& surface, const VisualSurface& other) { return surface == other; });
+        .def("equals", [](const VisualSurface& surface, const VisualSurface& other) { return surface == other; });
     module.def("new_visual", &new_visual);
     module.def("read_visual", &read_visual);
 }
