@@ -62,6 +62,7 @@ void try_fill(const SurfaceMesh& surface, const std::string& which, const BestMe
         if (!filled.mesh) {
             best.failure = "Netgen " + filled.failure;
             best.missing = filled.missing;
+            best.may_change = best.may_change || filled.may_change();
             if (filled.missing || filled.stopped) return;
             continue;
         }
@@ -102,6 +103,7 @@ BestMesh best_mesh(const BestMeshTask& task) {
     if (thinned.collapsed + thinned.flipped == 0) return best;
     BestMesh other;
     try_fill(thinned.surface, "the surface without very flat triangles", task, other);
+    best.may_change = other.may_change = best.may_change || other.may_change;
     if (!(other.step > least_gain * best.step)) return best;
     other.collapsed = thinned.collapsed;
     other.flipped = thinned.flipped;

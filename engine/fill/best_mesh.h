@@ -26,6 +26,7 @@ struct BestMesh {
     std::size_t collapsed = 0, flipped = 0;  // numbers of surface edges that were collapsed or flipped
     std::string failure{};                   // reason why no mesh was found
     bool missing = false;                    // true if the mesher is not installed
+    bool may_change = false;                 // true if a call of the mesher failed with MesherResult::may_change
 };
 
 /// Least ratio of the stable steps of two meshes for which the surface of the second may differ.

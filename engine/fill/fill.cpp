@@ -119,6 +119,7 @@ private:
     bool fill_exactly() {
         BestMesh best =
             best_mesh_of(whole_surface(shells_), settings_.edge.value_or(mean_edge(surface())), result_.tolerance, 0);
+        result_.may_change = best.may_change;
         if (best.step > 0) {
             take(std::move(best), "Netgen");
             return true;
@@ -158,6 +159,7 @@ private:
                                                                   (1 - envelope_share) * result_.tolerance,
                                                                   least_count * static_cast<Real>(report.tetrahedra))
                                                    : BestMesh{};
+            result_.may_change = result_.may_change || best.may_change;
             if (best.step > step) {
                 take(std::move(best), "fTetWild and Netgen");
                 return;

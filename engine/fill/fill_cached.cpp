@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <fstream>
 #include <span>
 #include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "components/hash.h"
 #include "skerry/error.h"
@@ -52,18 +55,56 @@ private:
     int descriptor_;
 };
 
+/// Name of the text file with the notes of the filling, one in each line.
+std::filesystem::path notes_file(std::filesystem::path cache) {
+    return cache.replace_extension(".txt");
+}
+
+std::vector<std::string> read_notes(const std::filesystem::path& cache) {
+    std::ifstream in(notes_file(cache));
+    std::vector<std::string> notes;
+    for (std::string line; std::getline(in, line);) notes.push_back(line);
+    return notes;
+}
+
+/// Writes the notes, then the mesh, so that a mesh is never without its notes. Returns false if this is not possible.
+bool write_cache(const std::filesystem::path& cache, const FilledMesh& filled) {
+    const std::filesystem::path beside = notes_file(cache);
+    std::error_code failure;
+    std::filesystem::remove(beside, failure);
+    if (failure) return false;
+    if (!filled.notes.empty()) {
+        std::ofstream out(beside);
+        for (std::string note : filled.notes) {
+            std::ranges::replace(note, '\n', ' ');
+            out << note << '\n';
+        }
+        if (!out.flush()) return false;
+    }
+    try {
+        write(cache.string(), filled.mesh);
+    } catch (const SceneError&) {
+        return false;  // the folder may be read-only
+    }
+    return true;
+}
+
 }  // namespace
 
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings, const FillProgress& progress,
                  std::vector<std::string>* notes) {
     // Only one case of a sweep fills the surface. The other cases wait for it and then read the cache file.
     const FileLock lock(file);
+    const auto note = [&](const std::string& text) {
+        if (notes) notes->push_back(file.string() + ": " + text);
+    };
     const SurfaceMesh surface = read_surface(file.string(), notes);
     const std::filesystem::path cache = cache_file(file, surface, settings);
     if (std::filesystem::exists(cache)) try {
             Mesh mesh = read(cache.string());
             // A mesh without labels is written with the label 1 everywhere.
             if (std::ranges::all_of(mesh.label, [](int label) { return label == 1; })) mesh.label.clear();
+            std::ranges::for_each(read_notes(cache), note);
             return mesh;
         } catch (const SceneError&) {
             // A damaged file is replaced below.
@@ -71,13 +112,11 @@ Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings
     FillSettings of_cache = settings;
     of_cache.material = {};
     FilledMesh filled = fill(surface, file.string(), of_cache, progress);
-    if (notes)
-        for (const std::string& note : filled.notes) notes->push_back(file.string() + ": " + note);
-    try {
-        write(cache.string(), filled.mesh);
-    } catch (const SceneError&) {
-        // The folder may be read-only.
-    }
+    std::ranges::for_each(filled.notes, note);
+    if (filled.may_change)
+        note("the mesh was not kept, as Netgen was missing, crashed or reached a limit: every run fills the surface");
+    else if (!write_cache(cache, filled))
+        note("the mesh could not be kept, as " + cache.string() + " cannot be written: every run fills the surface");
     return std::move(filled.mesh);
 }
 

@@ -174,7 +174,11 @@ MesherResult run_mesher(const SurfaceMesh& surface, Real largest_edge, const Mes
         const std::string message = last_line(messages.get());
         return message.empty() ? text : text + " (" + message + ")";
     };
-    if (WIFSIGNALED(*status)) return failed(with_message(std::string("crashed: ") + strsignal(WTERMSIG(*status))));
+    if (WIFSIGNALED(*status)) {
+        MesherResult crash = failed(with_message(std::string("crashed: ") + strsignal(WTERMSIG(*status))));
+        crash.crashed = true;
+        return crash;
+    }
     const int code = WEXITSTATUS(*status);
     if (code == exit_not_started || code == exit_missing) return failed(with_message("could not be started"), true);
     if (code != 0) return failed(with_message("found no tetrahedra, exit code " + std::to_string(code)));

@@ -24,6 +24,10 @@ struct MesherResult {
     std::string failure{};  // clause with a verb in the past tense; empty if there is a mesh
     bool missing = false;   // true if the program or the package of the mesher is not installed
     bool stopped = false;   // true if a limit ended the mesher
+    bool crashed = false;   // true if a signal ended the mesher
+
+    /// True if the same call may find a mesh on another day or on another machine.
+    bool may_change() const { return missing || stopped || crashed; }
 };
 
 /// Exit code of a mesher whose package is not installed.

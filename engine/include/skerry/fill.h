@@ -56,6 +56,8 @@ struct FilledMesh {
     std::optional<Real> surface_volume{};
     Real stable_step = 0;            // stable step of an explicit body of this mesh [s]
     std::vector<std::string> notes;  // corrections of the surface, regions, and failures of meshers
+    // True if Netgen was missing, crashed or was stopped by a limit, so that a later call may return a better mesh.
+    bool may_change = false;
 };
 
 /// Receives a description of the current activity many times a second. An exception ends the filling.
@@ -83,8 +85,9 @@ FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillS
 
 /// Reads the mesh that fills a surface file from the cache file beside it, or else fills the surface and writes the
 /// cache file. The name of the cache file contains a hash of the surface, `edge`, `tolerance` and `cavities`; the stable
-/// steps of meshes are compared for the default material. If the file cannot be written, the mesh is returned all the
-/// same. `notes`: gets the notes of reading and filling.
+/// steps of meshes are compared for the default material. A text file beside the cache file keeps the notes of the
+/// filling. A mesh with FilledMesh::may_change is not kept. `notes`: gets the notes of reading and filling, also if the
+/// mesh comes from the cache file, and a note if the mesh was not kept.
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings = {},
                  const FillProgress& progress = {}, std::vector<std::string>* notes = nullptr);
 

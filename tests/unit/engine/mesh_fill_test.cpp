@@ -236,6 +236,41 @@ TEST_CASE("a surface of a scene is filled again only after a change of the surfa
     std::filesystem::remove(cache);
     std::filesystem::create_directory(cache);
     CHECK(runs_of(exact) > 0);
+    std::vector<std::string> notes;
+    mesh::fill_cached(file, exact, {}, &notes);
+    REQUIRE(notes.size() == 1);
+    CHECK_THAT(notes.front(), Contains("part.obj: the mesh could not be kept") && Contains("every run fills"));
+}
+
+TEST_CASE("notes of a filling are given again with the mesh of the cache file") {
+    const TemporaryFolder folder;
+    const Variable netgen("SKERRY_FILL", stub(folder, "fill", fill_tetrahedron).string());
+    // The last triangle is repeated, which is noted.
+    const std::filesystem::path file = folder.write(
+        "part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 4 3\n");
+    std::vector<std::string> first, second;
+    mesh::fill_cached(file, {}, {}, &first);
+    const Variable none("SKERRY_FILL", "/nowhere/fill");
+    mesh::fill_cached(file, {}, {}, &second);
+    CHECK_FALSE(first.empty());
+    CHECK(second == first);
+}
+
+TEST_CASE("a mesh of fTetWild is not kept if Netgen is missing or crashes") {
+    const TemporaryFolder folder;
+    const Variable python("SKERRY_FILL_PYTHON", stub(folder, "python", fill_tetrahedron).string());
+    const std::filesystem::path file = folder.write(
+        "part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    for (const std::string& program : {stub(folder, "fill", "kill -SEGV $$").string(), std::string("/nowhere/fill")}) {
+        const Variable netgen("SKERRY_FILL", program);
+        std::vector<std::string> notes;
+        mesh::fill_cached(file, {}, {}, &notes);
+        REQUIRE(notes.size() == 2);
+        CHECK_THAT(notes[0], Contains("filled by fTetWild"));
+        CHECK_THAT(notes[1], Contains("the mesh was not kept"));
+        for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+            CHECK(entry.path().extension() != ".msh");
+    }
 }
 
 TEST_CASE("a surface of two TetGen files is filled again after a change of either") {
