@@ -24,6 +24,7 @@ nb::dict values_of(Scene&& scene) {
     values["probe_step"] = scene.probe_step;
     values["contact_probes"] = probes;
     values["recorded"] = scene.recorded;
+    values["notes"] = scene.notes;
     values["world"] = nb::cast(new WorldObject(std::move(scene.world)), nb::rv_policy::take_ownership);
     return values;
 }

@@ -110,7 +110,8 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
                 .world = called_at(top.key("settings"), [&] { return tuned_world(plan.settings, plan.tuning); }),
                 .probes = {},
                 .recorded = {},
-                .probe_step = plan.probe_step};
+                .probe_step = plan.probe_step,
+                .notes = plan.notes};
     World& world = scene.world;
 
     for (const auto& [name, material] : plan.materials) scene.materials.push_back(name);

@@ -49,6 +49,7 @@ struct Scene {
     std::vector<RecordedProbe> recorded;  // probes for a Recorder, in the order of the file
     // Time between two samples of `probes`, or between two recorded rows of `recorded` [s].
     Real probe_step = 1.0 / 60;
+    std::vector<std::string> notes{};  // corrections and doubts of the reading, for example of filled surfaces
 };
 
 /// Reads a scene file and builds its world. Relative paths of mesh files start at the folder of the scene file. Throws

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._arrays import counted, path_text, seconds
-from ._errors import scene_error
+from ._errors import Doubt, scene_error
 from ._recorder import Recorder
 from ._world import Body, World
 from ._world.probes import Probe, probe_of
@@ -159,14 +160,15 @@ def load_scene(
     places: {"bodies[0].position": [0, 0, 1]}. threads: number of threads of the world. folder: folder of the mesh files
     that a mapping names, default: the present one.
 
-    SceneError: names the place, the value found and the value expected; for an unknown key the nearest known one."""
+    Corrections and doubts are warnings Doubt, for example of a filled surface. SceneError: names the place, the value
+    found and the value expected; for an unknown key the nearest known one."""
     if not isinstance(overrides, Mapping | None):
         raise TypeError(f"overrides: found {overrides!r}, expected a mapping from places to values")
     assignments = [f"{place}={json.dumps(_plain(value, str(place)))}" for place, value in (overrides or {}).items()]
     count = None if threads is None else counted(threads, "threads")
     if isinstance(scene, Mapping):
         base = os.getcwd() if folder is None else path_text(folder, "folder")
-        return Scene(_core.load_scene_text(json.dumps(_plain(scene, "")), base, assignments, count))
+        return _with_doubts(_core.load_scene_text(json.dumps(_plain(scene, "")), base, assignments, count))
     if folder is not None:
         raise TypeError("folder: found a folder together with a file, whose folder is used; expected none")
     file = path_text(scene, "scene", "a path of a JSON file or a mapping")
@@ -174,7 +176,13 @@ def load_scene(
         raise TypeError(
             "scene: found a text in JSON, expected a path of a JSON file or a mapping, such as json.loads(text)"
         )
-    return Scene(_core.load_scene(file, assignments, count))
+    return _with_doubts(_core.load_scene(file, assignments, count))
+
+
+def _with_doubts(values: dict[str, Any]) -> Scene:
+    for note in values["notes"]:
+        warnings.warn(note, Doubt, stacklevel=3)
+    return Scene(values)
 
 
 def scene_schema() -> dict[str, Any]:
