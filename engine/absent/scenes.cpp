@@ -4,10 +4,11 @@
 
 namespace skerry {
 
-Scene load_scene(const std::filesystem::path&, const SceneOverrides&) {
+Scene load_scene(const std::filesystem::path&, const SceneOverrides&, const std::function<void(const std::string&)>&) {
     refuse_absent("load_scene", "SKERRY_SCENES");
 }
-Scene load_scene_text(const std::string&, const std::filesystem::path&, const SceneOverrides&) {
+Scene load_scene_text(const std::string&, const std::filesystem::path&, const SceneOverrides&,
+                      const std::function<void(const std::string&)>&) {
     refuse_absent("load_scene_text", "SKERRY_SCENES");
 }
 std::string scene_schema() {

@@ -29,19 +29,30 @@ nb::dict values_of(Scene&& scene) {
     return values;
 }
 
-SceneOverrides overrides_of(const std::vector<std::string>& assignments, std::optional<int> threads) {
+SceneOverrides overrides_of(const std::vector<std::string>& assignments, std::optional<int> threads,
+                            const std::string& python) {
     SceneOverrides overrides{.threads = threads};
     overrides.assignments = assignments;
+    overrides.fill_python = python;
     return overrides;
 }
 
-nb::dict load(const std::string& file, const std::vector<std::string>& assignments, std::optional<int> threads) {
-    return values_of(without_gil([&] { return load_scene(file, overrides_of(assignments, threads)); }));
+/// Lets Ctrl-C end the filling of a surface.
+void poll_signals(const std::string&) {
+    const nb::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+}
+
+nb::dict load(const std::string& file, const std::vector<std::string>& assignments, std::optional<int> threads,
+              const std::string& python) {
+    return values_of(
+        without_gil([&] { return load_scene(file, overrides_of(assignments, threads, python), poll_signals); }));
 }
 
 nb::dict load_text(const std::string& json, const std::string& folder, const std::vector<std::string>& assignments,
-                   std::optional<int> threads) {
-    return values_of(without_gil([&] { return load_scene_text(json, folder, overrides_of(assignments, threads)); }));
+                   std::optional<int> threads, const std::string& python) {
+    return values_of(without_gil(
+        [&] { return load_scene_text(json, folder, overrides_of(assignments, threads, python), poll_signals); }));
 }
 
 FilmColor film_color(const std::string& name) {
@@ -58,8 +69,8 @@ FilmColor film_color(const std::string& name) {
 }  // namespace
 
 void bind_scene(nb::module_& module) {
-    module.def("load_scene", &load, nb::arg(), nb::arg(), nb::arg().none());
-    module.def("load_scene_text", &load_text, nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
+    module.def("load_scene", &load, nb::arg(), nb::arg(), nb::arg().none(), nb::arg());
+    module.def("load_scene_text", &load_text, nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg());
     module.def("scene_schema", &scene_schema);
 
     nb::class_<VtkWriter>(module, "VtkWriter")

@@ -223,13 +223,15 @@ std::vector<BodyHandle> bodies_in_order(const World& world) {
     return bodies;
 }
 
-Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides) {
-    return build_scene(plan_scene(file, overrides));
+Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides,
+                 const std::function<void(const std::string&)>& progress) {
+    return build_scene(plan_scene(file, overrides, progress));
 }
 
-Scene load_scene_text(const std::string& json, const std::filesystem::path& folder, const SceneOverrides& overrides) {
+Scene load_scene_text(const std::string& json, const std::filesystem::path& folder, const SceneOverrides& overrides,
+                      const std::function<void(const std::string&)>& progress) {
     const SceneFile scene = read_scene_text(json, folder, overrides.assignments);
-    return build_scene(plan_scene(scene, scene_text_name, overrides));
+    return build_scene(plan_scene(scene, scene_text_name, overrides, progress));
 }
 
 }  // namespace skerry

@@ -16,10 +16,14 @@ namespace skerry {
 
 namespace {
 
+/// How surfaces are filled. `progress`: gets the activity. `python`: see mesh::FillSettings.
+struct SurfaceFilling {
+    const mesh::FillProgress& progress;
+    const std::string& python;
+};
+
 /// `rigid`: true if the mesh may be a surface without tetrahedra. `notes`: gets remarks about the mesh file.
-/// `progress`: gets the activity while a surface is filled.
-Mesh make_shape(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes,
-                const mesh::FillProgress& progress) {
+Mesh make_shape(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes, const SurfaceFilling& filling) {
     if (entry.box) return mesh::box(entry.box->size, entry.box->cells);
     if (entry.ball) return mesh::ball(entry.ball->radius, entry.ball->resolution);
     if (entry.cylinder)
@@ -28,17 +32,16 @@ Mesh make_shape(const MeshEntry& entry, bool rigid, std::vector<std::string>& no
     if (entry.skittle) return mesh::skittle(entry.skittle->height, entry.skittle->resolution);
     if (entry.table) return mesh::table(*entry.table);
     if (entry.surface) {
-        mesh::FillSettings settings{.edge = entry.edge, .cavities = entry.cavities};
+        mesh::FillSettings settings{.edge = entry.edge, .cavities = entry.cavities, .python = filling.python};
         settings.tolerance = entry.tolerance.value_or(settings.tolerance);
-        return mesh::fill_cached(entry.surface->path, settings, progress, &notes);
+        return mesh::fill_cached(entry.surface->path, settings, filling.progress, &notes);
     }
     const std::string file = entry.file->path.string();
     return rigid ? mesh::read_rigid(file, &notes) : mesh::read(file, &notes);
 }
 
-Mesh make_mesh(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes,
-               const mesh::FillProgress& progress = {}) {
-    Mesh mesh = called_at(entry.place, [&] { return make_shape(entry, rigid, notes, progress); });
+Mesh make_mesh(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes, const SurfaceFilling& filling) {
+    Mesh mesh = called_at(entry.place, [&] { return make_shape(entry, rigid, notes, filling); });
     for (Vec3& node : mesh.nodes) node *= entry.scale;
     return mesh;
 }
@@ -49,21 +52,21 @@ Mesh picture_of(const BodyShapeEntry& shape) {
     return mesh::cylinder_picture(shape.cylinder->radius, shape.cylinder->height);
 }
 
-SurfaceMesh make_surface(const MeshEntry& entry, std::vector<std::string>& notes) {
-    if (!entry.file) return mesh::boundary(make_mesh(entry, false, notes));
+SurfaceMesh make_surface(const MeshEntry& entry, std::vector<std::string>& notes, const SurfaceFilling& filling) {
+    if (!entry.file) return mesh::boundary(make_mesh(entry, false, notes, filling));
     SurfaceMesh surface = called_at(entry.place, [&] { return mesh::read_surface(entry.file->path.string(), &notes); });
     for (Vec3& node : surface.nodes) node *= entry.scale;
     return surface;
 }
 
-Shape make_collider_shape(const ShapeEntry& entry, std::vector<std::string>& notes) {
+Shape make_collider_shape(const ShapeEntry& entry, std::vector<std::string>& notes, const SurfaceFilling& filling) {
     if (entry.plane) return *entry.plane;
     if (entry.sphere) return *entry.sphere;
     if (entry.box) return *entry.box;
     if (entry.capsule) return *entry.capsule;
     if (entry.cylinder) return *entry.cylinder;
     if (entry.bucket) return *entry.bucket;
-    return make_surface(*entry.mesh, notes);
+    return make_surface(*entry.mesh, notes, filling);
 }
 
 Motion make_motion(const MotionEntry& entry) {
@@ -178,7 +181,7 @@ struct PlannedBodies {
         mesh_of_file;
     // by path and scale of the file, and index in ScenePlan::meshes
     std::map<std::tuple<std::filesystem::path, Real, std::size_t>, std::shared_ptr<const BoundVisual>> visuals;
-    const mesh::FillProgress& progress;
+    const SurfaceFilling& filling;
 };
 
 /// Returns the index of the body's mesh in plan.meshes. Each mesh file is read only once.
@@ -186,7 +189,7 @@ std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& 
     const std::size_t next = plan.meshes.size();
     const bool rigid = entry.dynamics == BodyDynamics::rigid;
     if (!entry.mesh || !(entry.mesh->file || entry.mesh->surface)) {
-        plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh, rigid, plan.notes) : picture_of(*entry.shape));
+        plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh, rigid, plan.notes, so_far.filling) : picture_of(*entry.shape));
         plan.mesh_files.emplace_back();
         return next;
     }
@@ -195,7 +198,7 @@ std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& 
     const auto [known, is_new] =
         so_far.mesh_of_file.try_emplace({file, mesh.scale, mesh.edge, mesh.tolerance, mesh.cavities}, next);
     if (!is_new) return known->second;
-    plan.meshes.push_back(make_mesh(mesh, rigid, plan.notes, so_far.progress));
+    plan.meshes.push_back(make_mesh(mesh, rigid, plan.notes, so_far.filling));
     plan.mesh_files.push_back(file);
     return next;
 }
@@ -266,9 +269,10 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
     }
 }
 
-ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number, ScenePlan& plan) {
+ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number, const SurfaceFilling& filling,
+                           ScenePlan& plan) {
     ColliderPlan collider;
-    collider.shape = make_collider_shape(entry.shape, plan.notes);
+    collider.shape = make_collider_shape(entry.shape, plan.notes, filling);
     if (entry.material) collider.material = find_material(plan, *entry.material, entry.place.key("material"));
     collider.settings.position = entry.position;
     collider.settings.rotation = entry.rotation.value;
@@ -386,12 +390,13 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     apply(overrides, plan.settings);
     plan.materials = scene.materials.items;
     for (const PairEntry& pair : scene.pairs) plan_pair_once(pair, plan);
-    PlannedBodies so_far{.names = {}, .mesh_of_file = {}, .visuals = {}, .progress = progress};
+    const SurfaceFilling filling{progress, overrides.fill_python};
+    PlannedBodies so_far{.names = {}, .mesh_of_file = {}, .visuals = {}, .filling = filling};
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, so_far, plan);
     if (overrides.element)
         for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
-        plan.colliders.push_back(plan_collider(scene.colliders[i], i, plan));
+        plan.colliders.push_back(plan_collider(scene.colliders[i], i, filling, plan));
     for (const NoCollisionEntry& pair : scene.no_collision) plan.no_collision.push_back(plan_no_collision(pair, plan));
     for (std::size_t i = 0; i < scene.joints.size(); ++i) plan.joints.push_back(plan_joint(scene.joints[i], i, plan));
     for (const JointPlan& joint : plan.joints)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct SceneOverrides {
     // the files that it includes, in the given order and before all members above. PLACE has the form used in error
     // messages. VALUE is read as JSON; if it is not valid JSON, it is taken as a text.
     std::vector<std::string> assignments{};
+    std::string fill_python{};  // Python interpreter for filling surfaces; see mesh::FillSettings::python
 };
 
 /// A set of nodes of a body whose contacts a run reports, such as the feet of a table.
@@ -53,12 +55,16 @@ struct Scene {
 };
 
 /// Reads a scene file and builds its world. Relative paths of mesh files start at the folder of the scene file. Throws
-/// SceneError for any invalid input; for an unknown key the message names the nearest known key.
-Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
+/// SceneError for any invalid input; for an unknown key the message names the nearest known key. `progress`: receives
+/// the current activity many times a second while a surface is filled. An exception ends the reading.
+Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {},
+                 const std::function<void(const std::string&)>& progress = {});
 
 /// Builds a scene from the text of a scene file. Relative paths start at `folder`. Errors name "scene" as the file.
+/// `progress`: as for load_scene.
 Scene load_scene_text(const std::string& json, const std::filesystem::path& folder,
-                      const SceneOverrides& overrides = {});
+                      const SceneOverrides& overrides = {},
+                      const std::function<void(const std::string&)>& progress = {});
 
 /// Returns the JSON schema of scene files.
 std::string scene_schema();

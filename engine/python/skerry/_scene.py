@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
@@ -166,9 +167,10 @@ def load_scene(
         raise TypeError(f"overrides: found {overrides!r}, expected a mapping from places to values")
     assignments = [f"{place}={json.dumps(_plain(value, str(place)))}" for place, value in (overrides or {}).items()]
     count = None if threads is None else counted(threads, "threads")
+    python = os.environ.get("SKERRY_FILL_PYTHON", sys.executable)
     if isinstance(scene, Mapping):
         base = os.getcwd() if folder is None else path_text(folder, "folder")
-        return _with_doubts(_core.load_scene_text(json.dumps(_plain(scene, "")), base, assignments, count))
+        return _with_doubts(_core.load_scene_text(json.dumps(_plain(scene, "")), base, assignments, count, python))
     if folder is not None:
         raise TypeError("folder: found a folder together with a file, whose folder is used; expected none")
     file = path_text(scene, "scene", "a path of a JSON file or a mapping")
@@ -176,7 +178,7 @@ def load_scene(
         raise TypeError(
             "scene: found a text in JSON, expected a path of a JSON file or a mapping, such as json.loads(text)"
         )
-    return _with_doubts(_core.load_scene(file, assignments, count))
+    return _with_doubts(_core.load_scene(file, assignments, count, python))
 
 
 def _with_doubts(values: dict[str, Any]) -> Scene:
