@@ -176,8 +176,9 @@ void plan_materials(const BodyEntry& entry, const Mesh& mesh, const ScenePlan& p
 struct PlannedBodies {
     std::set<std::string> names;
     // Index in ScenePlan::meshes of each mesh file that was read and of each surface that was filled, by the members of
-    // the entry.
-    std::map<std::tuple<std::filesystem::path, Real, std::optional<Real>, std::optional<Real>, bool>, std::size_t>
+    // the entry. The first two flags: the file is a surface to fill; the file is read for a rigid body.
+    std::map<std::tuple<std::filesystem::path, bool, bool, Real, std::optional<Real>, std::optional<Real>, bool>,
+             std::size_t>
         mesh_of_file;
     // by path and scale of the file, and index in ScenePlan::meshes
     std::map<std::tuple<std::filesystem::path, Real, std::size_t>, std::shared_ptr<const BoundVisual>> visuals;
@@ -195,8 +196,9 @@ std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& 
     }
     const MeshEntry& mesh = *entry.mesh;
     const std::filesystem::path& file = (mesh.file ? mesh.file : mesh.surface)->path;
-    const auto [known, is_new] =
-        so_far.mesh_of_file.try_emplace({file, mesh.scale, mesh.edge, mesh.tolerance, mesh.cavities}, next);
+    const bool filled = mesh.surface.has_value();
+    const auto [known, is_new] = so_far.mesh_of_file.try_emplace(
+        {file, filled, rigid && !filled, mesh.scale, mesh.edge, mesh.tolerance, mesh.cavities}, next);
     if (!is_new) return known->second;
     plan.meshes.push_back(make_mesh(mesh, rigid, plan.notes, so_far.filling));
     plan.mesh_files.push_back(file);
