@@ -204,3 +204,11 @@ def test_a_wrong_argument_of_load_scene_is_named() -> None:
 def test_a_place_in_an_unknown_material_is_refused() -> None:
     with pytest.raises(sk.SceneError, match='the unknown material "rubbr", expected .* materials "rubber"'):
         sk.load_scene(SCENE, overrides={"materials.rubbr.friction": 0.1})
+
+
+def test_notes_of_the_files_of_a_scene_are_warnings(tmp_path: Path) -> None:
+    lines = ["mtllib none.mtl", "v 0 0 0", "v 1 0 0", "v 0 1 0", "v 0 0 1", "f 1 3 2", "f 1 2 4", "f 2 3 4", "f 1 4 3"]
+    (tmp_path / "shown.obj").write_text("\n".join(lines) + "\n")
+    body = {"mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}}, "material": "m", "visual": {"file": "shown.obj"}}
+    with pytest.warns(sk.Doubt, match="none.mtl"):
+        sk.load_scene({"materials": {"m": {}}, "bodies": [body]}, folder=tmp_path)

@@ -11,6 +11,7 @@
 #include "engine/mesh/repair/surface_measures.h"
 #include "skerry/error.h"
 #include "skerry/fill.h"
+#include "skerry/scene.h"
 #include "tests/support/draws.h"
 #include "tests/support/surface_corpus.h"
 #include "tests/support/temporary_folder.h"
@@ -271,6 +272,21 @@ TEST_CASE("a mesh of fTetWild is not kept if Netgen is missing or crashes") {
         for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
             CHECK(entry.path().extension() != ".msh");
     }
+}
+
+TEST_CASE("a scene fills a surface that is also the file of a rigid body, and has the notes of the filling") {
+    const TemporaryFolder folder;
+    const Variable netgen("SKERRY_FILL", "/nowhere/fill");
+    const std::string python = stub(folder, "python", fill_tetrahedron).string();
+    folder.write("part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    const std::string text = R"({"materials": {"rubber": {}}, "bodies": [
+        {"mesh": {"file": "part.obj"}, "dynamics": "rigid", "material": "rubber"},
+        {"mesh": {"surface": "part.obj"}, "material": "rubber", "position": [3, 0, 0]}]})";
+    const Scene scene = load_scene_text(text, folder.path(), {.fill_python = python});
+    REQUIRE(scene.world.bodies().size() == 2);
+    CHECK(std::ranges::any_of(scene.notes, [](const std::string& note) { return Contains("fTetWild").match(note); }));
+    const auto stop = [](const std::string&) { throw std::runtime_error("stopped by the user"); };
+    CHECK_THROWS_WITH(load_scene_text(text, folder.path(), {.fill_python = python}, stop), "stopped by the user");
 }
 
 TEST_CASE("a surface of two TetGen files is filled again after a change of either") {
