@@ -61,7 +61,7 @@ struct SurfaceFault {
     Index other = no_index;     // second triangle of the first pair, or first triangle of the other shell
     Vec3 place = Vec3::Zero();  // place of the first fault; for holes: centre of the longest hole [m]
     Real length = 0;            // holes: length of the edges around the longest hole; thin_walls: smallest thickness;
-                                // unlikely_size: diagonal [m]
+                                // duplicate_shells: largest distance of two; unlikely_size: diagonal [m]
 };
 
 /// Part of a surface that common edges connect. At an edge of several closed shells, the triangles around the volume of

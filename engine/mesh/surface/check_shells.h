@@ -8,8 +8,14 @@
 
 namespace skerry::mesh {
 
-/// Performs check_surface without the search for crossings, slivers and thin walls.
-SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std::string& name);
+/// Performs check_surface without the search for crossings, slivers and thin walls. `keep_walls`: see
+/// drop_repeated_shells.
+SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std::string& name,
+                           bool keep_walls = false);
+
+/// Performs check_surface, but keeps shells of the same orientation that are close together. They are the two sides of
+/// a thin wall if the inside of inner shells is empty.
+SurfaceReport check_surface_with_walls(const SurfaceMesh& surface, Real tolerance, const std::string& name);
 
 /// Distance that counts as rounding error in a surface [m].
 inline Real rounding_distance(const SurfaceReport& report) {

@@ -79,7 +79,7 @@ void report_repeated_shells(SurfaceReport& report, std::span<const Index> repeat
 
 }  // namespace
 
-SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std::string& name) {
+SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std::string& name, bool keep_walls) {
     require_surface(surface, name);
     if (!(tolerance < 1)) {
         std::ostringstream found;
@@ -97,14 +97,16 @@ SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std
     const std::vector<Index> repeated_by = drop_duplicates(report);
     connect(report);
     report_repeated_shells(report, repeated_by);
-    if (drop_repeated_shells(report, rounding_distance(report))) connect(report);
+    if (drop_repeated_shells(report, rounding_distance(report), keep_walls)) connect(report);
     compare_shells(report);
     return report;
 }
 
-SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance, const std::string& name) {
+namespace {
+
+/// Adds the faults that check_shells does not search for.
+SurfaceReport with_crossings(SurfaceReport report) {
     constexpr Real largest = 20, smallest = 1e-6;  // usual sizes of bodies [m]
-    SurfaceReport report = check_shells(surface, tolerance, name);
     if (report.cleaned.triangles.empty()) return report;
     find_crossings(report, rounding_distance(report));
     using enum SurfaceFaultKind;
@@ -112,6 +114,16 @@ SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance, const st
     const Real size = (report.upper - report.lower).norm();
     if (size > largest || size < smallest) add_fault(report, unlikely_size, 0).length = size;
     return report;
+}
+
+}  // namespace
+
+SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance, const std::string& name) {
+    return with_crossings(check_shells(surface, tolerance, name));
+}
+
+SurfaceReport check_surface_with_walls(const SurfaceMesh& surface, Real tolerance, const std::string& name) {
+    return with_crossings(check_shells(surface, tolerance, name, true));
 }
 
 std::string fault_text(const SurfaceFault& fault) {
@@ -150,6 +162,7 @@ std::string fault_text(const SurfaceFault& fault) {
     const Noun& noun = *std::ranges::find(nouns, fault.kind, &Noun::kind);
     text << fault.count << ' ' << (fault.count == 1 ? noun.one : noun.more);
     if (fault.kind == holes) text << ", the longest " << fault.length << " m around";
+    if (fault.kind == duplicate_shells && fault.length > 0) text << ", up to " << fault.length << " m apart";
     if (fault.kind == thin_walls) text << ", down to " << fault.length << " m";
     text << (fault.count > 1 && fault.kind != holes ? ", the first" : "") << " at (" << fault.place.x() << ", "
          << fault.place.y() << ", " << fault.place.z() << ") m, triangle " << fault.triangle;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "engine/mesh/repair/surface_measures.h"
@@ -61,23 +62,27 @@ SurfaceMesh part_of(const SurfaceMesh& surface, std::span<const Index> rows) {
     return part;
 }
 
-/// True if the second shell is the first one again. Shells of the same orientation may be further apart than
-/// `distance` [m].
-bool repeats(const SurfaceReport& report, std::span<const ShellSize> sizes, std::span<const std::vector<Index>> rows,
-             std::size_t first, std::size_t second, Real distance) {
-    // Shells of the same orientation this close together cannot be meant as a wall or a region, relative to their size.
+/// Returns the largest distance of the nodes of the second shell from the first one if the second shell is the first
+/// one again. Unless `keep_walls`, shells of the same orientation may be further apart than `distance` [m].
+std::optional<Real> repeats(const SurfaceReport& report, std::span<const ShellSize> sizes, std::span<const std::vector<Index>> rows,
+             std::size_t first, std::size_t second, Real distance, bool keep_walls) {
+    // Shells of the same orientation this close together are hardly meant as a region, relative to their size.
     constexpr Real close = 1e-3;
     const ShellSize &a = sizes[first], &b = sizes[second];
     const bool closed = report.shells[first].closed;
     const bool alike = closed == report.shells[second].closed && (!closed || (a.volume > 0) == (b.volume > 0));
-    const Real limit = std::max(distance, alike ? close * a.diagonal() : 0);
+    const Real limit = std::max(distance, alike && !keep_walls ? close * a.diagonal() : 0);
     if ((a.box.lower - b.box.lower).norm() > 2 * limit || (a.box.upper - b.box.upper).norm() > 2 * limit ||
         std::abs(a.area - b.area) > 10 * close * a.area)
-        return false;
+        return {};
     const SurfaceMesh part = part_of(report.cleaned, rows[second]);
     const TriangleTree tree(part_of(report.cleaned, rows[first]));
-    return std::ranges::all_of(
-        part.nodes, [&](const Vec3& x) { return tree.distance_squared(x, 2 * limit * limit) <= limit * limit; });
+    Real greatest = 0;
+    for (const Vec3& x : part.nodes) {
+        greatest = std::max(greatest, tree.distance_squared(x, 2 * limit * limit));
+        if (greatest > limit * limit) return {};
+    }
+    return std::sqrt(greatest);
 }
 
 /// Sign of the side of the line through `p` and `q` on which `x` lies, seen along the first axis. The sign of a point
@@ -201,7 +206,7 @@ void turn_inside_out(SurfaceReport& report) {
 
 }  // namespace
 
-bool drop_repeated_shells(SurfaceReport& report, Real distance) {
+bool drop_repeated_shells(SurfaceReport& report, Real distance, bool keep_walls) {
     const std::vector<ShellSize> sizes = sizes_of(report);
     const std::vector<std::vector<Index>> rows = rows_of_shells(report);
     std::vector<Aabb> boxes;
@@ -211,12 +216,20 @@ bool drop_repeated_shells(SurfaceReport& report, Real distance) {
     std::vector<bool> dropped(sizes.size(), false);
     for (std::size_t s = 0; s < sizes.size(); ++s) {
         std::size_t same = s;  // first shell that this one repeats
+        Real apart = 0;        // [m]
         tree.for_each_overlap(boxes[s], [&](Index other) {
             const auto row = static_cast<std::size_t>(other);
-            if (row < same && !dropped[row] && repeats(report, sizes, rows, row, s, distance)) same = row;
+            if (row >= same || dropped[row]) return;
+            if (const std::optional<Real> found = repeats(report, sizes, rows, row, s, distance, keep_walls)) {
+                same = row;
+                apart = *found;
+            }
         });
         dropped[s] = same < s;
-        if (dropped[s]) add_fault(report, SurfaceFaultKind::duplicate_shells, rows[s].front(), rows[same].front());
+        if (!dropped[s]) continue;
+        SurfaceFault& fault =
+            add_fault(report, SurfaceFaultKind::duplicate_shells, rows[s].front(), rows[same].front());
+        fault.length = std::max(fault.length, apart);
     }
     if (std::ranges::count(dropped, true) == 0) return false;
     keep_triangles(report, [&](std::size_t t) { return !dropped[static_cast<std::size_t>(report.shell[t])]; });

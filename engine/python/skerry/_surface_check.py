@@ -43,7 +43,8 @@ class SurfaceFault:
     triangle: first triangle with the fault; for holes a triangle at the longest one.
     other: second triangle of the first pair, or first triangle of the other shell; None if there is none.
     place: place of the first fault; for holes the centre of the longest one [m].
-    length: length of the edges around the longest hole, smallest thickness of a thin wall, or unlikely size [m].
+    length: length of the edges around the longest hole, smallest thickness of a thin wall, largest distance of repeated
+        shells, or unlikely size [m].
     text: number and first place of the faults, as `skerry inspect` prints them.
     """
 

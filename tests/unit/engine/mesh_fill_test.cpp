@@ -289,6 +289,23 @@ TEST_CASE("a scene fills a surface that is also the file of a rigid body, and ha
     CHECK_THROWS_WITH(load_scene_text(text, folder.path(), {.fill_python = python}, stop), "stopped by the user");
 }
 
+TEST_CASE("with cavities a shell close inside another one bounds a cavity, otherwise it counts as repeated") {
+    const TemporaryFolder folder;
+    const Variable netgen("SKERRY_FILL", "/nowhere/fill");
+    // The mesher in this test writes one tetrahedron, whatever the surface.
+    const std::string python = stub(folder, "python", fill_tetrahedron).string();
+    SurfaceMesh wall = tetrahedron;
+    const Vec3 centroid(0.25, 0.25, 0.25);
+    for (const Vec3& x : tetrahedron.nodes) wall.nodes.push_back(centroid + 0.9995 * (x - centroid));
+    for (const auto& [a, b, c] : tetrahedron.triangles) wall.triangles.push_back({a + 4, b + 4, c + 4});
+    const mesh::FilledMesh hollow = mesh::fill(wall, "wall", {.cavities = true, .python = python});
+    CHECK(hollow.surface.shells.size() == 2);
+    CHECK(notes_contain(hollow, "an empty cavity"));
+    const mesh::FilledMesh solid = mesh::fill(wall, "wall", {.python = python});
+    CHECK(solid.surface.shells.size() == 1);
+    CHECK(notes_contain(solid, "m apart"));
+}
+
 TEST_CASE("a surface of two TetGen files is filled again after a change of either") {
     const TemporaryFolder folder;
     const Variable netgen("SKERRY_FILL", stub(folder, "fill", fill_tetrahedron).string());
