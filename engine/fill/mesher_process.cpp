@@ -7,12 +7,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -39,28 +41,60 @@ NamelessFile nameless_file() {
     return file;
 }
 
+/// Appends a number to a text. Unlike printf, it does not depend on the locale of the host program.
+void append_number(auto number, char end, std::string& text) {
+    char digits[32];
+    text.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr) += end;
+}
+
 void write_surface(std::FILE* out, const SurfaceMesh& surface, Real largest_edge) {
-    std::fprintf(out, "%zu %zu %.17g\n", surface.nodes.size(), surface.triangles.size(), largest_edge);
-    for (const Vec3& x : surface.nodes) std::fprintf(out, "%.17g %.17g %.17g\n", x.x(), x.y(), x.z());
-    for (const auto& t : surface.triangles) std::fprintf(out, "%d %d %d\n", t[0], t[1], t[2]);
-    if (std::fflush(out) != 0) refuse("cannot write to a temporary file");
+    std::string text;
+    append_number(surface.nodes.size(), ' ', text);
+    append_number(surface.triangles.size(), ' ', text);
+    append_number(largest_edge, '\n', text);
+    for (const Vec3& x : surface.nodes)
+        for (Index a = 0; a < 3; ++a) append_number(x[a], a < 2 ? ' ' : '\n', text);
+    for (const auto& t : surface.triangles)
+        for (std::size_t a = 0; a < 3; ++a) append_number(t[a], a < 2 ? ' ' : '\n', text);
+    if (std::fwrite(text.data(), 1, text.size(), out) < text.size() || std::fflush(out) != 0)
+        refuse("cannot write to a temporary file");
     std::rewind(out);
+}
+
+std::string text_of(std::FILE* in) {
+    std::rewind(in);
+    std::string text;
+    char part[4096];
+    while (const std::size_t count = std::fread(part, 1, sizeof part, in)) text.append(part, count);
+    return text;
+}
+
+/// Takes the next number from a text and returns true, or returns false if there is none. Unlike scanf, it does not
+/// depend on the locale of the host program.
+bool take_number(std::string_view& text, auto& number) {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return error == std::errc{};
 }
 
 /// Reads the text that a mesher wrote. Returns nothing if it is not a mesh of positive tetrahedra.
 std::optional<Mesh> read_mesh(std::FILE* in) {
-    std::rewind(in);
+    const std::string all = text_of(in);
+    std::string_view text = all;
     std::size_t nodes = 0, tetrahedra = 0;
     Mesh mesh;
-    if (std::fscanf(in, "%zu %zu", &nodes, &tetrahedra) != 2 || tetrahedra == 0) return {};
+    if (!take_number(text, nodes) || !take_number(text, tetrahedra) || tetrahedra == 0) return {};
     for (std::size_t n = 0; n < nodes; ++n) {
         Vec3 x;
-        if (std::fscanf(in, "%lf %lf %lf", &x[0], &x[1], &x[2]) != 3) return {};
+        for (Index a = 0; a < 3; ++a)
+            if (!take_number(text, x[a])) return {};
         mesh.nodes.push_back(x);
     }
     for (std::size_t e = 0; e < tetrahedra; ++e) {
         std::array<Index, 4> t{};
-        if (std::fscanf(in, "%d %d %d %d", &t[0], &t[1], &t[2], &t[3]) != 4) return {};
+        for (Index& node : t)
+            if (!take_number(text, node)) return {};
         mesh.tetrahedra.push_back(t);
     }
     try {
@@ -107,22 +141,33 @@ public:
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
-    /// Returns the status in the form of waitpid once the process has ended.
+    /// Returns the status in the form of waitpid once the process has ended. Kills the processes that it left behind.
     std::optional<int> ended() {
+        siginfo_t found{};
+        // The process keeps its number until waitpid, so that the group is still its own when it is killed.
+        if (waitid(P_PID, static_cast<id_t>(id_), &found, WEXITED | WNOHANG | WNOWAIT) == 0 && found.si_pid == 0)
+            return {};
+        kill(-id_, SIGKILL);
         int status = 0;
-        if (waitpid(id_, &status, WNOHANG) == 0) return {};
+        waitpid(id_, &status, 0);
         id_ = 0;
         return status;
     }
-    /// Memory that the process uses [bytes].
-    Real memory() const {
-        std::ifstream file("/proc/" + std::to_string(id_) + "/statm");
-        Real pages = 0, resident = 0;
-        file >> pages >> resident;
-        return resident * static_cast<Real>(sysconf(_SC_PAGESIZE));
-    }
+    /// Memory that the process and the processes that it started use [bytes].
+    Real memory() const { return memory_of(std::to_string(id_)); }
 
 private:
+    static Real memory_of(const std::string& process) {
+        const std::string folder = "/proc/" + process;
+        std::ifstream file(folder + "/statm");
+        Real pages = 0, resident = 0;
+        file >> pages >> resident;
+        Real sum = resident * static_cast<Real>(sysconf(_SC_PAGESIZE));
+        std::ifstream children(folder + "/task/" + process + "/children");
+        for (std::string child; children >> child;) sum += memory_of(child);
+        return sum;
+    }
+
     /// Kills the process and all processes that it started, which belong to its group.
     void stop() const {
         kill(-id_, SIGKILL);

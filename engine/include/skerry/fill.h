@@ -17,7 +17,7 @@ namespace skerry::mesh {
 /// Limits of one run of a mesher.
 struct FillLimits {
     Real seconds = 300;  // [s]
-    Real bytes = 8e9;    // memory of the process of the mesher [bytes]
+    Real bytes = 8e9;    // memory of the mesher and the processes that it started [bytes]
 };
 
 struct FillSettings {

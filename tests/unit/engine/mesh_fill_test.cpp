@@ -1,6 +1,9 @@
 // Filling of surfaces: exact filling by Netgen, regions, limits and failures of meshers, and the cache.
+#include <unistd.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <clocale>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -304,6 +307,32 @@ TEST_CASE("with cavities a shell close inside another one bounds a cavity, other
     const mesh::FilledMesh solid = mesh::fill(wall, "wall", {.python = python});
     CHECK(solid.surface.shells.size() == 1);
     CHECK(notes_contain(solid, "m apart"));
+}
+
+TEST_CASE("a mesher that ends leaves no process behind, and its numbers do not depend on the locale") {
+    const TemporaryFolder folder;
+    const std::filesystem::path left = folder.path() / "left";
+    const Variable netgen("SKERRY_FILL", stub(folder, "fill",
+                                              "sleep 100 & echo $! > " + left.string() + "\ncat > " +
+                                                  (folder.path() / "given").string() + "\n" + fill_tetrahedron)
+                                             .string());
+    // Not every machine has this locale.
+    const std::string before = std::setlocale(LC_NUMERIC, nullptr);
+    std::setlocale(LC_NUMERIC, "de_DE.UTF-8");
+    mesh::fill(tetrahedron, "part.stl", {.edge = 1.25, .tolerance = 0});
+    std::setlocale(LC_NUMERIC, before.c_str());
+    pid_t process = 0;
+    REQUIRE(std::ifstream(left) >> process);
+    // A killed process that nobody waits for may stay in the list of processes as a zombie.
+    const auto runs = [&] {
+        std::string number, name, state = "Z";
+        std::ifstream("/proc/" + std::to_string(process) + "/stat") >> number >> name >> state;
+        return state != "Z";
+    };
+    for (int i = 0; runs() && i < 100; ++i) usleep(1000);
+    CHECK_FALSE(runs());
+    std::ifstream given(folder.path() / "given");
+    CHECK(std::string(std::istreambuf_iterator<char>(given), {}).find(',') == std::string::npos);
 }
 
 TEST_CASE("a surface of two TetGen files is filled again after a change of either") {
