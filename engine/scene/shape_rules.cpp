@@ -114,7 +114,7 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
             .key("tolerance", &MeshEntry::tolerance,
                  {.meaning = "with \"surface\": largest distance between surface and mesh, as a fraction of the "
                              "diagonal of the bounding box; default: 0.001",
-                  .limits = within(0, 0.5)})
+                  .limits = {.at_least = 0, .above = {}, .at_most = {}, .below = 1}})
             .key("cavities", &MeshEntry::cavities,
                  {.meaning = "with \"surface\": leave the inside of inner shells empty; default: false"})
             .key("scale", &MeshEntry::scale,
