@@ -254,8 +254,11 @@ FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSetti
                 const FillProgress& progress) {
     if (files.empty()) Complaint{{}, "surface", {}, "no files", "at least one file of a surface", {}}.raise();
     GivenSurface given;
-    for (const std::filesystem::path& file : files) given.add(read_surface(file.string()), file.string());
-    return Filling(given, settings, progress).run();
+    std::vector<std::string> notes;
+    for (const std::filesystem::path& file : files) given.add(read_surface(file.string(), &notes), file.string());
+    FilledMesh filled = Filling(given, settings, progress).run();
+    filled.notes.insert(filled.notes.begin(), notes.begin(), notes.end());
+    return filled;
 }
 
 }  // namespace skerry::mesh

@@ -78,6 +78,9 @@ RawMesh read_raw(const std::string& path, bool surface, std::vector<std::string>
     RawMesh raw = read_file(path, surface);
     divide_second_order(raw);
     if (!raw.tetrahedra.empty()) note_left_out(raw);
+    if (raw.flat_triangles > 0)
+        raw.notes.push_back(std::to_string(raw.flat_triangles) +
+                            " triangles use the same node twice (no area) and were dropped");
     for (const std::string& note : raw.notes)
         if (notes) notes->push_back(path + ": " + note);
     return raw;

@@ -65,4 +65,18 @@ void add_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh
     }
 }
 
+std::vector<std::size_t> add_surface_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh) {
+    if (nodes.size() < 3) add_polygon(nodes, reader, mesh);
+    std::vector<std::size_t> added;
+    for (std::size_t a = 1; a + 1 < nodes.size(); ++a) {
+        if (nodes[0] == nodes[a] || nodes[a] == nodes[a + 1] || nodes[a + 1] == nodes[0]) {
+            ++mesh.flat_triangles;
+            continue;
+        }
+        mesh.triangles.push_back({nodes[0], nodes[a], nodes[a + 1]});
+        added.push_back(a);
+    }
+    return added;
+}
+
 }  // namespace skerry::mesh

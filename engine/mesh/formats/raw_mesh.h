@@ -38,6 +38,8 @@ struct RawMesh {
     std::map<std::string, MeshSet> sets;                // faces are the corners of triangles of any order
     std::map<std::string, std::vector<Vec3>> vectors;   // of the tetrahedra
     VisualSurface visual;  // of an .obj or .ply file: texture coordinates, names of materials, and both by triangle
+    std::size_t flat_triangles = 0;  // number of triangles of an .obj or .ply file that were dropped, as they use a
+                                     // node twice
     std::vector<std::string> material_files;  // of an .obj file: names of its .mtl files
     // number of ignored elements of each kind, for example "hexahedra"
     std::map<std::string, std::size_t> others;
@@ -79,6 +81,9 @@ void divide_second_order(RawMesh& mesh);
 
 /// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
 void add_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
+/// As add_polygon for a file with a surface only: drops triangles that use a node twice, and counts them in the mesh.
+/// Returns the positions in `nodes` of the second corner of each triangle that was added.
+std::vector<std::size_t> add_surface_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
 
 // Readers of the mesh file formats. All of them throw SceneError for invalid files.
 RawMesh read_gmsh(FileReader& reader);  // reads Gmsh file versions 1, 2 and 4.1

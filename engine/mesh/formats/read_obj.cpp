@@ -67,8 +67,7 @@ void read_face(const FileReader& reader, const std::vector<std::string_view>& wo
             texture.push_back(parse_number(reader, part, "texture point", visual.texture_points.size()));
     }
     if (texture.size() < corners.size()) texture.assign(corners.size(), no_index);
-    add_polygon(corners, reader, mesh);
-    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    for (const std::size_t i : add_surface_polygon(corners, reader, mesh)) {
         visual.texture_corners.push_back({texture[0], texture[i], texture[i + 1]});
         visual.material.push_back(material);
     }

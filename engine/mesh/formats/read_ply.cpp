@@ -149,7 +149,7 @@ private:
             else
                 reader_.real(property.type, "number");
         }
-        if (is_corners) add_polygon(corners_, reader_, mesh_);
+        if (is_corners) add_surface_polygon(corners_, reader_, mesh_);
     }
 
     Index read_node(const NumberType& type) {

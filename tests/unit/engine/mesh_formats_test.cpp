@@ -5,6 +5,8 @@
 #include "engine/mesh/tetrahedron.h"
 #include "mesh_samples.h"
 #include "skerry/error.h"
+#include "skerry/visual.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skerry::test::mesh_formats_test {
 
@@ -149,6 +151,31 @@ TEST_CASE("a surface of second order becomes four triangles for each", "[unit]")
     CHECK(mesh::read_surface(folder.write("a.mesh", file), &notes).triangles ==
           std::vector<std::array<Index, 3>>{{0, 3, 5}, {1, 4, 3}, {2, 5, 4}, {3, 4, 5}});
     CHECK_THAT(notes.back(), Contains("1 triangles of second order were divided"));
+}
+
+TEST_CASE("triangles of a surface file that use a node twice are dropped with a note", "[unit]") {
+    const TemporaryFolder folder;
+    const std::string obj = folder
+                                .write("part.obj",
+                                       "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl red\n"
+                                       "f 1/1 1/1 2/2\nusemtl blue\nf 1/1 2/2 3/3 3/3\n")
+                                .string();
+    const std::string ply = folder
+                                .write("part.ply",
+                                       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                       "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+                                       "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 0 1\n4 0 1 2 2\n")
+                                .string();
+    for (const std::string& file : {obj, ply}) {
+        std::vector<std::string> notes;
+        CHECK(mesh::read_surface(file, &notes).triangles == std::vector<std::array<Index, 3>>{{0, 1, 2}});
+        REQUIRE(notes.size() == 1);
+        CHECK_THAT(notes.front(), Catch::Contains("2 triangles use the same node twice"));
+    }
+    const VisualSurface visual = mesh::read_visual(obj);
+    CHECK(visual.triangles.size() == 1);
+    CHECK(visual.texture_corners == std::vector<std::array<Index, 3>>{{0, 1, 2}});
+    CHECK(visual.material == std::vector<Index>{1});
 }
 
 TEST_CASE("a bad Medit file is refused with the place and the reason", "[unit]") {
