@@ -250,8 +250,8 @@ TEST_CASE("notes of a filling are given again with the mesh of the cache file") 
     const TemporaryFolder folder;
     const Variable netgen("SKERRY_FILL", stub(folder, "fill", fill_tetrahedron).string());
     // The last triangle is repeated, which is noted.
-    const std::filesystem::path file = folder.write(
-        "part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 4 3\n");
+    const std::filesystem::path file =
+        folder.write("part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 4 3\n");
     std::vector<std::string> first, second;
     mesh::fill_cached(file, {}, {}, &first);
     const Variable none("SKERRY_FILL", "/nowhere/fill");
@@ -263,8 +263,8 @@ TEST_CASE("notes of a filling are given again with the mesh of the cache file") 
 TEST_CASE("a mesh of fTetWild is not kept if Netgen is missing or crashes") {
     const TemporaryFolder folder;
     const Variable python("SKERRY_FILL_PYTHON", stub(folder, "python", fill_tetrahedron).string());
-    const std::filesystem::path file = folder.write(
-        "part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    const std::filesystem::path file =
+        folder.write("part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
     for (const std::string& program : {stub(folder, "fill", "kill -SEGV $$").string(), std::string("/nowhere/fill")}) {
         const Variable netgen("SKERRY_FILL", program);
         std::vector<std::string> notes;
