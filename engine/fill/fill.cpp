@@ -53,9 +53,8 @@ public:
           setup_{.limits = settings.limits, .python = settings.python, .progress = progress} {
         check_settings();
         say("checking the surface");
-        result_.surface = settings.cavities
-                              ? check_surface_with_walls(given.surface, default_weld, given.names.front())
-                              : check_surface(given.surface, default_weld, given.names.front());
+        result_.surface = settings.cavities ? check_surface_with_walls(given.surface, default_weld, given.names.front())
+                                            : check_surface(given.surface, default_weld, given.names.front());
         if (surface().triangles.empty()) refuse("no triangles", "a surface with triangles");
         result_.tolerance = settings.tolerance * box_diagonal(surface());
         shells_ = shells_of(result_.surface, settings.cavities);

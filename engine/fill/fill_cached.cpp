@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "components/hash.h"
+#include "engine/fill/meshers.h"
 #include "skerry/error.h"
 #include "skerry/fill.h"
 
@@ -25,14 +26,15 @@ constexpr std::uint64_t cache_version = 2;
 
 /// Name of the cache file: the name of the surface file, a hash, and .msh.
 std::filesystem::path cache_file(const std::filesystem::path& file, const SurfaceMesh& surface,
-                                 const FillSettings& settings) {
+                                 const FillSettings& settings, bool has_netgen) {
     Hash hash;
     hash.add(cache_version);
     // A format may divide the surface among several files, so the hash covers the arrays and not the named file.
     hash.add(surface.nodes.size());
     for (const Vec3& node : surface.nodes) hash.add(node.data(), sizeof(Real) * 3);
     hash.add(std::span<const std::array<Index, 3>>(surface.triangles));
-    const Real numbers[] = {settings.edge.value_or(0), settings.tolerance, settings.cavities ? 1.0 : 0.0};
+    const Real numbers[] = {settings.edge.value_or(0), settings.tolerance, settings.cavities ? 1.0 : 0.0,
+                            has_netgen ? 1.0 : 0.0};
     hash.add(std::span<const Real>(numbers));
     char text[32];
     std::snprintf(text, sizeof text, ".%016llx.msh", static_cast<unsigned long long>(hash.value()));
@@ -99,7 +101,8 @@ Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings
         if (notes) notes->push_back(file.string() + ": " + text);
     };
     const SurfaceMesh surface = read_surface(file.string(), notes);
-    const std::filesystem::path cache = cache_file(file, surface, settings);
+    const bool has_netgen = !netgen_program().empty();
+    const std::filesystem::path cache = cache_file(file, surface, settings, has_netgen);
     if (std::filesystem::exists(cache)) try {
             Mesh mesh = read(cache.string());
             // A mesh without labels is written with the label 1 everywhere.
@@ -113,8 +116,8 @@ Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings
     of_cache.material = {};
     FilledMesh filled = fill(surface, file.string(), of_cache, progress);
     std::ranges::for_each(filled.notes, note);
-    if (filled.may_change)
-        note("the mesh was not kept, as Netgen was missing, crashed or reached a limit: every run fills the surface");
+    if (filled.may_change && has_netgen)
+        note("the mesh was not kept, as Netgen did not start, crashed or reached a limit: every run fills the surface");
     else if (!write_cache(cache, filled))
         note("the mesh could not be kept, as " + cache.string() + " cannot be written: every run fills the surface");
     return std::move(filled.mesh);

@@ -140,13 +140,14 @@ int fill(const FillOptions& options) {
     mesh::write(options.mesh.string(), filled.mesh);
     if (!options.scene.empty())
         write_file(options.scene, [&](std::ostream& out) {
-            out << starter_scene(options, settings.material, report).dump(4, ' ', false, Json::error_handler_t::replace) << "\n";
+            out << starter_scene(options, settings.material, report).dump(4, ' ', false, Json::error_handler_t::replace)
+                << "\n";
         });
     if (options.json)
         // The file names may be in another encoding than UTF-8.
-        std::cout << fill_json(options, filled, report, problems, seconds)
-                         .dump(1, ' ', false, Json::error_handler_t::replace)
-                  << std::endl;
+        std::cout
+            << fill_json(options, filled, report, problems, seconds).dump(1, ' ', false, Json::error_handler_t::replace)
+            << std::endl;
     else
         print_text(options, filled, report, problems, seconds);
     return exit_ok;

@@ -190,7 +190,8 @@ std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& 
     const std::size_t next = plan.meshes.size();
     const bool rigid = entry.dynamics == BodyDynamics::rigid;
     if (!entry.mesh || !(entry.mesh->file || entry.mesh->surface)) {
-        plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh, rigid, plan.notes, so_far.filling) : picture_of(*entry.shape));
+        plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh, rigid, plan.notes, so_far.filling)
+                                         : picture_of(*entry.shape));
         plan.mesh_files.emplace_back();
         return next;
     }

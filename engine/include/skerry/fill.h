@@ -84,10 +84,11 @@ FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillS
                 const FillProgress& progress = {});
 
 /// Reads the mesh that fills a surface file from the cache file beside it, or else fills the surface and writes the
-/// cache file. The name of the cache file contains a hash of the surface, `edge`, `tolerance` and `cavities`; the stable
-/// steps of meshes are compared for the default material. A text file beside the cache file keeps the notes of the
-/// filling. A mesh with FilledMesh::may_change is not kept. `notes`: gets the notes of reading and filling, also if the
-/// mesh comes from the cache file, and a note if the mesh was not kept.
+/// cache file. The name of the cache file contains a hash of the surface, `edge`, `tolerance`, `cavities` and whether
+/// skerry-fill is installed; the stable steps of meshes are compared for the default material. A text file beside the
+/// cache file keeps the notes of the filling. A mesh is not kept if skerry-fill is installed and FilledMesh::may_change
+/// is true. `notes`: gets the notes of reading and filling, also if the mesh comes from the cache file, and a note if
+/// the mesh was not kept.
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings = {},
                  const FillProgress& progress = {}, std::vector<std::string>* notes = nullptr);
 

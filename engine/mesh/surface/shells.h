@@ -7,7 +7,8 @@ namespace skerry::mesh {
 
 /// Drops shells that repeat an earlier one, and reports them. `distance`: distance of shells that count as equal
 /// whatever their orientation [m]. `keep_walls`: false if shells of the same orientation count as equal also at a
-/// thousandth of their size, although they may be the two sides of a thin wall. Returns false if there are none; otherwise the connections change.
+/// thousandth of their size, although they may be the two sides of a thin wall. Returns false if there are none;
+/// otherwise the connections change.
 bool drop_repeated_shells(SurfaceReport& report, Real distance, bool keep_walls);
 
 /// Computes the volumes of closed shells, finds the shells around others, and turns shells that are inside out together
