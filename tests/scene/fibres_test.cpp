@@ -365,10 +365,13 @@ TEST_CASE("a scene gives fibres by set, and directions by an array of the mesh f
     REQUIRE(state.stretch.size() == 2);
     CHECK(state.stretch[0] == Approx(2));
     CHECK(state.stretch[1] == Approx(1.5));
-    CHECK_THROWS_WITH(load_scene(scene(R"("tension": 1, "direction_array": "grian")")), Contains("did you mean \"grain\""));
+    CHECK_THROWS_WITH(load_scene(scene(R"("tension": 1, "direction_array": "grian")")),
+                      Contains("did you mean \"grain\""));
     CHECK_THROWS_WITH(load_scene(scene(R"("tension": 1)")), Contains("direction_array"));
-    CHECK_THROWS_WITH(load_scene(scene(R"("tension": 1, "direction": [0, 0, 0])")), Contains("fibres") && Contains("not zero"));
-    CHECK_THROWS_WITH(load_scene(scene(R"("tension": 1, "direction": [0, 0, 1], "set": "nowhere")")), Contains("nowhere"));
+    CHECK_THROWS_WITH(load_scene(scene(R"("tension": 1, "direction": [0, 0, 0])")),
+                      Contains("fibres") && Contains("not zero"));
+    CHECK_THROWS_WITH(load_scene(scene(R"("tension": 1, "direction": [0, 0, 1], "set": "nowhere")")),
+                      Contains("nowhere"));
 }
 
 }  // namespace skerry::test::fibres_test

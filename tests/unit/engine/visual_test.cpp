@@ -76,8 +76,9 @@ TEST_CASE("an .obj file gives texture coordinates and the materials of its .mtl 
     const std::string file = (folder.path() / "square.obj").string();
     std::ofstream(file) << "mtllib square.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0.5 1\n"
                            "f 1 2 3\nusemtl dark red\nf 1/1 2/2 3/3 4/-1\n";
-    std::ofstream(folder.path() / "square.mtl") << "newmtl other\nKd 1 1 1\nnewmtl dark red\nKd 0.5 0.1 0\nd 0.25\nTr 1\n"
-                                                   "map_Kd -s 1 1 1 skin.png\n";
+    std::ofstream(folder.path() / "square.mtl")
+        << "newmtl other\nKd 1 1 1\nnewmtl dark red\nKd 0.5 0.1 0\nd 0.25\nTr 1\n"
+           "map_Kd -s 1 1 1 skin.png\n";
     std::vector<std::string> notes;
     const VisualSurface square = mesh::read_visual(file, &notes);
     CHECK(notes.empty());
