@@ -81,7 +81,8 @@ void divide_second_order(RawMesh& mesh);
 
 /// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
 void add_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
-/// As add_polygon for a file with a surface only: drops triangles that use a node twice, and counts them in the mesh.
+/// Adds a polygon of a file that has only a surface: add_polygon without the triangles that use a node twice, which are
+/// counted in the mesh.
 /// Returns the positions in `nodes` of the second corner of each triangle that was added.
 std::vector<std::size_t> add_surface_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
 
