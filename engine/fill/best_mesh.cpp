@@ -71,6 +71,7 @@ void try_fill(const SurfaceMesh& surface, const std::string& which, const BestMe
             continue;
         }
         const Real step = task.stable_step(*filled.mesh);
+        if (!(step > 0)) best.failure = "Netgen made flat tetrahedra";
         if (step > best.step) {
             best.mesh = *std::move(filled.mesh);
             best.step = step;

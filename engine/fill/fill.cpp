@@ -129,7 +129,9 @@ private:
                           .stable_step = [this](const Mesh& mesh) { return stable_step(mesh); }});
     }
 
+    /// Stable step of a body with this mesh [s]; 0 if the mesh has flat tetrahedra.
     Real stable_step(const Mesh& mesh) const {
+        if (inspect(mesh).flat > 0) return 0;
         return explicit_body(mesh, {.material = settings_.material}).world.stable_step();
     }
 
@@ -182,6 +184,10 @@ private:
                 take(std::move(best), "fTetWild and Netgen");
                 return;
             }
+        }
+        if (!(step > 0)) {
+            filled.failure = "made " + std::to_string(inspect(*filled.mesh).flat) + " flat tetrahedra";
+            refuse_ftetwild(filled, edge);
         }
         take({.mesh = *std::move(filled.mesh), .step = step}, "fTetWild");
     }

@@ -78,7 +78,7 @@ bool take_number(std::string_view& text, auto& number) {
     return error == std::errc{};
 }
 
-/// Reads the text that a mesher wrote. Returns nothing if it is not a mesh of positive tetrahedra.
+/// Reads the text that a mesher wrote. Returns nothing if it is not a mesh without inverted tetrahedra.
 std::optional<Mesh> read_mesh(std::FILE* in) {
     const std::string all = text_of(in);
     std::string_view text = all;
@@ -100,8 +100,7 @@ std::optional<Mesh> read_mesh(std::FILE* in) {
     try {
         // A mesher may order all corners for the opposite orientation.
         turn_inverted(mesh, "mesher");
-        const MeshReport report = inspect(mesh);
-        if (report.inverted + report.flat > 0) return {};
+        if (inspect(mesh).inverted > 0) return {};
     } catch (const SceneError&) {
         return {};
     }
