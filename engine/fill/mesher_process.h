@@ -36,8 +36,8 @@ inline constexpr int exit_missing = 3;
 /// Runs a mesher. Its standard input is a text: "NODES TRIANGLES LARGEST_EDGE", then lines "x y z" of the nodes and
 /// lines "a b c" of the triangles, with nodes counted from 0. The mesher writes to file descriptor 3: "NODES
 /// TETRAHEDRA", then lines "x y z" of the nodes and lines "a b c d" of the tetrahedra. No tetrahedron of the result
-/// is inverted, but some may be flat. A text that is not such a mesh counts as a failure. Throws std::system_error if no
-/// process or temporary file can be created.
+/// is inverted, but some may be flat. A text that is not such a mesh counts as a failure. Throws std::system_error if
+/// no process or temporary file can be created.
 MesherResult run_mesher(const SurfaceMesh& surface, Real largest_edge, const MesherCall& call);
 
 }  // namespace skerry::mesh
