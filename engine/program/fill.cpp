@@ -128,7 +128,7 @@ int fill(const FillOptions& options) {
     const Stopwatch watch;
     mesh::FilledMesh filled;
     {
-        const ActivityLine line(!options.json);
+        ActivityLine line(!options.json);
         filled = mesh::fill(options.surfaces, settings, [&](const std::string& activity) { line.show(activity); });
     }
     const double seconds = watch.seconds();

@@ -131,7 +131,7 @@ void check_repair(const InspectOptions& options) {
 int inspect_repair(const RepairTask& task, const InspectOptions& options) {
     RepairedMesh repaired;
     {
-        const ActivityLine line(!options.json);
+        ActivityLine line(!options.json);
         repaired = repair(task.mesh, task.what, task.of, options.tolerance,
                           [&](const std::string& doing) { line.show(doing); });
         if (repaired.refusal.empty()) mesh::write(options.repair.string(), repaired.mesh);

@@ -124,20 +124,25 @@ void SetupProgress::begin(const char* work) {
     std::fprintf(stderr, "skerry: set-up after %s: %s\n", duration_text(last_).c_str(), work);
 }
 
-ActivityLine::ActivityLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) != 0) {}
+ActivityLine::ActivityLine(bool wanted) : wanted_(wanted), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 ActivityLine::~ActivityLine() {
-    if (shown_) std::fputs("\r\033[K", stderr);
+    if (wanted_) clear_bar();
 }
 
-void ActivityLine::show(const std::string& activity) const {
-    if (!shown_) return;
-    std::fprintf(stderr, "\r\033[K%s, %.1f s", activity.c_str(), watch_.seconds());
+void ActivityLine::show(const std::string& activity) {
+    const double wall = watch_.seconds();
+    if (!wanted_ || (!terminal_ && wall < next_)) return;
+    if (terminal_)
+        std::fprintf(stderr, "\r\033[K%s, %.1f s", activity.c_str(), wall);
+    else
+        std::fprintf(stderr, "skerry: after %s: %s\n", duration_text(wall).c_str(), activity.c_str());
+    next_ = 2 * wall;
     std::fflush(stderr);
 }
 
 ScenePlan plan_with_progress(const std::filesystem::path& file, const SceneOverrides& overrides, bool wanted) {
-    const ActivityLine line(wanted);
+    ActivityLine line(wanted);
     return plan_scene(file, overrides, [&](const std::string& activity) { line.show(activity); });
 }
 

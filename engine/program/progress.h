@@ -79,8 +79,8 @@ private:
     Stopwatch watch_;
 };
 
-/// Status line on a terminal: the current activity and the elapsed seconds. Prints nothing if standard error is not a
-/// terminal.
+/// Shows the current activity and the elapsed seconds: as a status line on a terminal, otherwise as lines after 10, 20,
+/// 40 seconds and so on, so that a log shows that long work goes on.
 class ActivityLine {
 public:
     explicit ActivityLine(bool wanted);
@@ -88,10 +88,11 @@ public:
     ActivityLine(const ActivityLine&) = delete;
     ActivityLine& operator=(const ActivityLine&) = delete;
 
-    void show(const std::string& activity) const;
+    void show(const std::string& activity);
 
 private:
-    bool shown_;
+    bool wanted_, terminal_;
+    double next_ = 10;  // time of the next line of a log [s]
     Stopwatch watch_;
 };
 

@@ -41,6 +41,18 @@ std::vector<NamedFile> check_places(const RunOptions& options) {
         }
     }
     require_distinct(files);
+    const auto has = [&](const char* option) {
+        const auto found = options.outputs.find(option);
+        return found != options.outputs.end() && !found->second.empty();
+    };
+    if ((options.film_color != FilmColor::none || options.film_max) && !has("--film") && !has("--gltf"))
+        Complaint{.file = {},
+                  .object = options.film_max ? "--film-max" : "--film-color",
+                  .field = {},
+                  .found = "neither --film nor --gltf",
+                  .expected = "at least one of them, because this option sets their colours",
+                  .hint = {}}
+            .raise();
     return files;
 }
 
