@@ -2,7 +2,7 @@
 """Compiles sources for syntax only, each of them alone.
 
 Without the precompiled headers a source that does not include what it uses fails:
-    check_syntax.py BUILD_FOLDER           sources of the library that changed within a day of the newest commit
+    check_syntax.py BUILD_FOLDER           sources of the library that changed within six hours before the newest commit
     check_syntax.py BUILD_FOLDER --all     all sources of the library
     check_syntax.py BUILD_FOLDER FILE...   these files
 With them the check is faster, and finds calls that no longer fit the library:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs clang-tidy over the sources of the library.
 
-    lint.py CLANG_TIDY BUILD_FOLDER          files that changed within a day of the newest commit
+    lint.py CLANG_TIDY BUILD_FOLDER          files that changed within six hours before the newest commit
     lint.py CLANG_TIDY BUILD_FOLDER --all    all files
 
 Most of the time of clang-tidy goes into the headers of the packages, read anew for each source. Sources are therefore

@@ -14,7 +14,9 @@ INCLUDE = re.compile(r'^#include "(.*)"', re.MULTILINE)
 SPECIAL = re.compile(
     r"jobs/backend_.*\.cpp|engine/absent/.*|engine/fill/netgen/.*|profiling/siconos\.cpp|profiling/.*/bullet_peer\.cpp"
     r"|profiling/roofline/(peak_loops|roofline)\.cpp|tests/(host|consumer)/.*|tests/fuzz/fuzz_reader\.cpp")
-LATELY = 24 * 3600  # age of a commit, measured from the newest one, up to which its files count as changed [s]
+# Age of a commit, measured from the newest one, up to which its files count as changed [s]. Earlier commits were checked
+# when they landed: a change lands within hours of its first commit.
+LATELY = 6 * 3600
 
 
 def git(*arguments):
@@ -34,7 +36,7 @@ def code_of(text):
 
 
 def changed_files():
-    """Names of files whose code differs from the last commit or from that before the last day; None without git."""
+    """Names of files whose code differs from the last commit or from that before LATELY; None without git."""
     newest = git("log", "-1", "--format=%ct")
     if not newest:
         return None
