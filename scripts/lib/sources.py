@@ -14,8 +14,8 @@ INCLUDE = re.compile(r'^#include "(.*)"', re.MULTILINE)
 SPECIAL = re.compile(
     r"jobs/backend_.*\.cpp|engine/absent/.*|engine/fill/netgen/.*|profiling/siconos\.cpp|profiling/.*/bullet_peer\.cpp"
     r"|profiling/roofline/(peak_loops|roofline)\.cpp|tests/(host|consumer)/.*|tests/fuzz/fuzz_reader\.cpp")
-# Age of a commit, measured from the newest one, up to which its files count as changed [s]. Earlier commits were checked
-# when they landed: a change lands within hours of its first commit.
+# Age of a commit, measured from the newest one, up to which its files count as changed [s]. A change lands within hours
+# of its first commit, so earlier commits were checked before.
 LATELY = 6 * 3600
 
 

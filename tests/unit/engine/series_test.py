@@ -163,6 +163,9 @@ class SeriesTest(ProgramCase):
         finally:
             run.send_signal(signal.SIGKILL)
             run.wait()
+        content = series.read_text()
+        # A kill can cut the last row where a page of the file ends.
+        series.write_text(content[:content.rfind("\n") + 1])
         rows = read_csv(series)
         self.assertEqual(len({len(column) for column in rows.values()}), 1)
         self.assertGreater(len(rows["time [s]"]), 4)
