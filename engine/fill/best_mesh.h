@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/fill/meshers.h"
-#include "engine/fill/shells.h"
+#include "engine/fill/regions.h"
 
 namespace skerry::mesh {
 

@@ -8,6 +8,7 @@
 #include "engine/mesh/formats/raw_mesh.h"
 #include "engine/mesh/sets.h"
 #include "engine/mesh/tetrahedron.h"
+#include "engine/mesh/used_nodes.h"
 #include "skerry/error.h"
 #include "skerry/mesh.h"
 #include "systems/collision/build_surface.h"
@@ -84,30 +85,6 @@ RawMesh read_raw(const std::string& path, bool surface, std::vector<std::string>
     for (const std::string& note : raw.notes)
         if (notes) notes->push_back(path + ": " + note);
     return raw;
-}
-
-/// Nodes that are used, and their numbers among all nodes.
-struct UsedNodes {
-    std::vector<Vec3> nodes;
-    std::vector<Index> number;
-};
-
-/// Removes nodes that no row uses. The remaining nodes stay in order, and the node numbers in the rows are updated.
-template <std::size_t N>
-UsedNodes drop_unused(const std::vector<Vec3>& nodes, std::vector<std::array<Index, N>>& rows) {
-    std::vector<Index> place(nodes.size(), no_index);
-    for (const std::array<Index, N>& row : rows)
-        for (const Index n : row) place[static_cast<std::size_t>(n)] = 0;
-    UsedNodes used;
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
-        if (place[n] == no_index) continue;
-        place[n] = static_cast<Index>(used.nodes.size());
-        used.nodes.push_back(nodes[n]);
-        used.number.push_back(static_cast<Index>(n));
-    }
-    for (std::array<Index, N>& row : rows)
-        for (Index& n : row) n = place[static_cast<std::size_t>(n)];
-    return used;
 }
 
 /// True if two tetrahedra lie on the same side of a face that they share, so that they overlap.

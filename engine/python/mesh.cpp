@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "engine/python/mesh_sets.h"
+#include "engine/python/world/parts.h"
 #include "skerry/fill.h"
 #include "skerry/surface_check.h"
 
@@ -101,7 +102,6 @@ Mesh lathe(const nb::ndarray<const Real, nb::shape<-1, 2>, nb::c_contig, nb::dev
 nb::dict inspect_mesh(const Mesh& mesh) {
     const MeshReport report = without_gil([&] { return inspect(mesh); });
     nb::dict values;
-    const auto tuple_of = [](const Vec3& v) { return nb::make_tuple(v.x(), v.y(), v.z()); };
     values["nodes"] = report.nodes;
     values["tetrahedra"] = report.tetrahedra;
     values["boundary_triangles"] = report.boundary_triangles;
@@ -134,7 +134,6 @@ nb::dict check_surface(const Vectors& nodes, const IndexRows<3>& triangles, Real
     const auto rows = span_of(triangles);
     const SurfaceMesh surface{{points.begin(), points.end()}, {rows.begin(), rows.end()}};
     const SurfaceReport report = without_gil([&] { return mesh::check_surface(surface, tolerance); });
-    const auto tuple_of = [](const Vec3& v) { return nb::make_tuple(v.x(), v.y(), v.z()); };
     const auto row_or_none = [](Index row) { return row == no_index ? nb::none() : nb::cast(row); };
     nb::list faults, shells;
     for (const SurfaceFault& fault : report.faults) {

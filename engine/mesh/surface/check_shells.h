@@ -23,8 +23,8 @@ inline Real rounding_distance(const SurfaceReport& report) {
 }
 
 /// Throws SceneError unless the surface is closed and all of its shells enclose volume. A shell that is inside out must
-/// lie in another shell, in which it bounds a void. Shells may cross each other only if `may_cross`. `what`: name of
-/// the file or body for the error.
-void require_shells(const SurfaceMesh& surface, const std::string& what, bool may_cross);
+/// lie in another shell, in which it bounds a void. Shells may cross each other only if `may_cross`. `name`: file or
+/// body, for the error.
+void require_shells(const SurfaceMesh& surface, const std::string& name, bool may_cross);
 
 }  // namespace skerry::mesh

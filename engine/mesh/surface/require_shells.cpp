@@ -6,13 +6,13 @@
 
 namespace skerry::mesh {
 
-void require_shells(const SurfaceMesh& surface, const std::string& what, bool may_cross) {
+void require_shells(const SurfaceMesh& surface, const std::string& name, bool may_cross) {
     using enum SurfaceFaultKind;
-    SurfaceReport report = check_shells(surface, no_weld, what);
+    SurfaceReport report = check_shells(surface, no_weld, name);
     const auto refuse_any = [&](std::initializer_list<SurfaceFaultKind> kinds, const char* expected, const char* hint) {
         for (const SurfaceFaultKind kind : kinds)
             if (const SurfaceFault* fault = report.find(kind))
-                Complaint{what, "mesh", "triangles", fault_text(*fault), expected, hint}.raise();
+                Complaint{name, "mesh", "triangles", fault_text(*fault), expected, hint}.raise();
     };
     refuse_any({flat_triangles, duplicate_triangles, turned_triangles, holes, one_sided_shells}, "a closed surface",
                "repair the surface; skerry inspect FILE lists its faults");

@@ -1,4 +1,4 @@
-#include "engine/fill/shells.h"
+#include "engine/fill/regions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 
 #include "engine/mesh/repair/surface_measures.h"
 #include "engine/mesh/repair/triangle_tree.h"
+#include "engine/mesh/used_nodes.h"
 #include "systems/collision/build_surface.h"
 #include "systems/collision/narrow/winding_number.h"
 
@@ -88,19 +89,10 @@ SurfaceMesh boundary_of_region(const Shells& shells, std::size_t shell) {
 }
 
 SurfaceMesh without_unused_nodes(const SurfaceMesh& surface, std::vector<Index>* kept) {
-    std::vector<Index> place(surface.nodes.size(), no_index);
-    for (const Triangle& t : surface.triangles)
-        for (const Index n : t) place[static_cast<std::size_t>(n)] = 0;
-    SurfaceMesh compact;
-    for (std::size_t n = 0; n < place.size(); ++n) {
-        if (place[n] == no_index) continue;
-        place[n] = static_cast<Index>(compact.nodes.size());
-        compact.nodes.push_back(surface.nodes[n]);
-        if (kept) kept->push_back(static_cast<Index>(n));
-    }
-    for (const auto& [a, b, c] : surface.triangles)
-        compact.triangles.push_back({place[static_cast<std::size_t>(a)], place[static_cast<std::size_t>(b)],
-                                     place[static_cast<std::size_t>(c)]});
+    SurfaceMesh compact{{}, surface.triangles};
+    UsedNodes used = drop_unused(surface.nodes, compact.triangles);
+    compact.nodes = std::move(used.nodes);
+    if (kept) *kept = std::move(used.number);
     return compact;
 }
 

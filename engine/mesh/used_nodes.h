@@ -1,0 +1,36 @@
+// Removal of nodes that no element uses.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "components/types.h"
+
+namespace skerry::mesh {
+
+/// Nodes that are used, and their numbers among all nodes.
+struct UsedNodes {
+    std::vector<Vec3> nodes;
+    std::vector<Index> number;
+};
+
+/// Removes nodes that no row uses. The remaining nodes stay in order, and the node numbers in the rows are updated.
+template <std::size_t N>
+UsedNodes drop_unused(const std::vector<Vec3>& nodes, std::vector<std::array<Index, N>>& rows) {
+    std::vector<Index> place(nodes.size(), no_index);
+    for (const std::array<Index, N>& row : rows)
+        for (const Index n : row) place[static_cast<std::size_t>(n)] = 0;
+    UsedNodes used;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (place[n] == no_index) continue;
+        place[n] = static_cast<Index>(used.nodes.size());
+        used.nodes.push_back(nodes[n]);
+        used.number.push_back(static_cast<Index>(n));
+    }
+    for (std::array<Index, N>& row : rows)
+        for (Index& n : row) n = place[static_cast<std::size_t>(n)];
+    return used;
+}
+
+}  // namespace skerry::mesh
