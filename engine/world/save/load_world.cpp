@@ -145,7 +145,7 @@ void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
 }
 
 void expect_hash(const SavedFile& file, WorldState& world) {
-    const std::string found = hash_text(state_hash(world));
+    const std::string found = checksum_text(state_hash(world));
     if (found != file.texts().state_hash)
         file.complain("state_hash", file.texts().state_hash, found + ", the hash of the contents of the file");
 }

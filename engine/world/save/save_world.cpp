@@ -57,7 +57,7 @@ std::vector<std::byte> bytes_of_world(WorldState& world, const SavedNote& note) 
     ArrayLister lister;
     list_settings(world.model.settings, world.model.tuning, saved, lister);
     list_state(world, saved, lister);
-    return saved_bytes(lister.take(), {.state_hash = hash_text(state_hash(world)), .note = note.text});
+    return saved_bytes(lister.take(), {.state_hash = checksum_text(state_hash(world)), .note = note.text});
 }
 
 }  // namespace

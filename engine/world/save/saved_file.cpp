@@ -45,7 +45,7 @@ std::string checksum_of(std::span<const std::byte> file) {
     Hash hash;
     hash.add(file.data(), checksum_begin());
     hash.add(file.data() + end, file.size() - end);
-    return hash_text(hash.value());
+    return checksum_text(hash.value());
 }
 
 std::uint64_t header_length(std::span<const std::byte> start) {
@@ -176,7 +176,7 @@ SavedArray array_in(HeaderReader& header, std::span<const std::byte> data, std::
 
 }  // namespace
 
-std::string hash_text(std::uint64_t hash) {
+std::string checksum_text(std::uint64_t hash) {
     char text[checksum_digits + 1];
     std::snprintf(text, sizeof text, "%016" PRIx64, hash);
     return text;

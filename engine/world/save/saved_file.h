@@ -18,7 +18,7 @@ inline constexpr int world_file_version = 28;
 
 /// Texts in the header of a saved world.
 struct SavedTexts {
-    std::string state_hash;  // hash_text() of the hash of the world
+    std::string state_hash;  // checksum_text() of the hash of the world
     std::string note;        // text of the caller; bytes that are not UTF-8 are saved as \u00XX
 };
 
@@ -76,7 +76,7 @@ void require_file_start(const std::string& name, std::span<const std::byte> star
                               const std::string& expected = {});
 
 /// Returns the hash as 16 hexadecimal digits.
-std::string hash_text(std::uint64_t hash);
+std::string checksum_text(std::uint64_t hash);
 
 /// Copies rows of `row_bytes` bytes. Strides are distances between two rows [bytes].
 void copy_strided(const std::byte* from, std::size_t from_stride, std::byte* to, std::size_t to_stride,
