@@ -8,7 +8,7 @@ import sys
 import zipfile
 
 WHEEL = pathlib.Path(sys.argv[1])
-# Libraries that each system with glibc has. The policies of manylinux count zlib among them.
+# Libraries of every system with glibc. The policies of manylinux include zlib.
 SYSTEM = re.compile(r"(linux-vdso|libc|libm|libpthread|libstdc\+\+|libgcc_s|libz|.*/ld-linux-x86-64)\.so\.\d+")
 
 

@@ -220,7 +220,7 @@ TEST_CASE("a capsule lies over the sides of colliders", "[scene]") {
     CHECK((c.middle(upright) - Vec3(6, 0, 0.3 + kept / 2)).norm() < 1e-8);
 }
 
-TEST_CASE("a capsule lies on a soft block, which does not come into it", "[scene]") {
+TEST_CASE("a capsule lies on a soft block, which does not come into it", "[scene][long]") {
     Capsules c({.step_size = 1e-3});
     c.world.add_collider(Plane{});
     const auto soft = c.world.add_material(

@@ -78,7 +78,7 @@ TEST_CASE("a sheet pinched hard between two balls stays between them", "[scene]"
     CHECK(world.center_of_mass(balls[0]).z() < world.center_of_mass(balls[1]).z() - 0.03);
 }
 
-TEST_CASE("a body put half into another leaves it about as slowly as it is pushed", "[scene]") {
+TEST_CASE("a body put half into another leaves it about as slowly as it is pushed", "[scene][long]") {
     Settings settings = weightless();
     settings.start_overlaps = StartOverlaps::ignore;
     World world(settings);

@@ -256,7 +256,8 @@ TEST_CASE("friction spins two spheres that graze each other, and angular momentu
     CHECK(s.world.report().momentum_error < 1e-12);
 }
 
-TEST_CASE("a sphere lies in a soft body that closes around it, and is carried by all that it touches", "[scene]") {
+TEST_CASE("a sphere lies in a soft body that closes around it, and is carried by all that it touches",
+          "[scene][long]") {
     Spheres s({.step_size = 1e-3});
     s.world.add_collider(Plane{});
     const auto soft = s.world.add_material(

@@ -22,7 +22,7 @@ StableStep step_of(const ElasticBody& body) {
 
 }  // namespace
 
-TEST_CASE("the stable step is never above the limit and not far below it", "[unit]") {
+TEST_CASE("the stable step is never above the limit and not far below it", "[unit][long]") {
     // docs/methods/stable_step.md 2: 0.60 to 0.83 of the exact limit; the step uses 0.9 of that.
     for (MaterialModel model : test::material_models) {
         for (Real jitter : {0.0, 0.1, 0.3}) {
