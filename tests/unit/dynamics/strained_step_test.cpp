@@ -58,11 +58,11 @@ TEST_CASE("the step of a body that is strained in places is below the limit", "[
         for (const MaterialModel model : test::material_models)
             for (const Real pressed : {0.0, 0.3, 0.6, -0.6})
                 for (const Real moved : {0.0, 0.25}) {
-                    ElasticBody body(jittered_box({5, 3, 3}, 0.1, 0.1, 12), material_constants(model, 1e5, 0.4, 1000),
+                    ElasticBody body(jittered_box({4, 3, 3}, 0.1, 0.1, 12), material_constants(model, 1e5, 0.4, 1000),
                                      Mat3::Identity(), kind);
                     find_forms(body);
                     const Real at_rest = test::stable_step_of(body);
-                    press_middle(body, {0.5, 0.3, 0.3}, pressed);
+                    press_middle(body, {0.4, 0.3, 0.3}, pressed);
                     std::mt19937_64 random(13);
                     for (Vec3& x : body.position) x += 0.1 * moved * test::random_vector(random);
                     const Real limit = test::exact_limit(body), stands = test::stable_step_of(body);
