@@ -22,8 +22,8 @@ namespace {
 
 constexpr Real safety = 0.9;  // safety factor of stable_step: its result over the bound
 
-/// Lower estimate of the highest circular frequency at rest [rad/s], by power iteration. `body`: of the linear material,
-/// whose forces are proportional to the displacements.
+/// Lower estimate of the highest circular frequency at rest [rad/s], by power iteration. `body`: of the linear
+/// material, whose forces are proportional to the displacements.
 Real highest_frequency(test::ElasticBody& body) {
     constexpr int iterations = 3000;
     const auto executor = make_executor(Backend::serial, 1);

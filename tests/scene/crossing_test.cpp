@@ -31,7 +31,7 @@ std::vector<Index> rim_of(const Mesh& sheet) {
 
 }  // namespace
 
-TEST_CASE("a scene without fast pairs never looks at the motion of a feature", "[scene][long]") {
+TEST_CASE("a scene without fast pairs never tests the motion of a feature", "[scene][long]") {
     World world;
     const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5, .damping = 20});
     world.add_collider(Plane{});

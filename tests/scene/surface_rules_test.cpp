@@ -410,7 +410,7 @@ TEST_CASE("a surface set stays with a body whose dynamics change", "[scene][surf
     }
 }
 
-TEST_CASE("surface rules refuse what cannot be", "[scene][surface]") {
+TEST_CASE("invalid surface rules are refused", "[scene][surface]") {
     World world(Settings{});
     const auto material = world.add_material({});
     const auto body = world.add_body(block, {.material = material, .name = "sledge"});

@@ -133,7 +133,7 @@ TEST_CASE("elements of clusters take no part in the step of a strained body", "[
     CHECK(strained_step_of(body, at_rest, 0.5 * at_rest) == Approx(all_asked));
 }
 
-TEST_CASE("what has no mass bounds no step of a strained body", "[unit]") {
+TEST_CASE("elements without mass do not limit the step of a strained body", "[unit]") {
     ElasticBody body(jittered_box({4, 3, 3}, 0.1, 0.1, 5),
                      material_constants(MaterialModel::stable_neo_hookean, 1e5, 0.4, 1000), Mat3::Identity(),
                      ElementKind::edge_node_smoothed);
@@ -148,7 +148,7 @@ TEST_CASE("what has no mass bounds no step of a strained body", "[unit]") {
     CHECK(held <= at_rest / std::sqrt(1.1));
 }
 
-TEST_CASE("a strained body that is not finite stands no step", "[unit]") {
+TEST_CASE("a strained body that is not finite has the stable step zero", "[unit]") {
     ElasticBody body(jittered_box({2, 2, 2}, 0.1, 0, 1), material_constants(MaterialModel::linear, 1e5, 0.3, 1000));
     find_forms(body);
     body.position[0].x() = std::numeric_limits<Real>::quiet_NaN();

@@ -87,7 +87,7 @@ TEST_CASE("no job begins after one that says so", "[unit][processes]") {
     CHECK(told.end.lost.size() == 1);
 }
 
-TEST_CASE("a signal ends what is under way, and nothing begins after it", "[unit][processes]") {
+TEST_CASE("a signal ends the running jobs, and no job starts after it", "[unit][processes]") {
     const pid_t parent = getpid();
     // The signal goes to the main thread, which waits for it. Threads of earlier tests do not block it, and in one of
     // them it would end this program.
