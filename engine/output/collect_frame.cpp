@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/world/control/control.h"
+#include "engine/world/edit/objects.h"
 #include "engine/world/node_fields.h"
 #include "engine/world/world_state.h"
 #include "jobs/parallel_for.h"
@@ -62,6 +64,17 @@ Frame collect_frame(const World& world) {
         of_body.stress = values_of_cells<Mat3>(world.stress(body), of_body, Mat3::Zero());
         of_body.strain = values_of_cells<Mat3>(world.strain(body), of_body, Mat3::Zero());
         if (yields) of_body.plastic_strain = values_of_cells<Real>(world.plastic_strain(body), of_body, 0);
+    }
+    for (const FibreHandle fibres : handles_of<FibreHandle>(WorldAccess::state_of(world).model)) {
+        const FibreState state = fibre_state(WorldAccess::state_of(world), fibres);
+        BodyFrame& body = *std::ranges::find(frame.bodies, state.body, &BodyFrame::handle);
+        body.fibre_stretch.resize(body.count_cells(), 1);
+        body.fibre_stress.resize(body.count_cells(), 0);
+        for (std::size_t t = 0; t < state.tetrahedra.size(); ++t) {
+            const auto cell = static_cast<std::size_t>(state.tetrahedra[t]);
+            body.fibre_stretch[cell] = state.stretch[t];
+            body.fibre_stress[cell] = state.stress[t];
+        }
     }
     for (const ColliderHandle collider : world.colliders())
         frame.colliders.push_back({.handle = collider,

@@ -30,6 +30,9 @@ struct BodyFrame {
     std::vector<Mat3> node_stress, node_strain;  // values by node: Cauchy stress [Pa] and Green strain
     // Material number of each cell. Materials are numbered in the order in which they were added.
     std::vector<Index> material{};
+    // Stretch of the fibres and nominal stress along them [Pa], by cell: 1 and 0 where there are none, those of the
+    // fibres added last where there are several. Empty if the body has no fibres.
+    std::vector<Real> fibre_stretch{}, fibre_stress{};
 
     std::size_t count_cells() const { return tetrahedra.empty() ? surface.size() : tetrahedra.size(); }
     std::size_t corners_of_cell() const { return tetrahedra.empty() ? 3 : 4; }

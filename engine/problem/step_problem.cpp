@@ -117,7 +117,6 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
     lumped.velocity.assign(step.free_velocity.begin(), step.free_velocity.end());
     std::vector<Vec3> impulse;
     for (std::size_t row = 0; row < step.contacts.stencil.size(); ++row) {
-        if (!step.joined.empty() && step.joined[row]) continue;
         bool on_rigid_body = false;
         const LumpedContact contact = load_contact(
             step.contacts, static_cast<Index>(row), step.free_velocity, settings, h, [](Index node) { return node; },
@@ -148,6 +147,10 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
     result.problem = assemble_problem(lumped, {});
     result.problem.description = description_of(step, settings);
     result.impulse = in_contact_frames(lumped, impulse);
+    if (eliminate_equations(step.equations, step.contacts, result.contact, result.impulse, result.problem))
+        result.problem.description +=
+            "; W and q include the joints, ties and rollers of the bodies, and the impulses of their motors, limits, "
+            "slides and cables in the step";
     return result;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
+#include "engine/problem/eliminate_equations.h"
 #include "skerry/problem.h"
 #include "systems/solver/inputs/region_inputs.h"
 #include "systems/solver/inputs/solver_settings.h"
@@ -17,12 +17,10 @@ struct StepContacts {
     std::span<const Vec3> free_velocity;  // predicted velocity of each node without contacts [m/s]
     std::span<const Vec3> impulse;        // impulse of each contact after the solve, in the world frame [N s]
     std::span<const Index> region;        // region number of each contact
-    // True for each contact whose region also has rows of joints, ties, cables or held axes. The problem leaves it out.
-    // The list is empty if there is no such contact.
-    std::vector<bool> joined{};
+    const StepEquations& equations;
 };
 
-/// Exports the contact problem that solve_regions solves. W is computed from stencils and inverse masses, q from the
+/// Exports the contact problem that solve_regions solves, without other equations (eliminate_equations). W is computed from stencils and inverse masses, q from the
 /// predicted velocity and the bias of the gap, both in contact frames. If static and dynamic friction differ, the
 /// exported problem has only the dynamic coefficient, as mu. Fills problem (without its name and the start of its
 /// description), impulse, contact and region of the result.

@@ -11,11 +11,8 @@
 #include <vector>
 
 #include "engine/program/progress.h"
-#include "skerry/cable.h"
 #include "skerry/error.h"
-#include "skerry/joint.h"
 #include "skerry/problem.h"
-#include "skerry/tie.h"
 
 namespace skerry {
 
@@ -43,9 +40,6 @@ public:
         : folder_(folder), scene_(scene), of_(options.problems_of), every_(options.problems_every) {}
 
     void open(World& world, const RunStart& start) override {
-        const auto rolls = [&](AttachmentHandle attachment) { return !world.directions(attachment).empty(); };
-        joined_ = !Joints(world).all().empty() || !Ties(world).all().empty() || !Cables(world).all().empty() ||
-                  std::ranges::any_of(world.attachments(), rolls);
         const auto take = [this, &world](const StepProblem& step) {
             try {
                 write_step(step);
@@ -62,10 +56,7 @@ public:
     double seconds_in_steps() const override { return seconds_; }
     std::string written() const override {
         return std::to_string(files_) + " contact problems of " + std::to_string(steps_) + " steps to " +
-               folder_.string() +
-               (joined_ ? " (without regions that have joints, ties, nodes on rollers, or cables with friction or a "
-                          "prescribed length, whose equations are not contacts)"
-                        : "");
+               folder_.string();
     }
 
 private:
@@ -79,7 +70,6 @@ private:
     std::string scene_;
     ProblemsOf of_;
     std::optional<int> every_;  // number of steps between two exported steps
-    bool joined_ = false;       // true if the world has joints, ties, nodes on rollers or cables
     long files_ = 0, steps_ = 0;
     double seconds_ = 0;  // wall time of the export [s]
     std::exception_ptr failure_;

@@ -1,6 +1,7 @@
 """Robots of URDF and MJCF files, beside the package mujoco and closed forms."""
 
 import dataclasses
+import itertools
 import json
 import pathlib
 import sys
@@ -253,6 +254,19 @@ def test_a_scene_of_a_robot_moves_as_the_robot(tmp_path: pathlib.Path) -> None:
     assert found == pytest.approx(arm.positions, abs=1e-6)
     assert found[0] > 0.55
     assert scene.world.joints[3].mimic == (scene.world.joints[2], 1.0, 0.0)
+
+
+@pytest.mark.parametrize("self_collision", [True, False])
+def test_pairs_of_links_collide_in_a_scene_as_in_a_world(tmp_path: pathlib.Path, self_collision: bool) -> None:
+    world = sk.World(threads=1)
+    placed = world.add_robot(SWING, self_collision=self_collision)
+    write_scene(placed.robot, tmp_path / "swing.json", self_collision=self_collision)
+    other = sk.load_scene(tmp_path / "swing.json").world
+    pairs = list(itertools.combinations([name for name in placed.links if name in other.bodies], 2))
+    found = {pair: other.may_collide(*(other.bodies[name] for name in pair)) for pair in pairs}
+    assert found == {pair: world.may_collide(*(placed.links[name] for name in pair)) for pair in pairs}
+    assert ("upper", "rod") in found or ("rod", "upper") in found
+    assert any(found.values()) == self_collision
 
 
 def test_the_command_writes_a_scene(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:

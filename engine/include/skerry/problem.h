@@ -148,13 +148,15 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
 std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors);
 
 /// The contact problem of one step of a world, as the solver received it, and the impulses that the solver found.
-/// Contacts that no impulse can move are omitted, and so are regions with joints, ties, nodes on rollers, or cables
-/// that have friction or a prescribed length: the equations of these are not part of a contact problem.
+/// Contacts that no impulse can move are omitted. Joints, ties and nodes on rollers are eliminated from `problem`: its W
+/// and q are those of the bodies that these connect. Slides, motors, limits, passive forces, and cables with friction or
+/// a prescribed length act in it by their impulses of the step.
 struct StepProblem {
     std::uint64_t step = 0;      // number of the step, counted from 1
     Real time = 0;               // time at the start of the step [s]
     Real step_size = 0;          // [s]
-    LumpedContacts lumped;       // the contacts as point-mass stencils, the form that the step used
+    LumpedContacts lumped;       // the contacts as point-mass stencils, the form that the step used, without
+                               // joints, ties, rollers and cables
     ContactProblem problem;      // the contacts of `lumped` as a problem with general blocks
     std::vector<Vec3> impulse;   // impulses of the step in the contact frames of `problem` [N s]
     std::vector<Index> contact;  // index in World::contacts() of each contact of `problem`

@@ -311,6 +311,15 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
     if (std::ranges::any_of(frame.bodies, has_plastic_strain))
         file.array<float>("plastic_strain", 1, cells,
                           of_cells([](auto& put, const BodyFrame& b, std::size_t c) { put(b.plastic_strain[c]); }));
+    const auto has_fibres = [](const BodyFrame& b) { return !b.fibre_stretch.empty(); };
+    if (std::ranges::any_of(frame.bodies, has_fibres)) {
+        file.array<float>("fibre_stretch", 1, cells, of_cells([&](auto& put, const BodyFrame& b, std::size_t c) {
+                              put(has_fibres(b) ? b.fibre_stretch[c] : 1);
+                          }));
+        file.array<float>("fibre_stress", 1, cells, of_cells([&](auto& put, const BodyFrame& b, std::size_t c) {
+                              put(has_fibres(b) ? b.fibre_stress[c] : 0);
+                          }));
+    }
     file.array<std::int32_t>("body", 1, cells, of_cells([this](auto& put, const BodyFrame& b, std::size_t) {
                                  put(number_of(body_number_, b.handle));
                              }));

@@ -34,7 +34,7 @@ MaterialModel: TypeAlias = Literal["linear", "corotational", "stable_neo_hookean
 ElementKind: TypeAlias = Literal["linear", "smoothed", "edge_smoothed", "edge_node_smoothed"]
 Dynamics: TypeAlias = Literal["explicit", "rigid", "implicit", "automatic"]
 JointKind: TypeAlias = Literal["ball", "hinge", "slider", "fixed"]
-TieKind: TypeAlias = Literal["weld", "slide"]
+TieKind: TypeAlias = Literal["weld", "slide", "ball"]
 CavityLaw: TypeAlias = Literal["pressure", "gas", "liquid"]
 SpringSide: TypeAlias = Literal["both", "tension", "compression"]
 

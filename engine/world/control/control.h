@@ -9,6 +9,7 @@
 #include "engine/world/world_state.h"
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
+#include "skerry/fibre.h"
 #include "skerry/joint.h"
 #include "skerry/spring.h"
 #include "skerry/tie.h"
@@ -86,6 +87,12 @@ TieState tie_state(const WorldState& world, TieHandle tie);
 /// Enables the collisions that ties have switched off, for each tie whose nodes have all broken off. Must be called
 /// after a step in which the last node of a tie has broken off.
 void release_ties(WorldState& world);
+
+// control_fibres.cpp
+
+/// See Fibres::state.
+FibreState fibre_state(const WorldState& world, FibreHandle fibres);
+
 // control_springs.cpp
 
 /// Returns the present state of a spring.

@@ -129,7 +129,10 @@ BodyHandle Fibres::body(FibreHandle fibres) const {
 }
 
 FibreState Fibres::state(FibreHandle fibres) const {
-    const WorldState& world = WorldAccess::state_of(*world_);
+    return fibre_state(WorldAccess::state_of(*world_), fibres);
+}
+
+FibreState fibre_state(const WorldState& world, FibreHandle fibres) {
     const Model& model = world.model;
     const FibreTable& table = model.fibres;
     const auto row = static_cast<std::size_t>(model.row(fibres, "fibres"));

@@ -1,6 +1,5 @@
 // Passes contact problems to subscribers, mostly for comparison with other solvers.
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <set>
 #include <string>
@@ -33,38 +32,16 @@ void say_places_among_all(const ContactTable& contacts, const RestingContactTabl
     for (Index& row : place) row = place_of[static_cast<std::size_t>(row)];
 }
 
-/// Marks the contacts of all regions that also have rows of joints, ties, cables or held axes. The list is empty if
-/// there are none.
-std::vector<bool> joined_contacts(const Model& model, const StepScratch& scratch) {
-    const CableTable& cables = model.cables;
-    std::vector<bool> joined(model.bodies.slot.size(), false);  // by row of BodyTable
-    const auto mark = [&](std::span<const Index> bodies) {
-        for (const Index body : bodies)
-            if (body != no_index) joined[static_cast<std::size_t>(body)] = true;
-    };
-    mark(model.joints.first.span());
-    mark(model.joints.second.span());
-    if (model.ties.size() > 0)
-        for (const Index tie : scratch.ties.tie)
-            mark(std::array{model.ties.first[static_cast<std::size_t>(tie)],
-                            model.ties.second[static_cast<std::size_t>(tie)]});
-    if (cables.size() > 0)
-        for (const CableBlock& block : scratch.cables.solved())
-            mark(rows_of(cables.anchor.body.span(), cables.points[static_cast<std::size_t>(block.cable)]));
-    if (!std::ranges::all_of(model.attachments.held.span(), holds_completely))
-        for (const Index entry : scratch.held_rows.entry) {
-            const Index node = model.attachments.node[static_cast<std::size_t>(entry)];
-            mark(std::array{model.nodes.body[static_cast<std::size_t>(node)]});
-        }
-    std::set<Index> regions;
-    const ContactTable& c = scratch.contacts;
-    for (std::size_t row = 0; row < c.size(); ++row)
-        for (const Index body : {c.first_body[row], c.second_body[row]})
-            if (body != no_index && joined[static_cast<std::size_t>(body)]) regions.insert(c.region[row]);
-    std::vector<bool> contacts;
-    if (regions.empty()) return contacts;
-    for (std::size_t row = 0; row < c.size(); ++row) contacts.push_back(regions.contains(c.region[row]));
-    return contacts;
+/// Directions in which attachments hold nodes of the regions of a step.
+std::vector<HeldDirection> held_directions(const AttachmentTable& attachments, std::span<const Index> entries) {
+    std::vector<HeldDirection> held;
+    if (entries.empty()) return held;
+    const std::set<Index> in_regions(entries.begin(), entries.end());
+    for (std::size_t a = 0; a < attachments.held.size(); ++a)
+        for (Index i = attachments.nodes[a].begin; i < attachments.nodes[a].end; ++i)
+            for (const Vec3 direction : attachments.held[a].colwise())
+                if (in_regions.contains(i) && !direction.isZero(0)) held.push_back({attachments.node[i], direction});
+    return held;
 }
 
 }  // namespace
@@ -99,9 +76,12 @@ void show_contact_problem(const WorldState& world, Real time) {
     inputs.implicit.rotation = kept.rotation;
     inputs.implicit.velocity = kept.deforming;
     inputs.implicit.velocity_before = kept.deforming_before;
+    const bool any_held = !std::ranges::all_of(model.attachments.held.span(), holds_completely);
+    const StepEquations equations{
+        scratch.joints, scratch.ties, model.ties.kind.span(), scratch.cables,
+        held_directions(model.attachments, any_held ? scratch.held_rows.entry.span() : std::span<const Index>())};
     StepProblem problem =
-        step_problem({inputs, kept.velocity_next, c.impulse, c.region, joined_contacts(model, scratch)},
-                     scratch.parameters.solver, scratch.parameters.h);
+        step_problem({inputs, kept.velocity_next, c.impulse, c.region, equations}, scratch.parameters.solver, scratch.parameters.h);
     if (problem.problem.q.empty()) return;
     say_places_among_all(c, world.cache.resting, problem.contact);
     problem.step = record.counters.steps;

@@ -8,6 +8,7 @@
 #include "engine/output/page/page_data.h"
 #include "page_stream_reader.h"
 #include "skerry/cable.h"
+#include "skerry/fibre.h"
 #include "skerry/joint.h"
 #include "skerry/output.h"
 #include "skerry/spring.h"
@@ -90,6 +91,41 @@ TEST_CASE("a world that bodies join and leave is written as a series and as a pa
     std::ifstream in(folder / "run.html");
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     CHECK(text.find("\"bodies\":[\"box\",\"ball\"]") != std::string::npos);
+}
+
+TEST_CASE("stretch and stress of fibres are in frames and in files for ParaView", "[unit][output]") {
+    World world;
+    const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
+    const MaterialHandle rubber = world.add_material({});
+    const BodyHandle muscle = world.add_body(cube, {.material = rubber});
+    world.add_body(cube, {.material = rubber, .position = {1, 0, 0}});
+    const FibreHandle fibres = Fibres(world).add(
+        {.body = muscle, .tetrahedra = {1, 3}, .direction = {{1, 0, 0}}, .stiffness = 1e4, .tension = 2e3});
+    std::vector<Vec3> stretched;
+    for (const Vec3& x : cube.nodes) stretched.emplace_back(1.25 * x.x(), x.y(), x.z());
+    world.set_positions(muscle, stretched);
+    const Frame frame = collect_frame(world);
+    const FibreState state = Fibres(world).state(fibres);
+    CHECK(state.stress[0] > 2e3);
+    REQUIRE(frame.bodies[0].fibre_stretch.size() == cube.tetrahedra.size());
+    for (std::size_t t = 0; t < cube.tetrahedra.size(); ++t) {
+        const bool with = t == 1 || t == 3;
+        CHECK(frame.bodies[0].fibre_stretch[t] == Approx(with ? 1.25 : 1));
+        CHECK(frame.bodies[0].fibre_stress[t] == (with ? state.stress[t / 2] : 0));
+    }
+    CHECK(frame.bodies[1].fibre_stretch.empty());
+    const TemporaryFolder folder;
+    for (const bool has : {true, false}) {
+        const fs::path place = folder.path() / (has ? "with" : "without");
+        VtkWriter series(place, "run");
+        series.write_frame(world);
+        series.close();
+        std::ifstream file(place / "run_bodies_0000.vtu", std::ios::binary);
+        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        for (const char* const name : {"\"fibre_stretch\"", "\"fibre_stress\""})
+            CHECK((text.find(name) != std::string::npos) == has);
+        if (has) Fibres(world).remove(fibres);
+    }
 }
 
 TEST_CASE("a rigid body without tetrahedra is written as the triangles of its surface", "[unit][output]") {

@@ -1,0 +1,355 @@
+#include "engine/problem/eliminate_equations.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "components/union_find.h"
+#include "engine/problem/gather_blocks.h"
+#include "systems/contact/tangent_frame.h"
+
+namespace skerry {
+
+namespace {
+
+/// A linear function of velocities. An impulse along it acts with the same coefficients.
+struct VelocityRow {
+    struct OnNode {
+        Index node;
+        Vec3 along;
+    };
+    struct OnFrame {
+        Index frame;  // row of RigidBodyTable
+        Vec3 along, turn;
+    };
+    std::vector<OnNode> nodes;    // velocities of nodes; on implicit bodies, of their deformation
+    std::vector<OnFrame> frames;  // velocities and spins of rigid and implicit bodies
+
+    void add_frame(Index frame, const Vec3& along, const Vec3& turn) {
+        for (OnFrame& of : frames)
+            if (of.frame == frame) {
+                of.along += along;
+                of.turn += turn;
+                return;
+            }
+        frames.push_back({frame, along, turn});
+    }
+};
+
+/// Whether a row keeps its velocity or its impulse of the step. `held`: keeps its velocity; the impulse is not known.
+enum class Keeps { velocity, impulse, held };
+
+struct EquationRow {
+    VelocityRow row;
+    Keeps keeps = Keeps::velocity;
+    Real impulse = 0;
+};
+
+/// Inverse masses of a step.
+class Mobilities {
+public:
+    explicit Mobilities(const RegionInputs& inputs) : inputs_(inputs) {}
+
+    /// Adds `scale` times the velocity of a node of a stencil, along a direction. `acts_at`: point on the frame of the
+    /// node; `beside`: further arm, times the weight [m].
+    void add_node(VelocityRow& row, Index node, Real weight, const Vec3& along, const Vec3* acts_at,
+                  const Vec3& beside) const {
+        const auto n = static_cast<std::size_t>(node);
+        if (weight == 0 || !(inputs_.inverse_mass[n] > 0)) return;
+        const Index frame = inputs_.rigid.nodes.row(node);
+        if (frame != no_index) {
+            const Vec3 arm = (acts_at != nullptr ? *acts_at : inputs_.rigid.position[n]) -
+                             inputs_.rigid.center[static_cast<std::size_t>(frame)];
+            row.add_frame(frame, weight * along, (weight * arm + beside).cross(along));
+            if (inputs_.implicit.row(node, inputs_.rigid.nodes) == no_index) return;
+        }
+        row.nodes.push_back({node, weight * along});
+    }
+    VelocityRow of_stencil(const Stencil& stencil, const Vec3& along, const Vec3* acts_at) const {
+        VelocityRow row;
+        for (std::size_t a = 0; a < 4; ++a)
+            add_node(row, stencil.node[a], stencil.weight[a], along, acts_at, Vec3::Zero());
+        return row;
+    }
+    VelocityRow of_contact(Index contact, const Vec3& along) const {
+        const auto c = static_cast<std::size_t>(contact);
+        const Stencil& stencil = inputs_.stencil[c];
+        VelocityRow row;
+        for (std::size_t a = 0; a < 4; ++a) {
+            const Index node = stencil.node[a];
+            const Real weight = stencil.weight[a];
+            // Vector from the core of a round body to the contact point. It counts once, with the first core node.
+            const Index frame = inputs_.rigid.nodes.row(node);
+            const bool is_first = std::ranges::none_of(
+                row.frames, [&](const VelocityRow::OnFrame& of) { return of.frame == frame; });
+            const Vec3 beside = frame != no_index && is_first && weight != 0
+                                    ? inputs_.rigid.nodes.beside_core(node, weight, c, inputs_.normal[c], inputs_.touch)
+                                    : Vec3(Vec3::Zero());
+            add_node(row, node, weight, along, nullptr, beside);
+        }
+        return row;
+    }
+    /// Rate of row `a` per impulse along row `b`.
+    Real coupling(const VelocityRow& a, const VelocityRow& b) const {
+        Real sum = 0;
+        for (const auto& of_a : a.frames)
+            for (const auto& of_b : b.frames)
+                if (of_a.frame == of_b.frame) {
+                    const auto r = static_cast<std::size_t>(of_a.frame);
+                    sum += inputs_.rigid.inverse_mass(r) * of_a.along.dot(of_b.along) +
+                           of_a.turn.dot(inputs_.rigid.spins.inverse_inertia[r] * of_b.turn);
+                }
+        for (const auto& of_a : a.nodes)
+            for (const auto& of_b : b.nodes) sum += of_a.along.dot(of_nodes(of_a.node, of_b.node, of_b.along));
+        return sum;
+    }
+    /// Calls visit(leader) for each node and frame of a row. The leader is a node that stands for all nodes whose masses
+    /// are coupled.
+    void for_each_leader(const VelocityRow& row, auto&& visit) const {
+        for (const auto& of : row.frames) visit(leader_of_frame(of.frame));
+        for (const auto& of : row.nodes) visit(leader_of_node(of.node));
+    }
+    /// The first leader of a row; no_index if the row moves nothing.
+    Index leader(const VelocityRow& row) const {
+        Index first = no_index;
+        for_each_leader(row, [&](Index of) { first = first == no_index ? of : first; });
+        return first;
+    }
+
+private:
+    /// Velocity of node `a` by the impulse `impulse` on node `b`, without the motion of frames.
+    Vec3 of_nodes(Index a, Index b, const Vec3& impulse) const {
+        const Index frame = inputs_.rigid.nodes.row(a);
+        if (frame != no_index) {
+            if (inputs_.rigid.nodes.row(b) != frame) return Vec3::Zero();
+            const ImplicitCoupling& coupling = *inputs_.implicit.coupling;
+            const auto place = [&](Index node) {
+                return coupling.place[static_cast<std::size_t>(inputs_.implicit.row(node, inputs_.rigid.nodes))];
+            };
+            return coupling.block(static_cast<std::size_t>(frame), place(a), place(b)) * impulse;
+        }
+        const Index cluster = inputs_.clustered() ? inputs_.clusters->cluster(a) : no_index;
+        if (cluster == no_index)
+            return a == b ? Vec3(inputs_.inverse_mass[static_cast<std::size_t>(a)] * impulse) : Vec3(Vec3::Zero());
+        if (inputs_.clusters->cluster(b) != cluster) return Vec3::Zero();
+        const std::span<const Index> nodes = inputs_.clusters->nodes[static_cast<std::size_t>(cluster)];
+        const auto at = [&](Index node) { return static_cast<std::size_t>(std::ranges::find(nodes, node) - nodes.begin()); };
+        const std::size_t first = inputs_.clusters->first_entry[static_cast<std::size_t>(cluster)];
+        return inputs_.clusters->inverse[first + at(a) * nodes.size() + at(b)] * impulse;
+    }
+    Index leader_of_frame(Index frame) const {
+        const auto body = static_cast<std::size_t>(inputs_.rigid.body[static_cast<std::size_t>(frame)]);
+        return inputs_.rigid.nodes.body_nodes[body].begin;
+    }
+    Index leader_of_node(Index node) const {
+        if (const Index frame = inputs_.rigid.nodes.row(node); frame != no_index) return leader_of_frame(frame);
+        return inputs_.clustered() ? inputs_.clusters->leader(node) : node;
+    }
+
+    const RegionInputs& inputs_;
+};
+
+VelocityRow row_of_joint(const JointBlock& block, const RegionInputs& inputs, const Vec3& along) {
+    VelocityRow row;
+    const auto add = [&](Index body, Index node, Real sign) {
+        if (node == no_index) return;
+        if (block.turning) return row.add_frame(body, Vec3::Zero(), sign * along);
+        const Vec3 arm = block.point - inputs.rigid.center[static_cast<std::size_t>(body)];
+        row.add_frame(body, sign * along, sign * arm.cross(along));
+    };
+    add(block.first, block.first_node, 1);
+    add(block.second, block.second_node, -1);
+    return row;
+}
+
+void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std::vector<EquationRow>& rows) {
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        const JointBlock& block = joints.block[j];
+        const Vec3& impulse = joints.impulse[j];
+        if (const Real c = block.mimic.coefficient; c != 0) {
+            VelocityRow row = row_of_joint(block, inputs, c * block.frame.col(2));
+            if (block.mimic.leads) {  // the last row is that of the joint that mimics
+                for (const auto& of : row.frames) rows.back().row.add_frame(of.frame, of.along, of.turn);
+                continue;
+            }
+            rows.push_back({std::move(row), Keeps::velocity, impulse.z() / c});
+            continue;
+        }
+        for (Index k = 0; k < 3; ++k)
+            rows.push_back({row_of_joint(block, inputs, block.frame.col(k)),
+                            k == 2 && !block.axis.locked ? Keeps::impulse : Keeps::velocity, impulse[k]});
+    }
+}
+
+void list_ties(const StepEquations& equations, const Mobilities& mobilities, std::vector<EquationRow>& rows) {
+    const TieRowTable& ties = equations.tie_rows;
+    for (std::size_t i = 0; i < ties.size() && !equations.tie_kind.empty(); ++i) {
+        const bool is_weld = equations.tie_kind[static_cast<std::size_t>(ties.tie[i])] == TieKind::weld;
+        for (Index k = 0; k < (is_weld ? 3 : 1); ++k)
+            rows.push_back({mobilities.of_stencil(ties.stencil[i], is_weld ? Vec3(Vec3::Unit(k)) : ties.impulse[i],
+                                                  &ties.point[i]),
+                            is_weld ? Keeps::velocity : Keeps::impulse, is_weld ? ties.impulse[i][k] : 1});
+    }
+}
+
+void list_cables(const CableBlockTable& cables, const Mobilities& mobilities, std::vector<EquationRow>& rows) {
+    for (const CableBlock& block : cables.solved()) {
+        const Range points = block.points;
+        if (!block.is_tie) {
+            Vec3 last = Vec3::Zero();
+            for (Index p = points.begin; p < points.end; ++p) {
+                const Vec3 next = cables.impulse[p] * cables.direction[p];
+                rows.push_back({mobilities.of_stencil(cables.stencil[p], next - last, nullptr), Keeps::impulse, 1});
+                last = next;
+            }
+            continue;
+        }
+        for (Index k = 0; k < 3; ++k) {
+            VelocityRow sum;
+            for (Index p = points.begin; p < points.end; ++p) {
+                const VelocityRow of = mobilities.of_stencil(cables.stencil[p], Vec3::Unit(k),
+                                                             p + 1 == points.end ? &block.acts_at : nullptr);
+                sum.nodes.insert(sum.nodes.end(), of.nodes.begin(), of.nodes.end());
+                for (const auto& frame : of.frames) sum.add_frame(frame.frame, frame.along, frame.turn);
+            }
+            rows.push_back({std::move(sum), Keeps::velocity, cables.impulse[points.begin + k]});
+        }
+    }
+}
+
+/// Pseudoinverse of a symmetric matrix whose rows may have different units. Rows may depend on each other.
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
+    const Eigen::VectorXd scale =
+        matrix.diagonal().unaryExpr([](Real of) { return of > 0 ? 1 / std::sqrt(of) : Real(0); });
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
+    factors.setThreshold(1e-11);
+    factors.compute(scale.asDiagonal() * matrix * scale.asDiagonal());
+    return scale.asDiagonal() * factors.pseudoInverse() * scale.asDiagonal();
+}
+
+/// Rows of equations and contacts whose masses are coupled.
+struct Group {
+    std::vector<EquationRow*> kept_velocity, kept_impulse;
+    std::vector<Index> contacts;  // numbers in the problem
+};
+
+Eigen::MatrixXd couplings(const Mobilities& mobilities, const std::vector<VelocityRow>& rows,
+                          const std::vector<EquationRow*>& equations) {
+    Eigen::MatrixXd matrix(rows.size(), equations.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        for (std::size_t j = 0; j < equations.size(); ++j)
+            matrix(static_cast<Index>(i), static_cast<Index>(j)) = mobilities.coupling(rows[i], equations[j]->row);
+    return matrix;
+}
+
+std::vector<VelocityRow> rows_of_equations(const std::vector<EquationRow*>& equations) {
+    std::vector<VelocityRow> rows;
+    for (const EquationRow* const equation : equations) rows.push_back(equation->row);
+    return rows;
+}
+
+Eigen::VectorXd impulses_of(const std::vector<EquationRow*>& equations) {
+    Eigen::VectorXd impulses(equations.size());
+    for (std::size_t k = 0; k < equations.size(); ++k) impulses[static_cast<Index>(k)] = equations[k]->impulse;
+    return impulses;
+}
+
+/// Finds the impulses of the held rows, which keep the rates that they have before the solve. `rate_by_others`: changes
+/// of the rates of all equations by contacts and known impulses.
+void find_held_impulses(const Eigen::MatrixXd& E, const Eigen::VectorXd& rate_by_others,
+                        const std::vector<EquationRow*>& equations) {
+    std::vector<Index> held;
+    for (std::size_t k = 0; k < equations.size(); ++k)
+        if (equations[k]->keeps == Keeps::held) held.push_back(static_cast<Index>(k));
+    if (held.empty()) return;
+    const Eigen::VectorXd rate = rate_by_others + E * impulses_of(equations);
+    const Eigen::VectorXd found = -(inverse_of(E(held, held)) * rate(held));
+    for (std::size_t k = 0; k < held.size(); ++k)
+        equations[static_cast<std::size_t>(held[k])]->impulse = found[static_cast<Index>(k)];
+}
+
+}  // namespace
+
+bool eliminate_equations(const StepEquations& equations, const RegionInputs& inputs, std::span<const Index> contact,
+                         std::span<const Vec3> impulse, ContactProblem& problem) {
+    const Mobilities mobilities(inputs);
+    std::vector<EquationRow> rows;
+    list_joints(equations.joints, inputs, rows);
+    list_ties(equations, mobilities, rows);
+    list_cables(equations.cables, mobilities, rows);
+    for (const HeldDirection& held : equations.held)
+        rows.push_back({mobilities.of_stencil({{held.node, held.node, held.node, held.node}, {1, 0, 0, 0}},
+                                              held.direction, nullptr),
+                        Keeps::held, 0});
+    std::erase_if(rows, [&](const EquationRow& of) { return mobilities.leader(of.row) == no_index; });
+    if (rows.empty()) return false;
+    UnionFind sets;
+    sets.start(inputs.inverse_mass.size());
+    for (const EquationRow& of : rows)
+        mobilities.for_each_leader(of.row, [&](Index leader) { sets.join(mobilities.leader(of.row), leader); });
+    std::map<Index, Group> groups;  // by root
+    for (EquationRow& of : rows) {
+        Group& group = groups[sets.root(mobilities.leader(of.row))];
+        (of.keeps == Keeps::impulse ? group.kept_impulse : group.kept_velocity).push_back(&of);
+    }
+    std::vector<std::array<VelocityRow, 3>> of_contact;
+    for (std::size_t i = 0; i < contact.size(); ++i) {
+        const Vec3& normal = inputs.normal[static_cast<std::size_t>(contact[i])];
+        const TangentFrame tangents = tangent_frame(normal);
+        auto& axes = of_contact.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k)
+            axes[k] = mobilities.of_contact(contact[i], k == 0 ? normal : k == 1 ? tangents.first : tangents.second);
+        const auto note = [&](Index leader) {
+            const auto group = groups.find(sets.root(leader));
+            if (group == groups.end()) return;
+            std::vector<Index>& list = group->second.contacts;
+            if (list.empty() || list.back() != static_cast<Index>(i)) list.push_back(static_cast<Index>(i));
+        };
+        mobilities.for_each_leader(axes[0], note);
+    }
+    std::vector<BlockPart> parts;
+    for (std::size_t i = 0; i < problem.q.size(); ++i)
+        for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
+            parts.push_back({static_cast<Index>(i), problem.column[static_cast<std::size_t>(k)],
+                             problem.block[static_cast<std::size_t>(k)]});
+    bool any = false;
+    for (auto& [root, group] : groups) {
+        if (group.contacts.empty()) continue;
+        any = true;
+        std::vector<VelocityRow> contacts;
+        Eigen::VectorXd r(3 * group.contacts.size());
+        for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+            const auto at = static_cast<std::size_t>(group.contacts[i]);
+            contacts.insert(contacts.end(), of_contact[at].begin(), of_contact[at].end());
+            r.segment<3>(3 * static_cast<Index>(i)) = impulse[at];
+        }
+        const Eigen::MatrixXd C = couplings(mobilities, contacts, group.kept_velocity),
+                              known = couplings(mobilities, contacts, group.kept_impulse);
+        const std::vector<VelocityRow> of_equations = rows_of_equations(group.kept_velocity);
+        const Eigen::MatrixXd E = couplings(mobilities, of_equations, group.kept_velocity);
+        const Eigen::VectorXd known_impulses = impulses_of(group.kept_impulse);
+        find_held_impulses(E,
+                           C.transpose() * r +
+                               couplings(mobilities, of_equations, group.kept_impulse) * known_impulses,
+                           group.kept_velocity);
+        const Eigen::MatrixXd less = C * (inverse_of(E) * C.transpose());
+        const Eigen::VectorXd more = known * known_impulses + C * impulses_of(group.kept_velocity) + less * r;
+        for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+            const auto row = static_cast<Index>(3 * i);
+            problem.q[static_cast<std::size_t>(group.contacts[i])] += more.segment<3>(row);
+            for (std::size_t j = 0; j < group.contacts.size(); ++j) {
+                const auto column = static_cast<Index>(3 * j);
+                const Mat3 block =
+                    (less.block<3, 3>(row, column) + less.block<3, 3>(column, row).transpose()) / 2;
+                parts.push_back({group.contacts[i], group.contacts[j], -block});
+            }
+        }
+    }
+    if (any) gather_blocks(std::move(parts), problem);
+    return any;
+}
+
+}  // namespace skerry
