@@ -149,10 +149,10 @@ public:
         Vec3 velocity = Vec3::Zero();
         if (tie.collider[t_] != no_index)
             velocity = led_velocity(ties_.motion[static_cast<std::size_t>(tie.collider[t_])], place_.point, step_.h);
-        else if (frame != no_index && stencil_.weight[1] == 0)
-            velocity = of_second.velocity;
         else if (ties_.deforms(second) && frame == no_index)
             velocity = turning_offset(ties_, t_, k_, step_.h);
+        else if (!ties_.deforms(second) && frame != no_index && stencil_.weight[1] == 0)
+            velocity = of_second.velocity;
         Vec3 error = point() - place_.point;
         if (tie.kind[t_] == TieKind::slide) error = place_.normal.dot(error) * place_.normal;
         Vec3 pull = error / step_.h;

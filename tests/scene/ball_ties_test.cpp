@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "skerry/joint.h"
 #include "skerry/tie.h"
@@ -72,6 +73,39 @@ TEST_CASE("a body that is tied at its centre of mass by a ball keeps its spin, a
     }
 }
 
+TEST_CASE("a plate that a ball holds at the middle of its upper edge swings with the period of a pendulum",
+          "[scene][ties]") {
+    constexpr Real density = 1000, width = 0.1, thickness = 0.02, height = 0.2;  // [kg/m^3], [m]
+    Settings settings = accurate({0, 0, -standard_gravity}, 1e-12);
+    settings.step_size = 1e-3;
+    World world(settings);
+    const Mesh mesh = mesh::box({width, thickness, height}, {2, 1, 4});
+    const BodyHandle plate =
+        world.add_body(mesh, {.material = world.add_material({.young_modulus = 1e9, .density = density}),
+                              .dynamics = BodyDynamics::implicit_elastic});
+    std::vector<Index> edge;
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+        if (mesh.nodes[n].z() > 0.49 * height) edge.push_back(static_cast<Index>(n));
+    const TieHandle tie = Ties(world).add({.kind = TieKind::ball, .body = plate, .nodes = edge});
+    const Vec3 pivot = Ties(world).state(tie).point, arm = world.center_of_mass(plate) - pivot;
+    world.set_gravity(standard_gravity * arm.normalized());  // the masses of the nodes are not symmetric
+    const Vec3 axis = Vec3::UnitY();
+    constexpr Real mass = density * width * thickness * height;                                              // [kg]
+    const Real inertia = mass * ((width * width + height * height) / 12 + axis.cross(arm).squaredNorm());    // [kg m^2]
+    const Real period = 2 * std::numbers::pi * std::sqrt(inertia / (mass * standard_gravity * arm.norm()));  // [s]
+    const Vec3 spin = 0.05 * axis, along = axis.cross(arm).normalized();
+    world.set_velocity(plate, spin.cross(arm), spin);
+    const Real amplitude = spin.norm() * arm.norm() * period / (2 * std::numbers::pi);  // [m]
+    for (const Real quarters : {1, 0, -1, 0}) {
+        REQUIRE(world.advance(period / 4).ok());
+        CHECK(along.dot(world.center_of_mass(plate) - pivot - arm) ==
+              Approx(quarters * amplitude).margin(2e-3 * amplitude));
+    }
+    const TieState state = Ties(world).state(tie);
+    CHECK((state.point - pivot).norm() < 1e-9);
+    CHECK(state.moment.norm() < 1e-10 * mass * standard_gravity * arm.norm());
+}
+
 TEST_CASE("bodies that a ball ties conserve momentum and angular momentum", "[scene][ties]") {
     for (const BodyDynamics of_left : deforming)
         for (const BodyDynamics of_right : all_kinds) {
@@ -83,12 +117,16 @@ TEST_CASE("bodies that a ball ties conserve momentum and angular momentum", "[sc
             REQUIRE(pair.world.advance(0.1).ok());
             const WorldReport after = pair.world.report();
             CHECK((after.momentum - before.momentum).norm() < 1e-12);
-            CHECK((after.angular_momentum - before.angular_momentum).norm() < 1e-9 * before.angular_momentum.norm());
+            // On explicit bodies the impulse acts at the place of the mean point, which is up to 1e-6 m from it.
+            const Real apart = of_right == BodyDynamics::explicit_elastic ? 1e-6 : 0;  // [m]
+            constexpr Real impulse = 1;                                                // [N s]
+            CHECK((after.angular_momentum - before.angular_momentum).norm() < 1e-13 + apart * impulse);
             CHECK(after.momentum_error_share < 1e-12);
             CHECK(after.energy_error_share < 0.01);
             const TieState state = pair.state();
             CHECK(state.force.norm() > 0.01);
-            CHECK(state.error < 1e-7);
+            // The error of one step of 7 ms is of third order.
+            CHECK(state.error < 1e-6);
         }
 }
 
@@ -111,9 +149,10 @@ TEST_CASE("the mean point of a ring follows a collider in its middle", "[scene][
                                            .body = body,
                                            .nodes = nodes_with([](const Vec3& x) { return std::abs(x.y()) > 0.049; }),
                                            .to_collider = shaft});
+    const Vec3 start = Ties(world).state(tie).point;
     REQUIRE(world.advance(0.1).ok());
     const TieState state = Ties(world).state(tie);
-    CHECK((state.point - 0.1 * Vec3(0.1, 0, 0.05)).norm() < 1e-9);
+    CHECK((state.point - start - 0.1 * Vec3(0.1, 0, 0.05)).norm() < 1e-9);
     CHECK(world.report().momentum_error_share < 1e-12);
 }
 
