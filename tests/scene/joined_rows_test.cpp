@@ -24,6 +24,7 @@ const Mesh cube = mesh::box({side, side, side}, {2, 2, 2});
 struct Slider {
     World world;
     BodyHandle lower, upper;
+    std::vector<Index> bottom;  // nodes of the lower face of each body
 
     Slider(SolverMethod method, BodyDynamics dynamics, bool carries, bool ties_elsewhere) : world(settings_of(method)) {
         const MaterialHandle of = world.add_material({.young_modulus = 1e6, .friction = 0.3, .damping = 20});
@@ -32,7 +33,6 @@ struct Slider {
             return world.add_body(cube, {.material = of, .position = place, .velocity = {1, 1, 0}, .dynamics = kind});
         };
         lower = add({0, 0, 0.051}, dynamics);
-        std::vector<Index> bottom;
         for (std::size_t n = 0; n < cube.nodes.size(); ++n)
             if (cube.nodes[n].z() < -0.049) bottom.push_back(static_cast<Index>(n));
         SurfaceSets(world).add({.body = lower,
@@ -84,10 +84,13 @@ TEST_CASE("every solver method gives the same motion with each kind of row", "[s
             Joints(world).add({.first = pendulum, .point = {2.1, 0, 2}});
             Cables(world).add(
                 {.points = {{.point = {4.1, 0, 3}}, {.body = lamp, .point = {4, 0, 2.05}}}, .drive = {.length = 0.95}});
+            const BodyHandle top =
+                world.add_body(cube, {.material = of, .position = {0, 0, 0.051 + 2 * side}, .velocity = {1, 1, 0}});
+            Ties(world).add({.kind = TieKind::ball, .body = top, .nodes = slider.bottom, .to_body = slider.upper});
             REQUIRE(world.advance(0.02).ok());
             CHECK(world.report().unconverged == 0);
             std::vector<Vec3> now;
-            for (const BodyHandle body : {slider.lower, slider.upper, pendulum, lamp})
+            for (const BodyHandle body : {slider.lower, slider.upper, top, pendulum, lamp})
                 now.push_back(world.center_of_mass(body));
             if (expected.empty()) expected = now;
             for (std::size_t b = 0; b < now.size(); ++b) CHECK((now[b] - expected[b]).norm() < 1e-8);
