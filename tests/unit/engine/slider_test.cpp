@@ -27,7 +27,8 @@ std::string yard(const std::string& more) {
     return R"({"settings": {"gravity": [0, 0, 0], "sleep": false}, "materials": {"soft": {"E": 1e5, "rho": 1000}},
     "bodies": [
         {"name": "cube", "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [1, 1, 1]}}, "material": "soft",
-         "sets": {"left": {"half_space": {"point": [-0.04, 0, 0], "normal": [-1, 0, 0]}}}, "pin": {"set": "left"}},
+         "sets": {"left": {"half_space": {"point": [-0.04, 0, 0], "normal": [-1, 0, 0]}},
+                  "right": {"half_space": {"point": [0.04, 0, 0], "normal": [1, 0, 0]}}}, "pin": {"set": "left"}},
         {"name": "lever", "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [1, 1, 1]}}, "material": "soft",
          "position": [1, 0, 0], "dynamics": "rigid"},
         {"name": "sled", "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [1, 1, 1]}}, "material": "soft",
@@ -43,7 +44,8 @@ std::string yard(const std::string& more) {
     "cables": [{"name": "tendon", "points": [{"point": [0, 0, 1]}, {"body": "cube"}], "tension": [[0, 1], [1, 2]]}],
     "cavities": [
         {"name": "skin", "body": "cube", "pressure": 0},
-        {"name": "bag", "body": "cube", "gas": {}}, {"name": "syringe", "body": "cube", "liquid": {"bulk_modulus": 1e3}}],
+        {"name": "bag", "body": "cube", "set": "right", "gas": {}, "volume": 1e-3},
+        {"name": "syringe", "body": "cube", "set": "right", "liquid": {"bulk_modulus": 1e3}, "volume": 1e-3}],
     "pipes": [{"name": "valve", "first": "bag", "conductance": 0}],
     "springs": [{"name": "band", "first": {"point": [0, 1, 0]}, "second": {"body": "cube"}, "stiffness": 1}],
     "loads": [{"name": "push", "kind": "force", "body": "cube", "nodes": [0], "force": [1, 0, 0]}],
@@ -79,7 +81,7 @@ TEST_CASE("a slider drives each kind of object from its present value to the new
     Scene scene = yard_with(R"(
         {"name": "shift", "collider": "ball", "along": [0, 0, 2], "low": -1, "high": 1, "fastest": 0.4},
         {"name": "pin", "body": "cube", "along": [0, 1, 0], "low": -0.01, "high": 0.01},
-        {"name": "angle", "joint": "hinge", "low": -0.5, "high": 0.5},
+        {"name": "angle", "joint": "hinge", "low": -0.5, "high": 1},
         {"name": "speed", "joint": "rail", "low": 0, "high": 0.2},
         {"name": "tension", "cable": "tendon", "low": 0, "high": 4},
         {"name": "inflow", "cavity": "bag", "low": 0, "high": 1e-9},
