@@ -142,15 +142,9 @@ Json json_of(const Quantile& quantile) {
     return {{"max", quantile.max()}, {"usual", quantile.at(0.99)}};
 }
 
-/// Members of the run element that recorded and live pages have.
-Json json_of_run(const std::string& title, const Vec3& gravity, const PageStream& stream) {
-    Json json = {{"schema", 3}, {"title", title}, {"gravity", json_of(gravity)}};
-    json.update(json_of_objects(stream, {}));
-    return json;
-}
-
 Json json_of_data(const PageData& data, const PageSummary& summary) {
-    Json json = json_of_run(summary.title, data.gravity(), data.stream());
+    Json json = {{"schema", 3}, {"title", summary.title}, {"gravity", json_of(data.gravity())}};
+    json.update(json_of_objects(data.stream(), {}));
     json.update({{"rows", json_of_rows(data)},
                  {"speed", json_of(data.fields()[0])},
                  {"stress", json_of(data.fields()[1])},
@@ -187,7 +181,7 @@ std::string packed_three_js() {
 
 /// Parts of a page that are not the same in every page.
 struct PageParts {
-    std::string title, connect, run, frames, visuals;
+    std::string title, run, frames, visuals;
 };
 
 void put_page(std::ostream& out, const PageParts& parts) {
@@ -198,12 +192,11 @@ void put_page(std::ostream& out, const PageParts& parts) {
         out << rest.substr(0, place) << text;
         rest.remove_prefix(place + mark.size());
     };
-    replace("@connect@", parts.connect);
     replace("@title@", escape_html(parts.title));
     replace("@style@", page_style);
     replace("@run@", parts.run);
-    replace("@frames@", base64(parts.frames));
-    replace("@visuals@", base64(parts.visuals));
+    replace("@frames@", parts.frames);
+    replace("@visuals@", parts.visuals);
     replace("@three@", base64(packed_three_js()));
     replace("@script@", page_script);
     out << rest;
@@ -240,19 +233,16 @@ void write_page(const std::filesystem::path& file, const PageData& data, const P
     require_page_library(file);
     write_file(file, [&](std::ostream& out) {
         put_page(out, {.title = summary.title,
-                       .connect = "'none'",
                        .run = script_text(json_of_data(data, summary)),
-                       .frames = data.packed_frames(),
-                       .visuals = data.stream().visuals().packed()});
+                       .frames = base64(data.packed_frames()),
+                       .visuals = base64(data.stream().visuals().packed())});
     });
 }
 
-std::string live_page(const std::string& connect) {
+std::string live_page() {
     require_page_library({});
     std::ostringstream out;
-    Json run = json_of_run("Skerry", Vec3::Zero(), PageStream{});
-    run["live"] = true;
-    put_page(out, {.title = "Skerry", .connect = connect, .run = script_text(run), .frames = {}, .visuals = {}});
+    put_page(out, {.title = "Skerry", .run = "{\"live\":true}", .frames = {}, .visuals = {}});
     return std::move(out).str();
 }
 

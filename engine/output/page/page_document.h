@@ -21,9 +21,9 @@ struct PageSummary {
 /// Throws SceneError if this build has no three.js. The message names `file`.
 void require_page_library(const std::filesystem::path& file);
 
-/// Returns a page without a run, which asks the server that sent it for a live stream. `connect`: sources to which the
-/// page may connect, as in a Content-Security-Policy. Throws SceneError if this build has no three.js.
-std::string live_page(const std::string& connect);
+/// Returns a page without a run, which asks the server that sent it for a live stream. Throws SceneError if this build
+/// has no three.js.
+std::string live_page();
 
 /// Numbers of objects of a stream that a page already knows.
 struct PageCounts {
