@@ -82,4 +82,16 @@ void set_slider(World& world, Slider& slider, Real value) {
     slider.course = course;
 }
 
+void start_slider(World& world, const Slider& slider) {
+    for (const SliderTarget& target : slider.targets)
+        if (const auto* const control = std::get_if<PoseControl>(&target.what))
+            std::visit(
+                [&](auto object) {
+                    world.set_pose(object, pose_at(slider, target.start, slider.course.keys.back().value));
+                },
+                control->object);
+        else
+            std::visit(FollowCourse{world, slider, target, slider.course}, target.what);
+}
+
 }  // namespace skerry

@@ -53,11 +53,15 @@ public:
     /// is ahead of the wall clock. It then waits for commands, at most 20 ms. A caller that is told to advance has to
     /// do so. For a single step the result is the length of one step.
     Real due(World& world);
+    /// For a callback of World::advance. Shows the world between two steps of a long call, and returns false if
+    /// commands wait, so that the call ends and they are carried out soon.
+    bool between_steps(const World& world);
     /// Pauses the view, and shows the text to all browsers. For steps that failed.
     void fail(const std::string& text);
-    /// Advances the world as the browsers ask, in calls of at most 1/60 s, until `go_on` returns false. A long call of
-    /// advance shows the world between two of its steps. A step that cannot be committed pauses the view.
-    void run(World& world, const std::function<bool()>& go_on);
+    /// Advances the world as the browsers ask, in calls of at most 1/60 s, until `go_on` returns false, which is asked
+    /// before each step. A step that cannot be committed pauses the view; `failed` then gets its message.
+    void run(World& world, const std::function<bool()>& go_on,
+             const std::function<void(const std::string&)>& failed = {});
 
     /// Ends all connections and stops the server. The functions above then do nothing, and due() returns 0.
     void close();

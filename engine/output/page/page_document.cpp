@@ -77,8 +77,7 @@ Json json_of_visuals(std::span<const std::vector<VisualMaterial>> visuals) {
 
 Json json_of_lines(std::span<const PageLine> lines) {
     Json list = Json::array();
-    for (const PageLine& line : lines)
-        list.push_back({{"name", line.name}, {"kind", name_of(line.kind)}});
+    for (const PageLine& line : lines) list.push_back({{"name", line.name}, {"kind", name_of(line.kind)}});
     return list;
 }
 

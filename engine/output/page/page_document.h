@@ -28,6 +28,8 @@ std::string live_page();
 /// Numbers of objects of a stream that a page already knows.
 struct PageCounts {
     std::size_t bodies = 0, visuals = 0, colliders = 0, lines = 0;
+
+    bool operator==(const PageCounts&) const = default;
 };
 /// Returns the objects of a stream that a page does not know yet, as the members of the run element of a page.
 nlohmann::ordered_json json_of_objects(const PageStream& stream, const PageCounts& first);
