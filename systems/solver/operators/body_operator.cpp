@@ -50,6 +50,17 @@ Vec4 BodyOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
     return project(i, impulse - u / of.steepest);
 }
 
+Real BodyOperator::push_tie(Index i, const Vec4& held, Vec4* velocity) const {
+    if (held.isZero(0)) return 0;
+    Vec4 change = -held / part(i).along_normal;
+    if (limits(i).stick > 0) {
+        const Mat3 mobility = walk_.undeformed_coupling(contact(i), contact(i)) + rigid_coupling(part(i), part(i));
+        change = -padded(mobility.inverse() * held.head<3>());
+    }
+    apply_undeformed(i, change, velocity);
+    return -change.dot(held);
+}
+
 Vec4 BodyOperator::project_in_frame(Index i, const Vec4& impulse) const {
     const RigidPart& of = part(i);
     Vec4 local = in_frame(of.frame, impulse);

@@ -116,8 +116,8 @@ private:
                     Real size = begin == 0 ? of_joints : 0;
                     for (std::size_t i = begin; i < end; ++i)
                         if (!only_equations || region_.memory.contact[i].friction.ties())
-                            size += op_.push(static_cast<Index>(i), memory_.bias[i], velocity_.data(),
-                                             memory_.impulse[i]);
+                            size +=
+                                op_.push(static_cast<Index>(i), memory_.bias[i], velocity_.data(), memory_.impulse[i]);
                     return size;
                 });
             if (change == 0 || (change <= small && !stage_.settings.fixed_iterations)) return true;
