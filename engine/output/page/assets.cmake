@@ -60,6 +60,7 @@ set(pages
     film/write_gltf.cpp
     page/page_data.cpp
     page/page_document.cpp
+    page/page_stream.cpp
     page/page_writer.cpp
     ${page_assets}
 )
