@@ -37,7 +37,7 @@ std::vector<T> values_of_cells(std::vector<T> of_tetrahedra, const BodyFrame& bo
 
 }  // namespace
 
-Frame collect_frame(const World& world, bool stresses) {
+Frame collect_frame(const World& world, FrameContent content) {
     Frame frame{.time = world.time(),
                 .gravity = world.settings().gravity,
                 .energy = world.energy(),
@@ -49,7 +49,7 @@ Frame collect_frame(const World& world, bool stresses) {
     const bool yields =
         std::ranges::any_of(WorldAccess::state_of(world).model.materials.constants, &MaterialConstants::yields);
     std::vector<NodeFields> fields(bodies.size());
-    if (stresses)
+    if (content >= FrameContent::node_values)
         parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t b = begin; b < end; ++b) fields[b] = node_fields(world, bodies[b]);
         });
@@ -65,15 +65,21 @@ Frame collect_frame(const World& world, bool stresses) {
                                                                  .strain = {},
                                                                  .plastic_strain = {},
                                                                  .node_stress = std::move(fields[b].stress),
-                                                                 .node_strain = std::move(fields[b].strain),
-                                                                 .material = materials_of(world, body)});
+                                                                 .node_strain = std::move(fields[b].strain)});
         of_body.visual = visual_of(world, body);
         if (world.dynamics(body) == BodyDynamics::rigid) of_body.rigid_pose = world.pose(body);
-        if (!stresses) continue;
+        if (content < FrameContent::cell_values) continue;
+        of_body.material = materials_of(world, body);
         of_body.stress = values_of_cells<Mat3>(world.stress(body), of_body, Mat3::Zero());
         of_body.strain = values_of_cells<Mat3>(world.strain(body), of_body, Mat3::Zero());
         if (yields) of_body.plastic_strain = values_of_cells<Real>(world.plastic_strain(body), of_body, 0);
     }
+    for (const ColliderHandle collider : world.colliders())
+        frame.colliders.push_back({.handle = collider,
+                                   .name = world.name(collider),
+                                   .shape = &world.shape(collider),
+                                   .pose = world.pose(collider)});
+    if (content < FrameContent::cell_values) return frame;
     for (const FibreHandle fibres : handles_of<FibreHandle>(WorldAccess::state_of(world).model)) {
         const FibreState state = fibre_state(WorldAccess::state_of(world), fibres);
         BodyFrame& body = *std::ranges::find(frame.bodies, state.body, &BodyFrame::handle);
@@ -85,11 +91,6 @@ Frame collect_frame(const World& world, bool stresses) {
             body.fibre_stress[cell] = state.stress[t];
         }
     }
-    for (const ColliderHandle collider : world.colliders())
-        frame.colliders.push_back({.handle = collider,
-                                   .name = world.name(collider),
-                                   .shape = &world.shape(collider),
-                                   .pose = world.pose(collider)});
     return frame;
 }
 

@@ -8,8 +8,14 @@
 
 namespace skerry {
 
-/// Without `stresses`, stresses and strains of the bodies are left empty, which saves most of the time.
-Frame collect_frame(const World& world, bool stresses = true);
+/// Values of the bodies in a frame. Each content includes those above it, and takes longer to collect.
+enum class FrameContent {
+    motion,       // positions and velocities
+    node_values,  // stress and strain by node
+    cell_values,  // values by cell
+};
+/// Values that the content does not include are left empty.
+Frame collect_frame(const World& world, FrameContent content = FrameContent::cell_values);
 /// Joints, ties, cables and springs, in this order.
 std::vector<LineFrame> collect_lines(const World& world);
 

@@ -61,6 +61,17 @@ struct RunOptions {
 };
 int run(const RunOptions& options);
 
+struct ViewOptions {
+    std::filesystem::path scene;
+    SceneOverrides overrides;
+    std::optional<Real> seconds;  // simulated time after which the program ends
+    Real rate = 1;                // simulated time per wall time; 0: as fast as possible
+    int port = 0;                 // 0: a free port
+    bool paused = false;          // wait for the user to press play
+    bool open = true;             // open the browser
+};
+int view(const ViewOptions& options);
+
 struct InspectOptions {
     std::filesystem::path file;
     std::vector<std::string> assignments;  // assignments PLACE=VALUE that change a scene

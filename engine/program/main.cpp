@@ -13,6 +13,7 @@
 #endif
 
 #include "engine/program/commands.h"
+#include "engine/program/examples.h"
 #include "engine/program/output_formats.h"
 #include "engine/program/sweep/cases/sweep_file.h"
 #include "engine/scene/place.h"
@@ -21,104 +22,6 @@
 namespace {
 
 using namespace skerry;
-
-const char* const general_examples = R"(Examples:
-  skerry run scenes/skittles.json                          simulate, and print a summary
-  skerry run scenes/skittles.json --page skittles.html     also write a page that plays the run in a browser
-  skerry run scenes/bucket.json --out frames --stats s.json   frames for ParaView, statistics for scripts
-  skerry inspect scenes/table.json                         sizes, step length, cost and problems of a scene
-  skerry inspect bunny.msh                                 sizes, quality and problems of a mesh
-  skerry fill bunny.obj bunny.msh --scene bunny.json       fill a surface with tetrahedra, and write a first scene
-  skerry solve problem.hdf5 --tolerance 1e-6               solve a frictional contact problem of FCLIB
-  skerry sweep examples/incline_sweep.json                 simulate a scene with many values, one case per core
-
-Exit codes: 0 success, 1 the simulation failed, the solver did not converge, or a run with --strict has warnings,
-2 invalid input, 3 an output of a run could not be written, 4 the results of a run cannot be trusted, because surfaces
-passed through each other or contacts stayed unsolved, 128 + n stopped by signal n.
-`skerry COMMAND --help` describes the options of a command.)";
-
-const char* const run_examples = R"(Examples:
-  skerry run scenes/skittles.json --seconds 2 --threads 2
-  skerry run scenes/table.json --page table.html --frames-per-second 30
-  skerry run scenes/skittles.json --film skittles.usd --film-color stress        open the film in Blender
-  skerry run scenes/table.json --profile                                         also print the times of all stages
-  skerry run scenes/bucket.json --contact-regions global --stats global.json     one contact region instead of many
-  skerry run scenes/bucket.json --export-problems problems --export-every 100    then: skerry solve problems/FILE
-  skerry run scenes/drop/drop_27.json --threads 1 --quiet --stats drop.json      no summary, only the file of statistics
-  skerry run scenes/bucket.json --checkpoint bucket.skerry --every 0.5           if the run is killed, continue with:
-  skerry run --restart bucket.skerry --checkpoint bucket.skerry --every 0.5
-
-At the end the run prints a short summary: the scene, the computing time, the main results, warnings (reasons not to
-rely on the result, each with a remedy) and the written files. --profile adds step limits, solver statistics, energies,
-the times of all stages and the hash of the final state. --stats writes all of these as JSON.
-
---restart reads the scene file, the settings, the simulated time of the run and the times of the frames from the
-checkpoint. Give SCENE only if the scene file has moved. --seconds may be larger and --threads may differ. --stats then
-covers the whole run, but the times of the stages begin at the checkpoint. --probes and --out continue the earlier
-files; use the same file and folder. --page, --film and --trace begin at the checkpoint.)";
-
-const char* const inspect_examples = R"(Examples:
-  skerry inspect bunny.msh                                 sizes, quality, problems, tetrahedra that limit the step
-  skerry inspect bunny.stl                                 shells, holes, crossings and other faults of a surface
-  skerry inspect bunny.msh --repair better.msh             write a mesh of the same body with a longer step
-  skerry inspect bunny.msh --repair better.msh --tolerance 0      new tetrahedra inside the unchanged surface
-  skerry inspect scene.json --repair arm.msh --body arm    the mesh of the body "arm", with the step of its material
-  skerry inspect scenes/skittles.json --json
-  skerry inspect scenes/skittles.json --set materials.skittle.young_modulus=6e5
-
---repair uses Netgen to fill two surfaces with new tetrahedra: the unchanged surface, and the surface without very flat
-triangles. The mesh with the longer stable step is written. If no new stable step is at least 5 % longer, or if the
-surface moves by more than the tolerance, no file is written and the exit code is 1.)";
-
-const char* const fill_examples = R"(Examples:
-  skerry fill bunny.obj bunny.msh                          keep the triangles of the surface if it has no faults
-  skerry fill bunny.obj bunny.msh --edge 0.01              tetrahedra and triangles with edges of about 1 cm
-  skerry fill scan.stl scan.msh --edge 0.01 --tolerance 0.005   allow the surface to move by 0.5 % of its size
-  skerry fill bone.stl skin.stl leg.msh                    two regions, if one surface lies inside the other
-  skerry fill ball.stl ball.msh --cavities                 leave the inside of inner shells empty
-From a surface to a film:
-  skerry fill bunny.obj bunny.msh --scene bunny.json --material rubber_natural
-  skerry run bunny.json --page bunny.html                  then open bunny.html in a browser
-
-A surface without faults is filled by Netgen, which keeps its triangles. A surface with holes, crossings or other
-faults, and one whose edges differ from --edge, is filled by fTetWild within the tolerance. `skerry inspect SURFACE`
-lists the faults. Of several meshes the one with the longest stable step is written. Netgen is part of Skerry if
-libnglib-dev was installed when Skerry was built. fTetWild is a Python package: pip install wildmeshing==0.4.1. Set
-SKERRY_FILL_PYTHON to the Python interpreter that has it, if that is not python3.
-Exit codes: 0 success, 2 the surface cannot be filled or another input is invalid, 1 other failures.)";
-
-const char* const sweep_examples =
-    R"(CASES is a JSON file. It names a scene and the values with which to simulate the scene:
-
-  {"scene": "incline.json",
-   "set": {"seconds": 1},
-   "grid": [{"name": "mu", "set": ["materials.block.friction", "colliders[0].friction"], "values": [0.2, 0.3, 0.4]},
-            {"set": "materials.block.E", "from": 1e4, "to": 1e6, "count": 5, "spacing": "log"}]}
-
-A "grid" gives all combinations of the values. Instead of a "grid", give a "list" of cases, each an object
-{PLACE: VALUE, ...}, or "random" cases:
-
-   "random": {"seed": 1, "count": 100, "parameters": [
-       {"set": "materials.block.E", "distribution": "log_uniform", "from": 1e4, "to": 1e6},
-       {"set": "bodies[0].position[2]", "distribution": "normal", "mean": 0.05, "deviation": 0.01}]}
-
-PLACE is a place in the scene, as for `skerry run --set`. docs/sweep.md describes sweeps in detail, and
-`skerry schema --sweep` prints all keys.
-
-Examples:
-  skerry sweep cases.json --dry-run                        list the cases, and which of them have a result
-  skerry sweep cases.json --out results                    run the cases, one per core at a time
-  skerry sweep cases.json --out results                    after Ctrl-C: run the cases that have no result yet
-  mpirun -n 64 skerry sweep cases.json --out results       64 processes; process I runs cases I, I + 64, ...
-  srun -n 64 skerry sweep cases.json --out results         the same with SLURM (also with sbatch --array=0-63)
-  skerry sweep cases.json --out results --rank 0 --of 2    the first of two processes that you start yourself
-  skerry sweep cases.json --out results --table            write the table of the existing results
-
-Results: one file per case (case_000000.json, ...), written at the end of the case. When all cases have a result, two
-more files are written: sweep.csv, a table for spreadsheets, and sweep.html, a page with the same table and a plot. A
-case that fails, or whose scene is refused, also has a result. A case that was killed has no result and is run again.
-Exit codes: 0 all cases of this process have a result, 1 a case has no result (with --strict also: a case failed, was
-refused or has warnings), 2 invalid input, 3 a file could not be written, 128 + n stopped by signal n.)";
 
 /// Validator that accepts finite numbers above 0.
 const CLI::Validator positive_number(
@@ -235,6 +138,14 @@ void add_overrides(CLI::App& command, SceneOverrides& overrides) {
                                "grouping of contacts into regions, each of which is solved on its own");
 }
 
+void add_threads(CLI::App& command, SceneOverrides& overrides) {
+    command
+        .add_option_function<int>(
+            "--threads", [&overrides](const int& count) { overrides.threads = count; },
+            "number of worker threads; 0: one per core")
+        ->check(CLI::Range(0, 1024));
+}
+
 /// Adds the options for writing checkpoints and for resuming a run. Returns the option --restart.
 CLI::Option* add_checkpoints(CLI::App& command, RunOptions& options) {
     CLI::Option* checkpoint = command.add_option("--checkpoint", options.checkpoint,
@@ -260,11 +171,7 @@ void add_run(CLI::App& app, RunOptions& options) {
         command.add_option("SCENE", options.scene, "scene file (JSON); `skerry schema` prints its format");
     add_number(command, "--seconds", options.seconds,
                "time at which the run ends [s]; default: \"seconds\" of the scene");
-    command
-        .add_option_function<int>(
-            "--threads", [&options](const int& count) { options.overrides.threads = count; },
-            "number of worker threads; 0: one per core")
-        ->check(CLI::Range(0, 1024));
+    add_threads(command, options.overrides);
     add_outputs(command, options);
     add_overrides(command, options.overrides);
     command.add_flag("--from-rest", options.from_rest,
@@ -273,6 +180,25 @@ void add_run(CLI::App& app, RunOptions& options) {
     command.callback([scene, restart] {
         if (scene->count() == 0 && restart->count() == 0) throw CLI::RequiredError("SCENE");
     });
+}
+
+void add_view(CLI::App& app, ViewOptions& options) {
+    CLI::App& command = *app.add_subcommand("view", "Simulate a scene and show it live in a browser");
+    command.footer(view_examples);
+    command.add_option("SCENE", options.scene, "scene file (JSON); `skerry schema` prints its format")->required();
+    add_number(command, "--seconds", options.seconds, "simulated time after which the program ends [s]; default: none");
+    add_threads(command, options.overrides);
+    command
+        .add_option("--rate", options.rate,
+                    "simulated time per wall time: 1 is real time, 0.1 slow motion, 0 as fast as possible")
+        ->check(CLI::Range(0.0, 1000.0))
+        ->capture_default_str();
+    command.add_flag("--paused", options.paused, "wait for the user to press play");
+    command.add_option("--port", options.port, "port of the server; 0: a free port")
+        ->check(CLI::Range(0, 65535))
+        ->capture_default_str();
+    command.add_flag("!--no-open", options.open, "only print the address, and do not open the browser");
+    add_overrides(command, options.overrides);
 }
 
 void add_solve(CLI::App& app, SolveOptions& options) {
@@ -430,11 +356,13 @@ int run_command_line(int argc, char** argv) {
     app.set_version_flag("--version", version_text);
     app.require_subcommand(1);
     RunOptions run_options;
+    ViewOptions view_options;
     SolveOptions solve_options;
     InspectOptions inspect_options;
     FillOptions fill_options;
     SweepOptions sweep_options;
     add_run(app, run_options);
+    add_view(app, view_options);
     add_solve(app, solve_options);
     add_inspect(app, inspect_options);
     add_fill(app, fill_options);
@@ -452,6 +380,7 @@ int run_command_line(int argc, char** argv) {
         return app.exit(error) == 0 ? exit_ok : exit_bad_input;
     }
     if (app.got_subcommand("run")) return run(run_options);
+    if (app.got_subcommand("view")) return view(view_options);
     if (app.got_subcommand("solve")) return solve(solve_options);
     if (app.got_subcommand("inspect")) return inspect(inspect_options);
     if (app.got_subcommand("fill")) return fill(fill_options);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 
+#include "engine/mesh/manifold_fault.h"
 #include "engine/program/number_text.h"
 #include "systems/geometry/rotation.h"
 
@@ -209,6 +211,24 @@ std::vector<std::string> plan_warnings(const ScenePlan& plan) {
         if (used[m]) warn_of_material(plan.materials[m].first, plan.materials[m].second, warnings);
     for (const ColliderPlan& collider : plan.colliders) warn_of_pose(collider.settings, warnings);
     return warnings;
+}
+
+std::vector<std::string> plan_notes(const ScenePlan& plan) {
+    std::vector<std::string> found = plan.notes;
+    std::vector<bool> seen(plan.meshes.size(), false);
+    for (const BodyPlan& body : plan.bodies) {
+        if (seen[body.mesh] || body.settings.dynamics == BodyDynamics::rigid) continue;
+        seen[body.mesh] = true;
+        const std::size_t parts = mesh::count_parts(plan.meshes[body.mesh]);
+        if (parts > 1)
+            found.push_back("the mesh of body \"" + body.settings.name + "\" has " + grouped(parts) +
+                            " parts without a common node, which can move apart");
+    }
+    return found;
+}
+
+void print_lines(const char* kind, const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) std::cerr << "skerry: " << kind << ": " << text << std::endl;
 }
 
 }  // namespace skerry

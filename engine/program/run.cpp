@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <csignal>
 #include <iostream>
 #include <optional>
 #include <ostream>
@@ -19,6 +18,7 @@
 #include "engine/program/run_plan.h"
 #include "engine/program/run_result.h"
 #include "engine/program/series_figures.h"
+#include "engine/program/signal_guard.h"
 #include "engine/program/stiff_note.h"
 #include "engine/program/thin_part_text.h"
 #include "engine/scene/scene_plan.h"
@@ -29,33 +29,6 @@
 namespace skerry {
 
 namespace {
-
-volatile std::sig_atomic_t caught_signal = 0;
-
-/// Handles signals during a run. The first SIGINT or SIGTERM ends the run between two steps, and the second kills the
-/// process. SIGXFSZ is ignored, so that exceeding the file size limit becomes an ordinary write error.
-class SignalGuard {
-public:
-    SignalGuard() {
-        struct sigaction action = {};
-        action.sa_handler = [](int number) { caught_signal = number; };
-        action.sa_flags = static_cast<int>(SA_RESETHAND);
-        sigaction(SIGINT, &action, &old_interrupt_);
-        sigaction(SIGTERM, &action, &old_terminate_);
-        action.sa_handler = SIG_IGN;
-        sigaction(SIGXFSZ, &action, &old_too_large_);
-    }
-    ~SignalGuard() {
-        sigaction(SIGINT, &old_interrupt_, nullptr);
-        sigaction(SIGTERM, &old_terminate_, nullptr);
-        sigaction(SIGXFSZ, &old_too_large_, nullptr);
-    }
-    SignalGuard(const SignalGuard&) = delete;
-    SignalGuard& operator=(const SignalGuard&) = delete;
-
-private:
-    struct sigaction old_interrupt_, old_terminate_, old_too_large_;
-};
 
 const char* const advice =
     "try a smaller --step; `skerry inspect SCENE` shows the stable step of every body, and overlaps at the start";
@@ -240,21 +213,6 @@ std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& worl
     return found;
 }
 
-/// Returns one note for each mesh of several parts that deforms. The note names one body with this mesh.
-std::vector<std::string> separate_parts(const ScenePlan& plan) {
-    std::vector<std::string> found;
-    std::vector<bool> seen(plan.meshes.size(), false);
-    for (const BodyPlan& body : plan.bodies) {
-        if (seen[body.mesh] || body.settings.dynamics == BodyDynamics::rigid) continue;
-        seen[body.mesh] = true;
-        const std::size_t parts = mesh::count_parts(plan.meshes[body.mesh]);
-        if (parts > 1)
-            found.push_back("the mesh of body \"" + body.settings.name + "\" has " + grouped(parts) +
-                            " parts without a common node, which can move apart");
-    }
-    return found;
-}
-
 std::vector<BrokenTie> broken_ties(const ScenePlan& plan, World& world) {
     std::vector<BrokenTie> found;
     const Ties ties(world);
@@ -304,9 +262,7 @@ RunResult simulate(const RunOptions& asked) {
     result.bad_boundaries = bad_boundaries(plan, world);
     result.thin_parts = thin_parts(plan, world);
     result.plan_warnings = plan_warnings(plan);
-    if (!options.quiet)
-        for (const std::string& warning : result.plan_warnings)
-            std::cerr << "skerry: WARNING: " << warning << std::endl;
+    if (!options.quiet) print_lines("WARNING", result.plan_warnings);
     result.scene = scene.name;
     result.scene_file = options.scene.string();
     result.settings = world.settings();
@@ -322,12 +278,10 @@ RunResult simulate(const RunOptions& asked) {
                          .frames = restart ? static_cast<std::size_t>(memory.frame) + 1 : 0,
                          .frame_step = memory.frame_step,
                          .row_step = run_plan.even() ? 0 : run_plan.probe_step};
-    result.notes.insert(result.notes.begin(), plan.notes.begin(), plan.notes.end());
-    for (std::string& note : separate_parts(plan)) result.notes.push_back(std::move(note));
+    for (std::string& note : plan_notes(plan)) result.notes.push_back(std::move(note));
     if (const std::string note = stiff_note(plan, world, start.step_count, run_plan.longest_call()); !note.empty())
         result.notes.push_back(note);
-    if (!options.quiet)
-        for (const std::string& note : result.notes) std::cerr << "skerry: NOTE: " << note << std::endl;
+    if (!options.quiet) print_lines("NOTE", result.notes);
     RunOutputs outputs(options, scene, start, result);
     CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(run_plan.seconds / 10), world.time());
 

@@ -123,8 +123,12 @@ struct ApplyControl {
         std::visit([&](auto object) { world.set_velocity(object, vector_at(values, 0), vector_at(values, 3)); },
                    control.object);
     }
-    void operator()(const MotorSpeedControl& control) const { drive(control.joint, {.speed = values[0]}); }
-    void operator()(const MotorPositionControl& control) const { drive(control.joint, {.position = values[0]}); }
+    void operator()(const MotorSpeedControl& control) const {
+        set_motor_target(world, control.joint, {.speed = values[0]});
+    }
+    void operator()(const MotorPositionControl& control) const {
+        set_motor_target(world, control.joint, {.position = values[0]});
+    }
     void operator()(const NodeForceControl& control) const {
         forces.resize(values.size() / 3);
         for (std::size_t n = 0; n < forces.size(); ++n) forces[n] = vector_at(values, 3 * n);
@@ -139,18 +143,21 @@ struct ApplyControl {
         world.set_loads(control.body, forces);
     }
     void operator()(const GravityControl&) const { world.set_gravity(vector_at(values, 0)); }
-    void operator()(const ValueControl& control) const {
-        std::visit([&](auto object) { set_value(object, values[0]); }, control.object);
-    }
+    void operator()(const ValueControl& control) const { set_controlled_value(world, control, values[0]); }
+};
 
-private:
-    void set_value(CableHandle cable, const TimeTable& value) const {
+/// Sets the value of a ValueControl, by the kind of its object.
+struct SetValue {
+    World& world;
+    const TimeTable& value;
+
+    void operator()(CableHandle cable) const {
         CableDrive drive = Cables(world).settings(cable).drive;
         for (std::optional<TimeTable>* given : {&drive.tension, &drive.length, &drive.rate})
             if (*given) *given = value;
         Cables(world).set_drive(cable, drive);
     }
-    void set_value(CavityHandle cavity, const TimeTable& value) const {
+    void operator()(CavityHandle cavity) const {
         Cavities cavities(world);
         switch (cavities.state(cavity).law) {
             case CavityLaw::pressure:
@@ -161,19 +168,24 @@ private:
                 return cavities.set_liquid_volume(cavity, value);
         }
     }
-    void set_value(PipeHandle pipe, const TimeTable& value) const { Cavities(world).set_reservoir(pipe, value); }
-    void set_value(SpringHandle spring, const TimeTable& value) const { Springs(world).set_rest_length(spring, value); }
-    void set_value(LoadHandle load, const TimeTable& value) const { Loads(world).set_scale(load, value); }
-    void set_value(FibreHandle fibres, const TimeTable& value) const { Fibres(world).set_tension(fibres, value); }
-    void drive(JointHandle joint, JointMotor motor) const {
-        const JointMotorRow now = model_of(world).joints.motor[row_of(world, joint)];
-        motor.strength = now.most;
-        motor.fastest = now.most_speed;
-        Joints(world).set_motor(joint, motor);
-    }
+    void operator()(PipeHandle pipe) const { Cavities(world).set_reservoir(pipe, value); }
+    void operator()(SpringHandle spring) const { Springs(world).set_rest_length(spring, value); }
+    void operator()(LoadHandle load) const { Loads(world).set_scale(load, value); }
+    void operator()(FibreHandle fibres) const { Fibres(world).set_tension(fibres, value); }
 };
 
 }  // namespace
+
+void set_controlled_value(World& world, const ValueControl& control, const TimeTable& value) {
+    std::visit(SetValue{world, value}, control.object);
+}
+
+void set_motor_target(World& world, JointHandle joint, JointMotor target) {
+    const JointMotorRow now = model_of(world).joints.motor[row_of(world, joint)];
+    target.strength = now.most;
+    target.fastest = now.most_speed;
+    Joints(world).set_motor(joint, target);
+}
 
 std::size_t number_count(const World& world, const RolloutControl& control) {
     const auto require_live = [&](auto handle) {

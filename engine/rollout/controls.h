@@ -7,10 +7,21 @@
 #include <vector>
 
 #include "jobs/function_ref.h"
+#include "skerry/joint.h"
 #include "skerry/rollout.h"
+#include "skerry/slider.h"
+#include "skerry/time_table.h"
 
 namespace skerry {
 
+/// Sets the value of the object of a control.
+void set_controlled_value(World& world, const ValueControl& control, const TimeTable& value);
+/// Gives the motor of a joint the speed, the position or the keys of `target`. Its strength and its greatest speed
+/// stay.
+void set_motor_target(World& world, JointHandle joint, JointMotor target);
+
+/// Gives the objects of a slider the value or values of its course, in zero time.
+void start_slider(World& world, const Slider& slider);
 /// Number of values that a control has per interval. Throws SceneError if the world lacks the controlled object, or if
 /// the object is a joint without motor.
 std::size_t number_count(const World& world, const RolloutControl& control);

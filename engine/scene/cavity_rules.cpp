@@ -73,6 +73,7 @@ template <>
 const Rule<PipeEntry>& rule_of<PipeEntry>() {
     static const auto rule =
         Rule<PipeEntry>("pipe", "A pipe between two cavities with the same gas, or between a cavity and a reservoir.")
+            .key("name", &PipeEntry::name, {.meaning = "name for sliders; default: pipe_NUMBER"})
             .key("first", &PipeEntry::first, {.meaning = "name of a cavity", .required = true})
             .key("second", &PipeEntry::second, {.meaning = "name of another cavity; default: a reservoir"})
             .key("conductance", &PipeEntry::conductance,

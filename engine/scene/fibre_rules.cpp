@@ -12,6 +12,7 @@ const Rule<FibreEntry>& rule_of<FibreEntry>() {
     using Entry = FibreEntry;
     static const auto rule =
         Rule<Entry>("fibres", "Fibres in a body, which resist stretch and contract with an active tension.")
+            .key("name", &Entry::name, {.meaning = "name for sliders; default: fibres_NUMBER"})
             .key("body", &Entry::body, {.meaning = "name of the body", .required = true})
             .key("set", &Entry::set, {.meaning = "set of tetrahedra; default: all tetrahedra"})
             .key("direction", &Entry::direction, {.meaning = "direction of all fibres in the mesh"})
@@ -38,8 +39,10 @@ const Rule<FibreEntry>& rule_of<FibreEntry>() {
 }
 
 FibrePlan plan_fibres(const FibreEntry& entry, const ScenePlan& plan) {
-    FibrePlan fibres{
-        .body = find_body(plan, entry.body, entry.place.key("body")), .settings = {}, .place = entry.place};
+    FibrePlan fibres{.name = entry.name,
+                     .body = find_body(plan, entry.body, entry.place.key("body")),
+                     .settings = {},
+                     .place = entry.place};
     const BodyPlan& body = plan.bodies[fibres.body];
     const Mesh& mesh = plan.meshes[body.mesh];
     FibreSettings& settings = fibres.settings;

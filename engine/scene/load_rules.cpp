@@ -64,7 +64,7 @@ const Rule<LoadEntry>& rule_of<LoadEntry>() {
     using Entry = LoadEntry;
     static const auto rule =
         Rule<Entry>("load", "A load on a part of a body, or a force field.")
-            .key("name", &Entry::name, {.meaning = "name in messages"})
+            .key("name", &Entry::name, {.meaning = "name in messages and for sliders; default: load_NUMBER"})
             .key("kind", &Entry::kind,
                  {.meaning = "force: total force on nodes, shared in proportion to their masses; traction: force per "
                              "area of surface faces, in a fixed direction; acceleration: uniform acceleration; "

@@ -95,7 +95,7 @@ BodyHandle add_mesh_body(const ScenePlan& plan, const BodyPlan& body, const Body
 /// Gives objects of a world the names of their plans.
 template <class HandleType>
 void name_objects(World& world, const std::vector<HandleType>& objects, const auto& plans) {
-    for (std::size_t i = 0; i < objects.size(); ++i) ObjectView<HandleType>(world).set_name(objects[i], plans[i].name);
+    for (std::size_t i = 0; i < objects.size(); ++i) name_object(world, objects[i], plans[i].name);
 }
 
 }  // namespace
@@ -183,26 +183,28 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         if (tie.to_collider) settings.to_collider = colliders[*tie.to_collider];
         ties.push_back(called_at(tie.place, [&] { return Ties(world).add(settings); }));
     }
+    const PlannedHandles handles{bodies, colliders, pins};
     std::vector<CableHandle> cables;
     for (const CablePlan& cable : plan.cables)
         cables.push_back(called_at(cable.place, [&] {
             CableSettings settings = cable.settings;
             for (const AnchorPlan& point : cable.points)
-                settings.points.push_back(anchor_of(point, plan, world, {bodies, colliders}));
+                settings.points.push_back(anchor_of(point, plan, world, handles));
             return Cables(world).add(settings);
         }));
     const std::vector<CavityHandle> cavities = add_cavities(plan, bodies, world);
-    for (const LoadPlan& load : plan.loads) called_at(load.place, [&] { return add_planned(load, bodies, world); });
+    for (const LoadPlan& load : plan.loads)
+        name_object(world, called_at(load.place, [&] { return add_planned(load, bodies, world); }), load.name);
     for (const FibrePlan& fibres : plan.fibres) {
         FibreSettings settings = fibres.settings;
         settings.body = bodies[fibres.body];
-        called_at(fibres.place, [&] { return Fibres(world).add(settings); });
+        name_object(world, called_at(fibres.place, [&] { return Fibres(world).add(settings); }), fibres.name);
     }
     std::vector<SpringHandle> springs;
     for (const SpringPlan& spring : plan.springs) {
         SpringSettings settings = spring.settings;
-        settings.first = anchor_of(spring.first, plan, world, {bodies, colliders});
-        settings.second = anchor_of(spring.second, plan, world, {bodies, colliders});
+        settings.first = anchor_of(spring.first, plan, world, handles);
+        settings.second = anchor_of(spring.second, plan, world, handles);
         springs.push_back(called_at(spring.place, [&] { return Springs(world).add(settings); }));
     }
     name_objects(world, joints, plan.joints);
@@ -210,6 +212,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
     name_objects(world, cables, plan.cables);
     name_objects(world, cavities, plan.cavities);
     name_objects(world, springs, plan.springs);
+    scene.sliders = make_sliders(plan, handles, world);
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     const Built built{world, bodies, colliders, pins, joints, ties, cables, cavities, springs};

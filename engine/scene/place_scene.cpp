@@ -30,6 +30,9 @@ public:
         number(scene.cables, "cable_");
         number(scene.cavities, "cavity_");
         number(scene.springs, "spring_");
+        number(scene.pipes, "pipe_");
+        number(scene.loads, "load_");
+        number(scene.fibres, "fibres_");
         for (BodyEntry& body : scene.bodies) place(body);
         for (ColliderEntry& collider : scene.colliders) place(collider);
         for (NoCollisionEntry& pair : scene.no_collision) {
@@ -68,6 +71,7 @@ public:
                                                      &probe.cable, &probe.cavity, &probe.spring, &probe.tie})
                 rename(*name);
         }
+        for (SliderEntry& slider : scene.sliders) place(slider);
     }
 
 private:
@@ -140,6 +144,15 @@ private:
         rename(load.body);
         for (std::optional<Vec3>* vector : {&load.force, &load.traction, &load.acceleration, &load.wind}) turn(*vector);
     }
+    void place(SliderEntry& slider) const {
+        rename(slider.name);
+        for (OneOrMore<std::string>* names :
+             {&slider.collider, &slider.body, &slider.joint, &slider.cable, &slider.cavity, &slider.pipe,
+              &slider.spring, &slider.load, &slider.fibres})
+            for (std::string& name : names->items) rename(name);
+        turn(slider.along);
+        turn(slider.about);
+    }
 
     const IncludeEntry& include_;
     Mat3 rotation_;
@@ -168,6 +181,7 @@ void add_placed(const IncludeEntry& include, SceneFile& included, SceneFile& sce
     append(scene.loads, included.loads);
     append(scene.springs, included.springs);
     append(scene.probes, included.probes);
+    append(scene.sliders, included.sliders);
 }
 
 }  // namespace skerry

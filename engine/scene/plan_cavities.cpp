@@ -26,6 +26,7 @@ CavityPlan plan_cavity(const CavityEntry& entry, std::size_t number, const Scene
 
 PipePlan plan_pipe(const PipeEntry& entry, const ScenePlan& plan) {
     PipePlan pipe;
+    pipe.name = entry.name;
     pipe.place = entry.place;
     pipe.first = find_cavity(plan, entry.first, entry.place.key("first"));
     if (entry.second) pipe.second = find_cavity(plan, *entry.second, entry.place.key("second"));
@@ -63,7 +64,7 @@ std::vector<CavityHandle> add_cavities(const ScenePlan& plan, const std::vector<
         PipeSettings settings = pipe.settings;
         settings.first = handles[pipe.first];
         if (pipe.second) settings.second = handles[*pipe.second];
-        called_at(pipe.place, [&] { return Cavities(world).add(settings); });
+        name_object(world, called_at(pipe.place, [&] { return Cavities(world).add(settings); }), pipe.name);
     }
     return handles;
 }

@@ -4,7 +4,7 @@
 namespace skerry {
 
 LoadPlan plan_load(const LoadEntry& entry, const ScenePlan& plan) {
-    LoadPlan load{.place = entry.place};
+    LoadPlan load{.name = entry.name, .place = entry.place};
     if (entry.body) load.body = find_body(plan, *entry.body, entry.place.key("body"));
     const TimeTable scale = entry.scale.value_or(TimeTable(1));
     switch (entry.kind) {

@@ -412,6 +412,7 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     for (const FibreEntry& fibres : scene.fibres) plan.fibres.push_back(plan_fibres(fibres, plan));
     for (std::size_t i = 0; i < scene.springs.size(); ++i) plan_spring(scene.springs[i], i, plan);
     for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);
+    plan.sliders = scene.sliders;
     return plan;
 }
 

@@ -261,6 +261,7 @@ struct CavityEntry : PartEntry {
     std::optional<Real> volume;
 };
 struct PipeEntry {
+    std::string name;
     std::string first;
     std::optional<std::string> second;
     Real conductance = 0;
@@ -279,6 +280,7 @@ struct LoadEntry : PartEntry {
 };
 /// Fibres in a body, or in a set of its tetrahedra.
 struct FibreEntry {
+    std::string name;
     std::string body;
     std::optional<std::string> set;
     std::optional<Vec3> direction;
@@ -330,6 +332,17 @@ struct ProbeEntry {
     Place place;
 };
 
+/// A slider. Exactly one of the lists of names is given.
+struct SliderEntry {
+    std::string name;
+    OneOrMore<std::string> collider, body, joint, cable, cavity, pipe, spring, load, fibres;
+    std::optional<int> pin;
+    std::optional<Vec3> along, about;
+    Real low = 0, high = 0;
+    std::optional<Real> value, fastest;
+    Place place;
+};
+
 /// A scene file that a scene includes. Without a name its content becomes a part of the scene as it is.
 struct IncludeEntry {
     FilePath scene;
@@ -362,6 +375,7 @@ struct SceneFile {
     std::vector<SpringEntry> springs;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;
+    std::vector<SliderEntry> sliders;
 };
 
 /// Reads a scene file and all files that it includes. `assignments` (assign.h) are applied to the content of the file

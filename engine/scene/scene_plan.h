@@ -94,18 +94,21 @@ struct CavityPlan {
     Place place;
 };
 struct PipePlan {
+    std::string name;
     std::size_t first = 0;                // index in ScenePlan::cavities
     std::optional<std::size_t> second{};  // index in ScenePlan::cavities
     PipeSettings settings;                // settings without handles of cavities
     Place place;
 };
 struct LoadPlan {
+    std::string name;
     std::optional<std::size_t> body{};  // index in ScenePlan::bodies
     // load without its body handle, because handles exist only in a built world
     AnyLoad load{};
     Place place;
 };
 struct FibrePlan {
+    std::string name;
     std::size_t body = 0;    // index in ScenePlan::bodies
     FibreSettings settings;  // settings without body handle, because handles exist only in a built world
     Place place;
@@ -168,6 +171,7 @@ struct ScenePlan {
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;
     Real probe_step = 0;  // [s]
+    std::vector<SliderEntry> sliders;
     std::filesystem::path file;
 };
 
@@ -211,6 +215,7 @@ AnchorPlan plan_anchor(const AnchorEntry& entry, const ScenePlan& plan);
 struct PlannedHandles {
     const std::vector<BodyHandle>& bodies;
     const std::vector<ColliderHandle>& colliders;
+    const std::vector<std::vector<AttachmentHandle>>& pins;  // indexed by body
 };
 /// Returns a planned anchor in the form that a world takes.
 Anchor anchor_of(const AnchorPlan& anchor, const ScenePlan& plan, const World& world, const PlannedHandles& handles);
@@ -250,6 +255,16 @@ std::size_t find_spring(const ScenePlan& plan, const std::string& name, const Pl
 
 /// Adds a probe to a plan that already contains all bodies, colliders and joining objects.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
+
+/// Finds the objects of the sliders of a plan in a world whose objects have the names of the plan, and sets the values
+/// that the scene gives for the start. Throws SceneError.
+std::vector<Slider> make_sliders(const ScenePlan& plan, const PlannedHandles& handles, World& world);
+
+/// Gives an object the name that a scene gives; without one, the object keeps the name that the world gave it.
+template <class HandleType>
+void name_object(World& world, HandleType object, const std::string& name) {
+    if (!name.empty()) ObjectView<HandleType>(world).set_name(object, name);
+}
 
 /// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.
 /// Calls added(count), if given, after each body with the number of bodies that were added so far.

@@ -391,12 +391,10 @@ const Rule<Settings>& rule_of<Settings>() {
                  {.meaning = "largest number of solver iterations for a contact region in a step; an iteration passes "
                              "over all its contacts once",
                   .limits = at_least(1)})
-            .key(
-                "recovery_speed", &S::recovery_speed,
-                {.meaning =
-                     "largest speed at which surfaces that overlap or are within the contact distance are pushed apart",
-                 .unit = "m/s",
-                 .limits = above(0)})
+            .key("recovery_speed", &S::recovery_speed,
+                 {.meaning = "largest speed at which surfaces within the contact distance are pushed apart",
+                  .unit = "m/s",
+                  .limits = above(0)})
             .key("start_overlaps", &S::start_overlaps,
                  {.meaning = "treatment of bodies that overlap each other or colliders at the start. resolve "
                              "(default): moves them apart if the way out is short, otherwise an error; refuse: always "
@@ -493,7 +491,8 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("probe_step", &SceneFile::probe_step,
                  {.meaning = "time between rows of the time series; default: frame_step",
                   .unit = "s",
-                  .limits = above(0)});
+                  .limits = above(0)})
+            .key("sliders", &SceneFile::sliders, {.meaning = "values that a user changes while the scene runs"});
     return rule;
 }
 

@@ -98,6 +98,8 @@ const Rule<SpringEntry>& rule_of<SpringEntry>();
 template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();
 template <>
+const Rule<SliderEntry>& rule_of<SliderEntry>();
+template <>
 const Rule<IncludeEntry>& rule_of<IncludeEntry>();
 template <>
 const Rule<MaterialSettings>& rule_of<MaterialSettings>();

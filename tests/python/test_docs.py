@@ -115,3 +115,9 @@ def test_the_examples_named_in_the_guide_exist() -> None:
     text = (ROOT / "docs/python.md").read_text(encoding="utf-8")
     for name in re.findall(r"\]\(\.\./(examples/[\w/.]+)", text):
         assert os.path.exists(ROOT / name), name
+
+
+def test_the_first_scene_of_the_guide_is_a_file() -> None:
+    text = (ROOT / "docs/first_scene.md").read_text(encoding="utf-8")
+    shown = re.search(r"```json\n(.*?)```", text, re.DOTALL)
+    assert shown and shown[1] == (ROOT / "examples/drop.json").read_text(encoding="utf-8")

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "skerry/recorder.h"
+#include "skerry/slider.h"
 #include "skerry/world.h"
 
 #pragma GCC visibility push(default)
@@ -51,6 +52,7 @@ struct Scene {
     std::vector<RecordedProbe> recorded;  // probes for a Recorder, in the order of the file
     // Time between two samples of `probes`, or between two recorded rows of `recorded` [s].
     Real probe_step = 1.0 / 60;
+    std::vector<Slider> sliders{};
     std::vector<std::string> notes{};  // corrections and doubts of the reading, for example of filled surfaces
 };
 

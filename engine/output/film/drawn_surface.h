@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/output/collect_frame.h"
 #include "engine/output/frame.h"
 #include "engine/output/page/quantile.h"
 #include "skerry/output.h"
@@ -58,6 +59,11 @@ inline Real usual_top(const Quantile& values) {
 using Color = Vec3f;
 /// Colour of a value. The colours belong to values from 0 to `top`.
 Color color_of_value(Real value, Real top);
+/// Content that a frame needs for the colours.
+inline FrameContent content_of(FilmColor color) {
+    return color == FilmColor::stress ? FrameContent::node_values : FrameContent::motion;
+}
+
 /// Colour of a body by its number, for FilmColor::none.
 Color color_of_body(std::size_t number);
 Color color_of_colliders();

@@ -62,7 +62,7 @@ void FilmWriter::add_frame(const World& world) {
                     "a time after that of the previous frame, " + std::to_string(*film.time) + " s");
     film.time = world.time();
     try {
-        film.usd.add(collect_frame(world, film.color == FilmColor::stress));
+        film.usd.add(collect_frame(world, content_of(film.color)));
         film.file.require_written();
     } catch (...) {
         impl_.reset();  // this removes the temporary file

@@ -248,7 +248,7 @@ void require_gltf() {}
 void write_gltf(const World& world, const std::filesystem::path& file, FilmColor color, std::optional<Real> color_max) {
     require_extension(file, {".glb"});
     if (color_max) require_positive(file, "color_max", *color_max);
-    const Frame frame = collect_frame(world, color == FilmColor::stress);
+    const Frame frame = collect_frame(world, content_of(color));
     std::vector<std::vector<Real>> quantity(frame.bodies.size());
     if (color != FilmColor::none) quantity = quantity_of_nodes(frame, color);
     std::vector<GltfMesh> meshes;

@@ -5,6 +5,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <span>
+#include <sstream>
+#include <utility>
 
 #include "engine/output/escape_markup.h"
 #include "engine/output/page/page_assets.h"
@@ -31,9 +34,9 @@ std::string packed(const Rows& rows) {
     return base64(bytes);
 }
 
-Json json_of_colliders(const PageData& data) {
+Json json_of_colliders(std::span<const PageCollider> colliders) {
     Json list = Json::array();
-    for (const PageCollider& collider : data.colliders())
+    for (const PageCollider& collider : colliders)
         list.push_back({{"name", collider.name},
                         {"kind", collider.kind},
                         {"points", packed<float>(collider.picture.nodes)},
@@ -56,9 +59,9 @@ std::string image_uri(const std::filesystem::path& file) {
 }
 
 /// Materials of each visual surface. A texture that is not part of the page is only named.
-Json json_of_visuals(const PageData& data) {
+Json json_of_visuals(std::span<const std::vector<VisualMaterial>> visuals) {
     Json list = Json::array();
-    for (const std::vector<VisualMaterial>& materials : data.visuals().materials()) {
+    for (const std::vector<VisualMaterial>& materials : visuals) {
         Json& rows = list.emplace_back(Json::array());
         for (const VisualMaterial& material : materials) {
             const std::string image = material.texture.empty() ? "" : image_uri(material.texture);
@@ -72,10 +75,9 @@ Json json_of_visuals(const PageData& data) {
     return list;
 }
 
-Json json_of_lines(const PageData& data) {
+Json json_of_lines(std::span<const PageLine> lines) {
     Json list = Json::array();
-    for (const PageLine& line : data.lines().lines())
-        list.push_back({{"name", line.name}, {"kind", name_of(line.kind)}});
+    for (const PageLine& line : lines) list.push_back({{"name", line.name}, {"kind", name_of(line.kind)}});
     return list;
 }
 
@@ -139,26 +141,23 @@ Json json_of(const Quantile& quantile) {
     return {{"max", quantile.max()}, {"usual", quantile.at(0.99)}};
 }
 
-std::string describe(const PageData& data, const PageSummary& summary) {
-    const Json json = {{"schema", 3},
-                       {"title", summary.title},
-                       {"gravity", json_of(data.gravity())},
-                       {"bodies", data.body_names()},
-                       {"visual_of_body", data.visual_numbers()},
-                       {"visuals", json_of_visuals(data)},
-                       {"colliders", json_of_colliders(data)},
-                       {"rows", json_of_rows(data)},
-                       {"speed", json_of(data.fields()[0])},
-                       {"stress", json_of(data.fields()[1])},
-                       {"strain", json_of(data.fields()[2])},
-                       {"force", json_of(data.force())},
-                       {"lines", json_of_lines(data)},
-                       {"line_force", json_of(data.lines().force())},
-                       {"report", json_of_report(summary)}};
-    // Names come from users and may contain any bytes. Bytes that are not UTF-8 become U+FFFD. Every '<' is escaped, so
-    // that no name can close the script element.
+Json json_of_data(const PageData& data, const PageSummary& summary) {
+    Json json = {{"schema", 3}, {"title", summary.title}, {"gravity", json_of(data.gravity())}};
+    json.update(json_of_objects(data.stream(), {}));
+    json.update({{"rows", json_of_rows(data)},
+                 {"speed", json_of(data.fields()[0])},
+                 {"stress", json_of(data.fields()[1])},
+                 {"strain", json_of(data.fields()[2])},
+                 {"force", json_of(data.force())},
+                 {"line_force", json_of(data.line_force())},
+                 {"report", json_of_report(summary)}});
+    return json;
+}
+
+/// Returns JSON as the text of a script element. Every '<' is escaped, so that no name can close the element.
+std::string script_text(const Json& json) {
     std::string text;
-    for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    for (const char c : text_of(json)) {
         if (c == '<')
             text += "\\u003c";
         else
@@ -169,9 +168,7 @@ std::string describe(const PageData& data, const PageSummary& summary) {
 
 std::string escape_html(const std::string& text) {
     // The text is converted to JSON and back, because this conversion replaces bytes that are not UTF-8.
-    std::string clean = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-    clean = Json::parse(clean).get<std::string>();
-    return escape_markup(clean);
+    return escape_markup(Json::parse(text_of(text)).get<std::string>());
 }
 
 /// Returns three.js in compressed form, which has about a fifth of the size of its text.
@@ -179,6 +176,29 @@ std::string packed_three_js() {
     Deflater deflater;
     deflater.add(three_js);
     return deflater.packed();
+}
+
+/// Parts of a page that are not the same in every page.
+struct PageParts {
+    std::string title, run, frames, visuals;
+};
+
+void put_page(std::ostream& out, const PageParts& parts) {
+    // Replaces the @marks@ of the template in one pass, so that marks inside an inserted text stay unchanged.
+    std::string_view rest = page_html;
+    const auto replace = [&](std::string_view mark, std::string_view text) {
+        const std::size_t place = rest.find(mark);
+        out << rest.substr(0, place) << text;
+        rest.remove_prefix(place + mark.size());
+    };
+    replace("@title@", escape_html(parts.title));
+    replace("@style@", page_style);
+    replace("@run@", parts.run);
+    replace("@frames@", parts.frames);
+    replace("@visuals@", parts.visuals);
+    replace("@three@", base64(packed_three_js()));
+    replace("@script@", page_script);
+    out << rest;
 }
 
 }  // namespace
@@ -196,31 +216,33 @@ void require_page_library(const std::filesystem::path& file) {
         .raise();
 }
 
+Json json_of_objects(const PageStream& stream, const PageCounts& first) {
+    return {{"bodies", stream.body_names().subspan(first.bodies)},
+            {"visual_of_body", stream.visual_numbers().subspan(first.bodies)},
+            {"visuals", json_of_visuals(std::span(stream.visuals().materials()).subspan(first.visuals))},
+            {"colliders", json_of_colliders(stream.colliders().subspan(first.colliders))},
+            {"lines", json_of_lines(stream.lines().subspan(first.lines))}};
+}
+
+std::string text_of(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 void write_page(const std::filesystem::path& file, const PageData& data, const PageSummary& summary) {
     require_page_library(file);
     write_file(file, [&](std::ostream& out) {
-        // Replaces the @marks@ of the template in one pass, so that marks inside an inserted text stay unchanged.
-        std::string_view rest = page_html;
-        const auto upto = [&](std::string_view mark) {
-            const std::size_t place = rest.find(mark);
-            out << rest.substr(0, place);
-            rest.remove_prefix(place + mark.size());
-        };
-        upto("@title@");
-        out << escape_html(summary.title);
-        upto("@style@");
-        out << page_style;
-        upto("@run@");
-        out << describe(data, summary);
-        upto("@frames@");
-        out << base64(data.packed_frames());
-        upto("@visuals@");
-        out << base64(data.visuals().packed());
-        upto("@three@");
-        out << base64(packed_three_js());
-        upto("@script@");
-        out << page_script << rest;
+        put_page(out, {.title = summary.title,
+                       .run = script_text(json_of_data(data, summary)),
+                       .frames = base64(data.packed_frames()),
+                       .visuals = base64(data.stream().visuals().packed())});
     });
+}
+
+std::string live_page() {
+    require_page_library({});
+    std::ostringstream out;
+    put_page(out, {.title = "Skerry", .run = "{\"live\":true}", .frames = {}, .visuals = {}});
+    return std::move(out).str();
 }
 
 }  // namespace skerry

@@ -1,8 +1,10 @@
-// Writes the HTML page as one file that contains the player, three.js, the summary of the run and its frames.
+// The HTML page: one text that contains the player and three.js, and for a recorded run its summary and its frames.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "engine/output/page/page_data.h"
@@ -18,6 +20,21 @@ struct PageSummary {
 
 /// Throws SceneError if this build has no three.js. The message names `file`.
 void require_page_library(const std::filesystem::path& file);
+
+/// Returns a page without a run, which asks the server that sent it for a live stream. Throws SceneError if this build
+/// has no three.js.
+std::string live_page();
+
+/// Numbers of objects of a stream that a page already knows.
+struct PageCounts {
+    std::size_t bodies = 0, visuals = 0, colliders = 0, lines = 0;
+
+    bool operator==(const PageCounts&) const = default;
+};
+/// Returns the objects of a stream that a page does not know yet, as the members of the run element of a page.
+nlohmann::ordered_json json_of_objects(const PageStream& stream, const PageCounts& first);
+/// Returns JSON as text. Names come from users and may contain any bytes. Bytes that are not UTF-8 become U+FFFD.
+std::string text_of(const nlohmann::ordered_json& json);
 
 void write_page(const std::filesystem::path& file, const PageData& data, const PageSummary& summary);
 

@@ -236,7 +236,7 @@ TEST_CASE("packed lines give back points to half a step and forces to half a cod
         REQUIRE(read.lines.size() == frame.lines.size());
         for (std::size_t l = 0; l < frame.lines.size(); ++l) {
             const LineFrame& line = frame.lines[l];
-            const PageLine& page_line = data.lines().lines()[read.lines[l].number];
+            const PageLine& page_line = data.stream().lines()[read.lines[l].number];
             CHECK(page_line.name == line.name);
             CHECK(page_line.kind == line.kind);
             REQUIRE(read.lines[l].points.size() == line.points.size());
@@ -248,8 +248,8 @@ TEST_CASE("packed lines give back points to half a step and forces to half a cod
             }
         }
     }
-    CHECK(data.lines().lines().size() == 4);
-    CHECK(data.lines().force().max() == Approx(20 * sample.frame(39).time));
+    CHECK(data.stream().lines().size() == 4);
+    CHECK(data.line_force().max() == Approx(20 * sample.frame(39).time));
     CHECK(run_of(page_of(data, {}))["lines"][1] == nlohmann::json{{"name", "cable <&>"}, {"kind", "cable"}});
 }
 
@@ -301,8 +301,8 @@ TEST_CASE("bodies that come and go keep their number and are listed once", "[uni
     CHECK(numbers(0) == std::vector<std::size_t>{0, 1});
     CHECK(numbers(15) == std::vector<std::size_t>{0, 2, 1});
     CHECK(numbers(29) == std::vector<std::size_t>{2, 1});
-    CHECK(data.bodies().size() == 3);
-    CHECK(data.body_names()[2] == "\"quotes\" & <b>, \xff no UTF-8");
+    CHECK(data.stream().bodies().size() == 3);
+    CHECK(data.stream().body_names()[2] == "\"quotes\" & <b>, \xff no UTF-8");
 }
 
 TEST_CASE("names cannot end the script that they stand in, and come back as they were", "[unit][output]") {

@@ -62,7 +62,7 @@ class FillTest(ProgramCase):
 
     def test_the_example_of_a_filled_surface_runs(self):
         self.need_netgen()
-        for name in ("keys/filled.json", "meshes/crate.obj"):
+        for name in ("keys/filled.json", "meshes/pebble.obj"):
             (self.folder / name).parent.mkdir()
             shutil.copy(ROOT / "scenes" / name, self.folder / name)
         self.skerry("run", self.folder / "keys/filled.json", "--seconds", 0.05)

@@ -23,10 +23,7 @@ void LineStream::put_frame(const Frame& frame, std::string& out) {
     put_count(out, frame.lines.size());
     const int exponent_prev = scale_.exponent();
     for (const LineFrame& line : frame.lines)
-        for (const Real force : line.force) {
-            force_.add(std::abs(force));
-            scale_.widen(std::abs(force));
-        }
+        for (const Real force : line.force) scale_.widen(std::abs(force));
     if (!frame.lines.empty()) put_change(out, scale_.exponent());
     if (!frame.lines.empty() && !std::exchange(has_lattice_, true)) {
         lattice_ = lattice_around(frame);

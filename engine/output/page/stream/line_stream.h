@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "engine/output/frame.h"
-#include "engine/output/page/quantile.h"
 #include "engine/output/page/stream/body_stream.h"
 #include "engine/output/page/stream/value_scale.h"
 
@@ -32,8 +31,6 @@ public:
     void put_frame(const Frame& frame, std::string& out);
 
     std::span<const PageLine> lines() const { return lines_; }
-    /// Distribution of the absolute values of the forces [N].
-    const Quantile& force() const { return force_; }
 
 private:
     // x, y, z and force of a point
@@ -45,7 +42,6 @@ private:
     Lattice lattice_;
     bool has_lattice_ = false;
     ValueScale scale_;
-    Quantile force_;
 };
 
 }  // namespace skerry

@@ -89,9 +89,9 @@ Index VisualStream::number_of(const BoundVisual& visual) {
     return static_cast<Index>(encoded_.size() - 1);
 }
 
-std::string VisualStream::packed() const {
+std::string VisualStream::packed(std::size_t first) const {
     Deflater deflater;
-    for (const std::string& surface : encoded_) deflater.add(surface);
+    for (std::size_t i = first; i < encoded_.size(); ++i) deflater.add(encoded_[i]);
     return deflater.packed();
 }
 

@@ -1,0 +1,81 @@
+// A live view: a page in the browser that shows a world while it is simulated, and that controls it (docs/view.md).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "skerry/recorder.h"
+#include "skerry/slider.h"
+#include "skerry/world.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+struct LiveSettings {
+    std::string title = "Skerry";
+    int port = 0;         // TCP port from 0 to 65535; 0: a free port
+    Real rate = 1;        // simulated time per wall time, >= 0; 0: as fast as possible
+    bool paused = false;  // true: the view waits for the user to press play
+    std::vector<Slider> sliders{};
+    std::vector<RecordedProbe> probes{};  // plotted while the world runs
+};
+
+/// A server for browsers on this machine that shows a world. It listens on the loopback address only. A browser needs
+/// the token of address(), a new random number for each view. Requests with another Host, Origin or token are refused.
+///
+/// One thread advances the world and calls the functions of the view. Other threads encode and send the frames. The
+/// simulation never waits for a browser: a browser that is slow gets fewer frames. A browser that only looks changes no
+/// bit of the world.
+class LiveView {
+public:
+    /// Starts the server, and stores the present state of the world for a reset. Throws SceneError if a setting is out
+    /// of range, a probe or a slider names no object of the world, the port is in use, or this build has no live view.
+    LiveView(World& world, const LiveSettings& settings);
+    /// Closes the view.
+    ~LiveView();
+    LiveView(LiveView&&) noexcept;
+    LiveView& operator=(LiveView&&) noexcept;
+
+    /// Address of the page, for example http://127.0.0.1:40123/#token=...
+    std::string address() const;
+
+    // The following functions must be called between two calls of advance of the world of the constructor, which may
+    // have been moved to another variable meanwhile.
+
+    /// Carries out the commands that browsers have sent, and shows the world to browsers that are ready for a frame, at
+    /// most 30 times a second of wall time. Never waits. Without a browser the call costs one comparison. Commands that
+    /// fail are reported to the browser that sent them, and change nothing.
+    void sync(World& world);
+    /// Calls sync() and returns the simulated time that is to be advanced now [s]; 0 if the view is paused or the world
+    /// is ahead of the wall clock. It then waits for commands, at most 20 ms. A caller that is told to advance has to
+    /// do so. For a single step the result is the length of one step.
+    Real due(World& world);
+    /// For a callback of World::advance. Shows the world between two steps of a long call, and returns false if
+    /// commands wait, so that the call ends and they are carried out soon.
+    bool between_steps(const World& world);
+    /// Pauses the view, and shows the text to all browsers. For steps that failed.
+    void fail(const std::string& text);
+    /// Advances the world as the browsers ask, in calls of at most 1/60 s, until `go_on` returns false, which is asked
+    /// before each step. A step that cannot be committed pauses the view; `failed` then gets its message.
+    void run(World& world, const std::function<bool()>& go_on,
+             const std::function<void(const std::string&)>& failed = {});
+
+    /// Ends all connections and stops the server. The functions above then do nothing, and due() returns 0.
+    void close();
+    bool is_open() const;
+    bool playing() const;  // false if the view is paused
+    int clients() const;   // number of connected browsers
+    std::uint64_t frames_sent() const;
+    std::uint64_t frames_dropped() const;  // frames that a browser missed because it was still busy with earlier ones
+    std::uint64_t resets() const;          // number of resets of the world
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skerry
+#pragma GCC visibility pop

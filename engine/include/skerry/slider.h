@@ -1,0 +1,41 @@
+// Sliders: values of a scene that a user changes while the scene runs (docs/view.md).
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "skerry/rollout.h"
+#include "skerry/time_table.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+/// An object that a slider moves or drives.
+struct SliderTarget {
+    std::variant<PoseControl, MotorSpeedControl, MotorPositionControl, ValueControl> what;
+    Pose start{};  // for a PoseControl: pose of the object at the value 0
+};
+
+/// A value within bounds that drives one object or several equal ones. For a PoseControl the value is a displacement
+/// along `along` or an angle about `about` through the origin of the object. For other controls it is the number that
+/// the control sets. Handles stay valid in clones of the world.
+struct Slider {
+    std::string name;           // unique in its scene
+    std::string unit;           // SI unit of the value; 1 for factors
+    Real low = 0, high = 0;     // bounds of the value, low < high
+    Real fastest = 0;           // greatest rate of change, > 0 [unit per s]
+    Vec3 along = Vec3::Zero();  // unit vector in the world, or zero
+    Vec3 about = Vec3::Zero();  // unit vector in the world, or zero
+    std::vector<SliderTarget> targets{};
+    TimeTable course{};  // value over time; its last key is the value that was set last
+};
+
+/// Present value of a slider. For a moved object it is measured from the present pose.
+Real slider_value(const World& world, const Slider& slider);
+/// Lets the value change to `value` steadily, at the rate `fastest`, during the next calls of advance. Throws
+/// SceneError if the value is out of bounds or an object was removed.
+void set_slider(World& world, Slider& slider, Real value);
+
+}  // namespace skerry
+#pragma GCC visibility pop

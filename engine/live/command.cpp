@@ -1,0 +1,138 @@
+#include "engine/live/command.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/world/complaint.h"
+#include "skerry/error.h"
+
+namespace skerry {
+
+namespace {
+
+using CommandJson = nlohmann::json;
+
+[[noreturn]] void refuse_command(const std::string& field, const std::string& found, const std::string& expected,
+                                 const std::string& hint = {}) {
+    Complaint{.file = {}, .object = "command", .field = field, .found = found, .expected = expected, .hint = hint}
+        .raise();
+}
+
+/// The beginning of a value as JSON, for messages.
+std::string short_dump(const CommandJson& value) {
+    return value.dump(-1, ' ', false, CommandJson::error_handler_t::replace).substr(0, 60);
+}
+
+[[noreturn]] void refuse_value(const std::string& field, const CommandJson& found, const std::string& expected) {
+    refuse_command(field, short_dump(found), expected);
+}
+
+Real number_from(const std::string& field, const CommandJson& value) {
+    if (!value.is_number() || !std::isfinite(value.get<Real>())) refuse_value(field, value, "a number");
+    return value.get<Real>();
+}
+
+std::uint64_t count_from(const std::string& field, const CommandJson& value) {
+    if (!value.is_number_unsigned()) refuse_value(field, value, "a whole number of at least 0");
+    return value.get<std::uint64_t>();
+}
+
+Vec3 point_from(const std::string& field, const CommandJson& value) {
+    if (!value.is_array() || value.size() != 3) refuse_value(field, value, "three coordinates [m]");
+    return {number_from(field, value[0]), number_from(field, value[1]), number_from(field, value[2])};
+}
+
+bool on_from(const std::string& field, const CommandJson& value) {
+    if (!value.is_boolean()) refuse_value(field, value, "true or false");
+    return value.get<bool>();
+}
+
+bool stresses_from(const std::string& field, const CommandJson& value) {
+    const auto is_known = [](const CommandJson& name) {
+        return name == "speed" || name == "stress" || name == "strain";
+    };
+    if (!value.is_array() || !std::ranges::all_of(value, is_known))
+        refuse_value(field, value, "a list of speed, stress and strain");
+    return std::ranges::any_of(value, [](const CommandJson& name) { return name != "speed"; });
+}
+
+/// A member of a command, and the function that reads it.
+struct CommandMember {
+    const char* name;
+    void (*read)(const std::string& field, const CommandJson& value, LiveCommand& command);
+};
+
+/// Reads a member by a function of the field and the value.
+template <auto member, auto read>
+void read_to(const std::string& field, const CommandJson& value, LiveCommand& command) {
+    command.*member = read(field, value);
+}
+
+/// Members that a command must have besides "do". Other members are refused.
+std::vector<CommandMember> members_of(LiveAction action) {
+    constexpr CommandMember number{"number", read_to<&LiveCommand::number, count_from>},
+        value{"value", read_to<&LiveCommand::value, number_from>}, on{"on", read_to<&LiveCommand::on, on_from>},
+        names{"names", read_to<&LiveCommand::stresses, stresses_from>},
+        body{"body", read_to<&LiveCommand::body_number, count_from>},
+        point{"point", read_to<&LiveCommand::point, point_from>}, to{"to", read_to<&LiveCommand::to, point_from>};
+    switch (action) {
+        case LiveAction::seen:
+            return {number};
+        case LiveAction::fields:
+            return {names};
+        case LiveAction::rate:
+            return {value};
+        case LiveAction::gravity:
+            return {on};
+        case LiveAction::slider:
+            return {number, value};
+        case LiveAction::pull:
+            return {body, point, to};
+        case LiveAction::move:
+            return {to};
+        case LiveAction::play:
+        case LiveAction::pause:
+        case LiveAction::step:
+        case LiveAction::reset:
+        case LiveAction::release:
+            return {};
+    }
+    return {};
+}
+
+}  // namespace
+
+LiveCommand read_command(std::string_view text) {
+    const CommandJson json = CommandJson::parse(text, nullptr, false);
+    if (!json.is_object())
+        refuse_command("", std::string(text.substr(0, 60)), "a JSON object such as {\"do\":\"play\"}");
+    const CommandJson& name = json.contains("do") ? json["do"] : CommandJson();
+    const auto action = name.is_string() ? from_name<LiveAction>(name.get<std::string>()) : std::nullopt;
+    if (!action) {
+        std::vector<std::string> known;
+        std::string list;
+        for (const auto& row : EnumNames<LiveAction>::table) {
+            known.emplace_back(row.second);
+            list += (list.empty() ? "" : ", ") + known.back();
+        }
+        refuse_command("do", short_dump(name), "one of " + list,
+                       name.is_string() ? nearest_hint(name.get<std::string>(), known) : "");
+    }
+    LiveCommand command{.action = *action};
+    const std::vector<CommandMember> members = members_of(*action);
+    for (const CommandMember& member : members) {
+        if (!json.contains(member.name)) refuse_command(member.name, "nothing", "a value");
+        member.read(member.name, json[member.name], command);
+    }
+    if (json.size() != members.size() + 1)
+        for (const auto& [key, unused] : json.items())
+            if (key != "do" && std::ranges::find(members, key, &CommandMember::name) == members.end())
+                refuse_command(key, "an unknown member", "only the members of \"" + name.get<std::string>() + "\"");
+    return command;
+}
+
+}  // namespace skerry

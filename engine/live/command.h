@@ -1,0 +1,62 @@
+// Commands that a browser sends to a live view.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+#include "components/options.h"
+#include "skerry/world.h"
+
+namespace skerry {
+
+enum class LiveAction {
+    seen,     // the browser has drawn the frame `number` and all before it
+    fields,   // the browser shows stress or strain, or neither
+    play,     // go on
+    pause,    // stop
+    step,     // advance by one step, then pause
+    reset,    // go back to the state at the start
+    rate,     // set the simulated time per wall time to `value`
+    gravity,  // switch gravity `on` or off
+    slider,   // set slider `number` to `value`
+    pull,     // pull `body` by `point` towards `to`
+    move,     // move the target of the pull to `to`
+    release,  // end the pull
+};
+template <>
+struct EnumNames<LiveAction> {
+    static constexpr std::array<std::pair<LiveAction, std::string_view>, 12> table{{
+        {LiveAction::seen, "seen"},
+        {LiveAction::fields, "fields"},
+        {LiveAction::play, "play"},
+        {LiveAction::pause, "pause"},
+        {LiveAction::step, "step"},
+        {LiveAction::reset, "reset"},
+        {LiveAction::rate, "rate"},
+        {LiveAction::gravity, "gravity"},
+        {LiveAction::slider, "slider"},
+        {LiveAction::pull, "pull"},
+        {LiveAction::move, "move"},
+        {LiveAction::release, "release"},
+    }};
+};
+
+/// A command. Each action uses the members that the text of the command has.
+struct LiveCommand {
+    LiveAction action = LiveAction::pause;
+    std::uint64_t client = 0;  // number of the browser
+    std::uint64_t number = 0;  // of a frame, or of a slider from 0
+    Real value = 0;
+    bool on = false;
+    bool stresses = false;                         // true if `names` contains stress or strain
+    std::uint64_t body_number = 0;                 // in the stream of the browser
+    BodyHandle body{};                             // the body with this number
+    Vec3 point = Vec3::Zero(), to = Vec3::Zero();  // [m]
+};
+
+/// Reads a command such as {"do":"rate","value":0.5}. Throws SceneError that names the member at fault.
+LiveCommand read_command(std::string_view text);
+
+}  // namespace skerry

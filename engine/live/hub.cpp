@@ -1,0 +1,261 @@
+#include "engine/live/hub.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "skerry/error.h"
+
+namespace skerry {
+
+namespace {
+
+/// True if a command makes an earlier one of the same browser needless.
+bool replaces(const LiveCommand& command, const LiveCommand& earlier) {
+    return command.action == earlier.action && command.client == earlier.client &&
+           (command.action == LiveAction::move ||
+            (command.action == LiveAction::slider && command.number == earlier.number));
+}
+
+}  // namespace
+
+LiveHub::~LiveHub() {
+    close();
+    for (Client& client : clients_)
+        if (client.thread.joinable()) client.thread.join();
+}
+
+std::uint64_t LiveHub::join(LiveLink& link) {
+    std::unique_lock lock(mutex_);
+    if (closed_) return 0;
+    if (clients_.size() == most_clients) {
+        lock.unlock();
+        link.send_text(problem_text("found " + std::to_string(most_clients) +
+                                    " browsers at this live view, expected fewer (close one of them)"));
+        return 0;
+    }
+    Client& client = clients_.emplace_back();
+    client.number = ++last_client_;
+    client.link = &link;
+    client.snapshot = last_snapshot_;  // a snapshot from before it came may be old
+    client.thread = std::thread([this, &client] { serve(client); });
+    note_busy();
+    return client.number;
+}
+
+void LiveHub::leave(std::uint64_t number) {
+    std::thread thread;
+    {
+        const std::lock_guard lock(mutex_);
+        Client* client = find(number);
+        if (!client) return;
+        client->closed = true;
+        thread = std::move(client->thread);
+    }
+    changed_.notify_all();
+    thread.join();
+    const std::lock_guard lock(mutex_);
+    std::erase_if(clients_, [&](const Client& client) { return client.number == number; });
+    commands_.push_back({.action = LiveAction::release, .client = number});
+    note_busy();
+    changed_.notify_all();
+}
+
+void LiveHub::receive(std::uint64_t number, std::string_view text) {
+    LiveCommand command;
+    std::string problem;
+    try {
+        command = read_command(text);
+    } catch (const SceneError& error) {
+        problem = error.what();
+    }
+    const std::lock_guard lock(mutex_);
+    Client* client = find(number);
+    if (!client || client->closed) return;
+    command.client = number;
+    if (problem.empty() && command.action == LiveAction::seen) {
+        if (command.number <= client->sent) client->seen = std::max(client->seen, command.number);
+    } else if (problem.empty() && command.action == LiveAction::fields) {
+        client->stresses = command.stresses;
+        client->version = 0;  // the present state is shown again, with the values that it now wants
+    } else if (problem.empty()) {
+        if (command.action == LiveAction::pull) {
+            if (command.body_number < client->bodies.size())
+                command.body = client->bodies[command.body_number];
+            else
+                problem = "command: body: found " + std::to_string(command.body_number) + ", expected one of the " +
+                          std::to_string(client->bodies.size()) + " bodies that this browser has got";
+        }
+        if (problem.empty() && !commands_.empty() && replaces(command, commands_.back()))
+            commands_.back() = command;
+        else if (problem.empty() && commands_.size() < most_waiting)
+            commands_.push_back(command);
+        else if (problem.empty())
+            problem = "command: found " + std::to_string(most_waiting) + " commands that wait, expected fewer";
+        note_busy();
+    }
+    if (!problem.empty()) put_text(*client, problem_text(problem));
+    changed_.notify_all();
+}
+
+std::vector<LiveCommand> LiveHub::take_commands() {
+    const std::lock_guard lock(mutex_);
+    std::vector<LiveCommand> taken = std::exchange(commands_, {});
+    note_busy();
+    return taken;
+}
+
+void LiveHub::begin_run(const LiveRunInfo& info, const LiveState& state) {
+    const std::lock_guard lock(mutex_);
+    info_ = info;
+    state_ = state;
+    ++run_;
+    ++version_;
+    latest_ = nullptr;
+    changed_.notify_all();
+}
+
+void LiveHub::set_state(const LiveState& state) {
+    const std::lock_guard lock(mutex_);
+    if (state == state_) return;
+    state_ = state;
+    for (Client& client : clients_) put_text(client, state_text(state));
+    changed_.notify_all();
+}
+
+void LiveHub::tell(std::uint64_t number, const std::string& problem) {
+    const std::lock_guard lock(mutex_);
+    if (Client* client = find(number)) put_text(*client, problem_text(problem));
+    changed_.notify_all();
+}
+
+void LiveHub::tell_all(const std::string& problem) {
+    const std::lock_guard lock(mutex_);
+    for (Client& client : clients_) put_text(client, problem_text(problem));
+    changed_.notify_all();
+}
+
+void LiveHub::mark_changed() {
+    const std::lock_guard lock(mutex_);
+    ++version_;
+}
+
+LiveHub::Wish LiveHub::wish() {
+    const std::lock_guard lock(mutex_);
+    Wish wish;
+    for (const Client& client : clients_) {
+        if (client.closed || client.version == version_) continue;
+        if (!client.is_ready()) {
+            dropped_.fetch_add(1, std::memory_order_relaxed);
+            continue;
+        }
+        wish.frame = true;
+        wish.stresses |= client.stresses;
+    }
+    return wish;
+}
+
+std::shared_ptr<Snapshot> LiveHub::free_snapshot() {
+    const std::lock_guard lock(mutex_);
+    const auto is_free = [](const std::shared_ptr<Snapshot>& snapshot) { return snapshot.use_count() == 1; };
+    const auto place = std::ranges::find_if(snapshots_, is_free);
+    return place != snapshots_.end() ? *place : snapshots_.emplace_back(std::make_shared<Snapshot>());
+}
+
+void LiveHub::publish(std::shared_ptr<Snapshot> snapshot) {
+    const std::lock_guard lock(mutex_);
+    snapshot->number = ++last_snapshot_;
+    snapshot->run = run_;
+    snapshot->version = version_;
+    latest_ = std::move(snapshot);
+    changed_.notify_all();
+}
+
+void LiveHub::wait_for_commands(std::chrono::steady_clock::time_point end) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, end, [&] { return !commands_.empty() || closed_; });
+}
+
+void LiveHub::close() {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    for (Client& client : clients_) client.closed = true;
+    changed_.notify_all();
+}
+
+int LiveHub::clients() const {
+    const std::lock_guard lock(mutex_);
+    return static_cast<int>(clients_.size());
+}
+
+LiveHub::Client* LiveHub::find(std::uint64_t number) {
+    const auto place = std::ranges::find(clients_, number, &Client::number);
+    return place == clients_.end() ? nullptr : &*place;
+}
+
+/// Appends a message. A browser that takes no messages is dropped, so that they do not pile up.
+void LiveHub::put_text(Client& client, const std::string& text) {
+    if (client.texts.size() < most_waiting)
+        client.texts.push_back(text);
+    else
+        client.closed = true;
+}
+
+void LiveHub::note_busy() {
+    commands_waiting_.store(!commands_.empty(), std::memory_order_relaxed);
+    busy_.store(!commands_.empty() || !clients_.empty(), std::memory_order_relaxed);
+}
+
+bool LiveHub::has_frame_for(const Client& client) const {
+    return latest_ && client.run == run_ && latest_->number > client.snapshot && client.is_ready();
+}
+
+/// Runs on the thread of a browser, and sends it messages until it is closed.
+void LiveHub::serve(Client& client) {
+    LiveEncoder encoder;
+    std::shared_ptr<Snapshot> snapshot;
+    std::unique_lock lock(mutex_);
+    bool connected = true;
+    while (connected) {
+        changed_.wait(lock, [&] {
+            return client.closed || client.run != run_ || !client.texts.empty() || has_frame_for(client);
+        });
+        if (client.closed) break;
+        if (client.run != run_) {
+            client.run = run_;
+            client.seen = client.sent;  // frames of the earlier run need no acknowledgement
+            client.version = 0;
+            client.bodies.clear();
+            encoder = {};
+            const std::string text = begin_text(info_, state_);
+            lock.unlock();
+            connected = client.link->send_text(text);
+        } else if (!client.texts.empty()) {
+            const std::string text = std::move(client.texts.front());
+            client.texts.pop_front();
+            lock.unlock();
+            connected = client.link->send_text(text);
+        } else {
+            snapshot = latest_;
+            client.snapshot = snapshot->number;
+            client.version = snapshot->version;
+            const std::uint64_t frame = ++client.sent;
+            lock.unlock();
+            const LiveEncoder::Messages messages = encoder.pack(*snapshot, frame, client.number);
+            if (!messages.added.empty()) {
+                const std::lock_guard again(mutex_);
+                client.bodies.assign(encoder.bodies().begin(), encoder.bodies().end());
+            }
+            connected = (messages.added.empty() || client.link->send_text(messages.added)) &&
+                        client.link->send_text(messages.row) && client.link->send_bytes(messages.changes);
+            if (connected) sent_.fetch_add(1, std::memory_order_relaxed);
+        }
+        lock.lock();
+        snapshot.reset();  // under the lock, so that free_snapshot() sees that all was read
+    }
+    client.closed = true;
+    lock.unlock();
+    client.link->close();
+}
+
+}  // namespace skerry

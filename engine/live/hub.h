@@ -1,0 +1,128 @@
+// The browsers that are connected to a live view. They pass commands to the simulation and get its snapshots.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "engine/live/command.h"
+#include "engine/live/messages.h"
+#include "engine/live/snapshot.h"
+
+namespace skerry {
+
+/// Connection to one browser. The functions return false if the connection is broken.
+class LiveLink {
+public:
+    virtual ~LiveLink() = default;
+    virtual bool send_text(std::string_view text) = 0;
+    virtual bool send_bytes(std::string_view bytes) = 0;
+    /// Asks the browser to close the connection. The owner then calls LiveHub::leave.
+    virtual void close() = 0;
+};
+
+/// Each browser has a thread of its own that encodes and sends frames, so that one that hangs delays no other. A
+/// browser gets a frame if it has acknowledged all frames but the last one. Frames that it misses are never encoded, so
+/// the differences in its stream stay right.
+class LiveHub {
+public:
+    static constexpr std::size_t most_clients = 4;
+    static constexpr std::size_t most_waiting = 1000;  // commands of all browsers, and messages to one browser
+
+    LiveHub() = default;
+    ~LiveHub();
+    LiveHub(const LiveHub&) = delete;
+    LiveHub& operator=(const LiveHub&) = delete;
+
+    // For the threads of connections.
+
+    /// Adds a browser and returns its number. If there are too many, tells it so and returns 0. `link` must live until
+    /// leave().
+    std::uint64_t join(LiveLink& link);
+    /// Removes a browser, and ends its pull. Waits for its thread.
+    void leave(std::uint64_t client);
+    /// Takes a message of a browser. A message that is no command is answered with a problem.
+    void receive(std::uint64_t client, std::string_view text);
+
+    // For the thread of the simulation.
+
+    /// True if commands wait, or browsers are connected. Costs one comparison.
+    bool is_busy() const { return busy_.load(std::memory_order_relaxed); }
+    bool has_commands() const { return commands_waiting_.load(std::memory_order_relaxed); }
+    std::vector<LiveCommand> take_commands();
+    /// Starts a new run. All browsers start new streams.
+    void begin_run(const LiveRunInfo& info, const LiveState& state);
+    /// Tells all browsers the state, unless they know it already.
+    void set_state(const LiveState& state);
+    void tell(std::uint64_t client, const std::string& problem);
+    void tell_all(const std::string& problem);
+    /// Notes that the world may differ from the last snapshot.
+    void mark_changed();
+
+    struct Wish {
+        bool frame = false;     // a browser waits for a frame
+        bool stresses = false;  // it shows stress or strain
+    };
+    /// Counts a missed frame for each browser that is busy with earlier frames.
+    Wish wish();
+    /// Returns a snapshot that no browser reads any more.
+    std::shared_ptr<Snapshot> free_snapshot();
+    void publish(std::shared_ptr<Snapshot> snapshot);
+    /// Waits until a command arrives, or until `end`.
+    void wait_for_commands(std::chrono::steady_clock::time_point end);
+    /// Ends all connections. Later ones are refused.
+    void close();
+
+    int clients() const;
+    std::uint64_t frames_sent() const { return sent_.load(std::memory_order_relaxed); }
+    std::uint64_t frames_dropped() const { return dropped_.load(std::memory_order_relaxed); }
+
+private:
+    struct Client {
+        std::uint64_t number = 0;
+        LiveLink* link = nullptr;
+        bool closed = false;               // its thread ends
+        bool stresses = false;             // it shows stress or strain
+        std::deque<std::string> texts;     // messages that wait for its thread
+        std::uint64_t run = 0;             // run that it shows
+        std::uint64_t snapshot = 0;        // number of the last snapshot that it got
+        std::uint64_t version = 0;         // version of that snapshot
+        std::uint64_t sent = 0, seen = 0;  // numbers of frames
+        std::vector<BodyHandle> bodies;    // by number in its stream
+        std::thread thread;
+
+        bool is_ready() const { return sent - seen < 2; }
+    };
+
+    Client* find(std::uint64_t client);
+    void put_text(Client& client, const std::string& text);
+    void note_busy();
+    bool has_frame_for(const Client& client) const;
+    void serve(Client& client);
+
+    mutable std::mutex mutex_;  // guards all that follows
+    std::condition_variable changed_;
+    std::list<Client> clients_;
+    std::uint64_t last_client_ = 0;
+    bool closed_ = false;
+    std::vector<LiveCommand> commands_;
+    LiveRunInfo info_;
+    LiveState state_;
+    std::uint64_t run_ = 0, version_ = 0, last_snapshot_ = 0;
+    std::vector<std::shared_ptr<Snapshot>> snapshots_;  // all that were made; those in use have other owners, too
+    std::shared_ptr<Snapshot> latest_;
+
+    std::atomic<bool> busy_ = false, commands_waiting_ = false;
+    std::atomic<std::uint64_t> sent_ = 0, dropped_ = 0;
+};
+
+}  // namespace skerry

@@ -1,0 +1,103 @@
+#include "engine/live/live_run.h"
+#include "engine/live/server/live_server.h"
+#include "skerry/error.h"
+#include "skerry/live.h"
+
+namespace skerry {
+
+struct LiveView::Impl {
+    LiveRun run;
+    std::unique_ptr<LiveServer> server;  // none after close()
+    std::string address;
+
+    Impl(World& world, const LiveSettings& settings)
+        : run(world, settings),
+          server(std::make_unique<LiveServer>(settings.port, run.hub())),
+          address(server->address()) {}
+};
+
+LiveView::LiveView(World& world, const LiveSettings& settings) {
+    constexpr int last_port = 65535;
+    if (settings.port < 0 || settings.port > last_port)
+        Complaint{.file = {},
+                  .object = "live view",
+                  .field = "port",
+                  .found = std::to_string(settings.port),
+                  .expected = "a port from 0 to " + std::to_string(last_port),
+                  .hint = "0: a free port"}
+            .raise();
+    impl_ = std::make_unique<Impl>(world, settings);
+}
+
+LiveView::~LiveView() = default;
+LiveView::LiveView(LiveView&&) noexcept = default;
+LiveView& LiveView::operator=(LiveView&&) noexcept = default;
+
+std::string LiveView::address() const {
+    return impl_->address;
+}
+
+void LiveView::sync(World& world) {
+    if (is_open()) impl_->run.sync(world);
+}
+
+Real LiveView::due(World& world) {
+    return is_open() ? impl_->run.due(world) : 0;
+}
+
+bool LiveView::between_steps(const World& world) {
+    return !is_open() || impl_->run.between_steps(world);
+}
+
+void LiveView::fail(const std::string& text) {
+    if (is_open()) impl_->run.fail(text);
+}
+
+void LiveView::run(World& world, const std::function<bool()>& go_on,
+                   const std::function<void(const std::string&)>& failed) {
+    while (is_open() && go_on()) {
+        const Real length = due(world);
+        if (length == 0) continue;
+        std::string problem;
+        try {
+            const StepReport report =
+                world.advance(length, [&](const StepReport&) { return go_on() && between_steps(world); });
+            if (!report.ok() && report.status != StepStatus::stopped) problem = report.message();
+        } catch (const SceneError& error) {  // for example overlaps that the settings of the world refuse
+            problem = error.what();
+        }
+        if (problem.empty()) continue;
+        fail(problem);
+        if (failed) failed(problem);
+    }
+}
+
+void LiveView::close() {
+    impl_->server = nullptr;
+}
+
+bool LiveView::is_open() const {
+    return impl_->server != nullptr;
+}
+
+bool LiveView::playing() const {
+    return impl_->run.playing();
+}
+
+int LiveView::clients() const {
+    return impl_->run.hub().clients();
+}
+
+std::uint64_t LiveView::frames_sent() const {
+    return impl_->run.hub().frames_sent();
+}
+
+std::uint64_t LiveView::frames_dropped() const {
+    return impl_->run.hub().frames_dropped();
+}
+
+std::uint64_t LiveView::resets() const {
+    return impl_->run.resets();
+}
+
+}  // namespace skerry

@@ -1,0 +1,133 @@
+#include "engine/live/messages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/output/page/stream/pack.h"
+
+namespace skerry {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of_state(const LiveState& state) {
+    return {{"playing", state.playing}, {"rate", state.rate}, {"gravity", state.gravity}};
+}
+
+Json json_of_sliders(const LiveRunInfo& info) {
+    Json list = Json::array();
+    for (std::size_t s = 0; s < info.sliders.size(); ++s) {
+        const Slider& slider = info.sliders[s];
+        list.push_back({{"name", slider.name},
+                        {"unit", slider.unit},
+                        {"low", slider.low},
+                        {"high", slider.high},
+                        {"value", info.slider_values[s]}});
+    }
+    return list;
+}
+
+Json json_of_plots(const std::vector<LivePlot>& plots) {
+    Json list = Json::array();
+    for (const LivePlot& plot : plots) {
+        Json columns = Json::array();
+        for (const SeriesColumn& column : plot.columns)
+            columns.push_back({{"name", column.quantity}, {"unit", column.unit}});
+        list.push_back({{"name", plot.name}, {"columns", columns}});
+    }
+    return list;
+}
+
+}  // namespace
+
+std::string begin_text(const LiveRunInfo& info, const LiveState& state) {
+    Json run = {
+        {"schema", 3}, {"title", info.title}, {"gravity", {info.gravity.x(), info.gravity.y(), info.gravity.z()}}};
+    run.update(json_of_objects(PageStream{}, {}));
+    return text_of({{"type", "begin"},
+                    {"run", run},
+                    {"state", json_of_state(state)},
+                    {"sliders", json_of_sliders(info)},
+                    {"plots", json_of_plots(info.plots)}});
+}
+
+std::string state_text(const LiveState& state) {
+    Json json = {{"type", "state"}};
+    json.update(json_of_state(state));
+    return text_of(json);
+}
+
+std::string problem_text(const std::string& problem) {
+    return text_of({{"type", "problem"}, {"text", problem}});
+}
+
+LiveEncoder::Messages LiveEncoder::pack(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client) {
+    Messages messages;
+    messages.changes = stream_.pack(snapshot.frame);
+    const PageCounts now{.bodies = stream_.bodies().size(),
+                         .visuals = stream_.visuals().materials().size(),
+                         .colliders = stream_.colliders().size(),
+                         .lines = stream_.lines().size()};
+    if (now != known_) {
+        Json added = {{"type", "add"}};
+        added.update(json_of_objects(stream_, known_));
+        added["visual_stream"] =
+            now.visuals > known_.visuals ? base64(stream_.visuals().packed(known_.visuals)) : std::string();
+        messages.added = text_of(added);
+        known_ = now;
+    }
+    messages.row = row_text(snapshot, frame, client);
+    return messages;
+}
+
+/// Returns the value below which 99 % of the positive values in `values_` lie, so that a single extreme value does not
+/// stretch a legend. Returns 0 if there are none. Changes the order of the values.
+Real LiveEncoder::usual() {
+    std::erase_if(values_, [](Real value) { return !(value > 0) || !std::isfinite(value); });
+    if (values_.empty()) return 0;
+    const auto place = values_.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<Real>(values_.size() - 1));
+    std::ranges::nth_element(values_, place);
+    return *place;
+}
+
+Real LiveEncoder::usual(std::size_t field) {
+    values_.clear();
+    for (const PageStream::BodyValues& body : stream_.values())
+        values_.insert(values_.end(), body.field[field].begin(), body.field[field].end());
+    return usual();
+}
+
+std::string LiveEncoder::row_text(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client) {
+    const PageRow row = row_of(snapshot.frame);
+    Json top = {{"speed", usual(0)}, {"stress", usual(stress_field)}, {"strain", usual(strain_field)}};
+    values_.clear();
+    for (const Contact& contact : snapshot.frame.contacts) values_.push_back(contact.force().norm());
+    top["force"] = usual();
+    values_.clear();
+    for (const LineFrame& line : snapshot.frame.lines)
+        for (const Real force : line.force) values_.push_back(std::abs(force));
+    top["line_force"] = usual();
+    Json pull;
+    const auto own = std::ranges::find(snapshot.pulls, client, &std::pair<std::uint64_t, PullState>::first);
+    if (own != snapshot.pulls.end()) pull = {{"force", own->second.force}, {"length", own->second.length}};
+    return text_of({{"type", "row"},
+                    {"number", frame},
+                    {"time", row.time},
+                    {"kinetic", row.energy.kinetic},
+                    {"elastic", row.energy.elastic},
+                    {"potential", row.energy.potential},
+                    {"dissipated", row.energy.dissipated},
+                    {"contacts", row.contacts},
+                    {"stick", row.stick},
+                    {"slide", row.slide},
+                    {"regions", row.regions},
+                    {"top", top},
+                    {"probes", snapshot.probes},
+                    {"sliders", snapshot.sliders},
+                    {"pull", pull},
+                    {"speed", snapshot.speed}});
+}
+
+}  // namespace skerry

@@ -1,0 +1,31 @@
+// Rules by which the server of a live view admits or refuses a request.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace skerry {
+
+/// The parts of a request on which its admission depends.
+struct LiveRequest {
+    std::string_view method, path, query;
+    std::vector<std::string_view> hosts, origins;  // values of all headers Host and Origin
+    bool upgrade = false;                          // asks for a WebSocket
+};
+
+enum class Admission {
+    refused,
+    page,    // the page, which contains nothing about the run
+    stream,  // the WebSocket
+};
+
+/// Admits the page at /, and the stream at /live?token=TOKEN. Both need the Host 127.0.0.1:PORT or localhost:PORT, so
+/// that a foreign name that resolves to this machine is refused. An Origin must belong to the same Host. The stream
+/// needs an Origin and the token. So neither a page of another site nor another user of the machine gets at the run.
+Admission admission(const LiveRequest& request, int port, std::string_view token);
+
+/// Returns 128 random bits of the system as 32 hexadecimal digits.
+std::string random_token();
+
+}  // namespace skerry

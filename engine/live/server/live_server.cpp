@@ -1,0 +1,207 @@
+#include "engine/live/server/live_server.h"
+
+#include <civetweb.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "engine/live/server/admission.h"
+#include "engine/output/page/page_document.h"
+#include "skerry/error.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t longest_message = 4096;  // longest message of a browser [bytes]; commands are shorter than 300
+
+/// The WebSocket of one browser.
+class SocketLink final : public LiveLink {
+public:
+    explicit SocketLink(mg_connection* connection) : connection_(connection) {}
+
+    bool send_text(std::string_view text) override { return send(MG_WEBSOCKET_OPCODE_TEXT, text); }
+    bool send_bytes(std::string_view bytes) override { return send(MG_WEBSOCKET_OPCODE_BINARY, bytes); }
+    void close() override {
+        send(MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, {});
+        mg_close_connection(connection_);
+    }
+
+    std::uint64_t client = 0;  // number of the browser at the hub
+
+private:
+    bool send(int opcode, std::string_view bytes) {
+        return mg_websocket_write(connection_, opcode, bytes.data(), bytes.size()) > 0;
+    }
+
+    mg_connection* connection_;
+};
+
+/// Calls a function for the C library, which no exception may enter. Returns `otherwise` if the function throws.
+template <class Result, class Call>
+Result guarded(Result otherwise, Call&& call) {
+    try {
+        return call();
+    } catch (const std::exception&) {
+        return otherwise;
+    }
+}
+
+LiveRequest request_of(const mg_request_info& info) {
+    const auto text = [](const char* part) { return part ? std::string_view(part) : std::string_view(); };
+    LiveRequest request{.method = text(info.request_method),
+                        .path = text(info.local_uri_raw),
+                        .query = text(info.query_string),
+                        .hosts = {},
+                        .origins = {}};
+    const auto is_named = [](std::string_view name, std::string_view wanted) {
+        return std::ranges::equal(name, wanted, [](char a, char b) { return (a | 32) == (b | 32); });
+    };
+    for (int i = 0; i < info.num_headers; ++i) {
+        const mg_header& header = info.http_headers[i];
+        if (is_named(header.name, "host")) request.hosts.emplace_back(header.value);
+        if (is_named(header.name, "origin")) request.origins.emplace_back(header.value);
+        request.upgrade |= is_named(header.name, "upgrade");
+    }
+    return request;
+}
+
+}  // namespace
+
+struct LiveServer::Impl {
+    LiveHub& hub;
+    std::string page, token;
+    std::atomic<int> port = 0;  // written once, before the first request can be admitted
+    mg_context* context = nullptr;
+
+    static Impl& of(const mg_connection* connection) {
+        return *static_cast<Impl*>(mg_get_user_context_data(connection));
+    }
+    static SocketLink* link_of(const mg_connection* connection) {
+        return static_cast<SocketLink*>(mg_get_user_connection_data(connection));
+    }
+    void put_page(mg_connection* connection) const;
+    static int begin_request(mg_connection* connection);
+    static void ready(mg_connection* connection, void*);
+    static int receive(mg_connection* connection, int bits, char* data, std::size_t size, void*);
+    static void closed(const mg_connection* connection, void*);
+};
+
+void LiveServer::Impl::put_page(mg_connection* connection) const {
+    const std::string sources = "ws://127.0.0.1:" + std::to_string(port) + " ws://localhost:" + std::to_string(port);
+    mg_printf(connection,
+              "HTTP/1.1 200 OK\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: %zu\r\n"
+              "Content-Security-Policy: default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+              "img-src data:; connect-src 'self' %s; frame-ancestors 'none'; base-uri 'none'; form-action 'none'\r\n"
+              "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n"
+              "Connection: close\r\n\r\n",
+              page.size(), sources.c_str());
+    mg_write(connection, page.data(), page.size());
+}
+
+/// Returns 0 for a WebSocket, with which the library then continues, and the status of the answer otherwise.
+int LiveServer::Impl::begin_request(mg_connection* connection) {
+    constexpr int ok = 200, forbidden = 403;
+    return guarded(forbidden, [&] {
+        const Impl& server = of(connection);
+        switch (admission(request_of(*mg_get_request_info(connection)), server.port, server.token)) {
+            case Admission::stream:
+                return 0;
+            case Admission::page:
+                server.put_page(connection);
+                return ok;
+            case Admission::refused:
+                break;
+        }
+        mg_printf(connection, "HTTP/1.1 403 Forbidden\r\nContent-Length: 0\r\nConnection: close\r\n\r\n");
+        return forbidden;
+    });
+}
+
+void LiveServer::Impl::ready(mg_connection* connection, void*) {
+    guarded(false, [&] {
+        auto link = std::make_unique<SocketLink>(connection);
+        link->client = of(connection).hub.join(*link);
+        if (link->client == 0)
+            link->close();
+        else
+            mg_set_user_connection_data(connection, link.release());
+        return true;
+    });
+}
+
+int LiveServer::Impl::receive(mg_connection* connection, int bits, char* data, std::size_t size, void*) {
+    constexpr int keep = 1, close = 0, final_text = 0x80 | MG_WEBSOCKET_OPCODE_TEXT;
+    const SocketLink* link = link_of(connection);
+    // Only whole messages of text are commands. Browsers do not split messages of this length.
+    if (!link || bits != final_text || size > longest_message) return close;
+    return guarded(close, [&] {
+        of(connection).hub.receive(link->client, {data, size});
+        return keep;
+    });
+}
+
+void LiveServer::Impl::closed(const mg_connection* connection, void*) {
+    const std::unique_ptr<SocketLink> link(link_of(connection));
+    guarded(false, [&] {
+        if (link) of(connection).hub.leave(link->client);
+        return true;
+    });
+}
+
+LiveServer::LiveServer(int port, LiveHub& hub)
+    : impl_(new Impl{.hub = hub, .page = live_page(), .token = random_token()}) {
+    const std::string listening = "127.0.0.1:" + std::to_string(port);
+    // A browser has a thread as long as it is connected. The others answer requests.
+    const std::string threads = std::to_string(LiveHub::most_clients + 8);
+    const char* options[] = {"listening_ports",
+                             listening.c_str(),
+                             "num_threads",
+                             threads.c_str(),
+                             "request_timeout_ms",
+                             "10000",  // for requests, and for a browser that takes no data
+                             "websocket_timeout_ms",
+                             "5000",  // after which a browser is asked if it is there
+                             "enable_websocket_ping_pong",
+                             "yes",
+                             "tcp_nodelay",
+                             "1",
+                             "enable_directory_listing",
+                             "no",
+                             nullptr};
+    mg_callbacks callbacks{};
+    callbacks.begin_request = Impl::begin_request;
+    callbacks.log_message = [](const mg_connection*, const char*) { return 1; };  // writes no log
+    std::array<char, 256> text{};
+    mg_init_data start{.callbacks = &callbacks, .user_data = impl_.get(), .configuration_options = options};
+    mg_error_data error{.code = nullptr, .text = text.data(), .text_buffer_size = text.size()};
+    impl_->context = mg_start2(&start, &error);
+    if (!impl_->context)
+        Complaint{.file = {},
+                  .object = "live view",
+                  .field = "port",
+                  .found = std::to_string(port) + ", which cannot be opened (" + text.data() + ")",
+                  .expected = "a free port, or 0 to choose one",
+                  .hint = {}}
+            .raise();
+    mg_server_port ports{};
+    mg_get_server_ports(impl_->context, 1, &ports);
+    impl_->port = ports.port;
+    mg_set_websocket_handler(impl_->context, "/live", nullptr, Impl::ready, Impl::receive, Impl::closed, nullptr);
+}
+
+LiveServer::~LiveServer() {
+    impl_->hub.close();
+    mg_stop(impl_->context);
+}
+
+std::string LiveServer::address() const {
+    return "http://127.0.0.1:" + std::to_string(impl_->port) + "/#token=" + impl_->token;
+}
+
+}  // namespace skerry

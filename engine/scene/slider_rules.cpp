@@ -1,0 +1,232 @@
+// Keys of sliders in a scene file, and the objects that they name.
+#include <algorithm>
+#include <numbers>
+#include <set>
+
+#include "engine/rollout/controls.h"
+#include "engine/scene/scene_plan.h"
+#include "engine/scene/scene_rules.h"
+#include "skerry/cable.h"
+#include "skerry/cavity.h"
+#include "skerry/fibre.h"
+#include "skerry/joint.h"
+
+namespace skerry {
+
+namespace {
+
+void check_slider(const Place& place, const SliderEntry& slider) {
+    const bool moves = !slider.collider.items.empty() || !slider.body.items.empty();
+    if (moves && !slider.along && !slider.about)
+        place.refuse("neither \"along\" nor \"about\"", "one of them, for a slider that moves colliders or pins");
+    for (const auto& [key, vector] : {std::pair("along", slider.along), std::pair("about", slider.about)}) {
+        if (!vector) continue;
+        if (!moves)
+            place.key(key).refuse("a key of a slider that moves nothing", "a slider with \"collider\" or \"body\"");
+        if (vector->isZero(0)) place.key(key).refuse("a direction of length 0", "a direction of any other length");
+    }
+    if (slider.pin && slider.body.items.empty())
+        place.key("pin").refuse("a key of a slider that moves no pin", "a slider with \"body\"");
+    if (!(slider.low < slider.high))
+        place.key("high").refuse(Json(slider.high).dump(), "more than \"low\", " + Json(slider.low).dump());
+    if (slider.about && std::max(-slider.low, slider.high) > std::numbers::pi_v<Real>)
+        place.refuse("angles from " + Json(slider.low).dump() + " to " + Json(slider.high).dump() + " rad",
+                     "at most half a revolution in each direction");
+}
+
+/// An object that a slider drives, with the unit and the present course of its value.
+struct Driven {
+    SliderTarget target;
+    std::string unit;
+    TimeTable course = 0;
+};
+
+Driven drive_of(World& world, CableHandle cable) {
+    const CableDrive drive = Cables(world).settings(cable).drive;
+    if (drive.tension) return {{ValueControl{cable}}, "N", *drive.tension};
+    if (drive.length) return {{ValueControl{cable}}, "m", *drive.length};
+    return {{ValueControl{cable}}, "m/s", *drive.rate};
+}
+Driven drive_of(World& world, CavityHandle cavity) {
+    const CavitySettings settings = Cavities(world).settings(cavity);
+    if (const auto* const gas = std::get_if<GasFilling>(&settings.filling))
+        return {{ValueControl{cavity}}, "kg/s", gas->inflow};
+    if (const auto* const liquid = std::get_if<LiquidFilling>(&settings.filling))
+        return {{ValueControl{cavity}}, "m^3", *liquid->volume};
+    return {{ValueControl{cavity}}, "Pa", std::get<TimeTable>(settings.filling)};
+}
+Driven drive_of(World& world, PipeHandle pipe) {
+    return {{ValueControl{pipe}}, "Pa", Cavities(world).settings(pipe).pressure};
+}
+Driven drive_of(World& world, SpringHandle spring) {
+    return {{ValueControl{spring}}, "m", *Springs(world).settings(spring).rest_length};
+}
+Driven drive_of(World& world, LoadHandle load) {
+    const AnyLoad settings = Loads(world).settings(load);
+    return {{ValueControl{load}}, "1", std::visit([](const auto& of) { return of.scale; }, settings)};
+}
+Driven drive_of(World& world, FibreHandle fibres) {
+    return {{ValueControl{fibres}}, "Pa", Fibres(world).settings(fibres).tension};
+}
+Driven drive_of(World& world, JointHandle joint) {
+    const Joints joints(world);
+    const std::optional<JointMotor> motor = joints.motor(joint);
+    if (!motor)
+        Complaint{.file = {},
+                  .object = "joint '" + joints.name(joint) + "'",
+                  .field = "motor",
+                  .found = "no motor",
+                  .expected = "a joint with a motor",
+                  .hint = {}}
+            .raise();
+    std::vector<MotorKey> keys = motor->keys;
+    if (keys.empty()) keys.push_back({.speed = motor->speed, .position = motor->position});
+    const std::string unit = joints.state(joint).kind == JointKind::hinge ? "rad" : "m";
+    const bool is_speed = keys.front().speed.has_value();
+    Driven driven{{is_speed ? decltype(SliderTarget::what)(MotorSpeedControl{joint}) : MotorPositionControl{joint}},
+                  is_speed ? unit + "/s" : unit,
+                  {}};
+    driven.course.keys.clear();
+    for (const MotorKey& key : keys) driven.course.keys.push_back({key.time, is_speed ? *key.speed : *key.position});
+    return driven;
+}
+
+/// `motion`: motion that the scene gives the collider or the pin.
+template <class HandleType>
+Driven move_of(const World& world, HandleType object, const Motion& motion, const SliderEntry& entry,
+               const Place& place) {
+    if (!motion.keys.empty() || !motion.velocity.isZero(0) || !motion.angular_velocity.isZero(0))
+        place.refuse("an object with a \"motion\"", "an object that only the slider moves");
+    const MotionKey pose = world.pose(object);
+    return {{PoseControl{object}, {pose.position, pose.rotation}}, entry.about ? "rad" : "m"};
+}
+
+class SliderMaker {
+public:
+    SliderMaker(const ScenePlan& plan, const PlannedHandles& handles, World& world)
+        : plan_(plan), handles_(handles), world_(world) {}
+
+    Slider make(const SliderEntry& entry) {
+        const std::vector<Driven> driven = driven_by(entry);
+        if (driven.empty()) entry.place.refuse("an empty list of objects", "the name of at least one object");
+        Slider slider{.name = entry.name, .unit = driven.front().unit, .low = entry.low, .high = entry.high};
+        slider.fastest = entry.fastest.value_or(entry.high - entry.low);
+        if (entry.along) slider.along = entry.along->normalized();
+        if (entry.about) slider.about = entry.about->normalized();
+        for (const Driven& object : driven) {
+            if (object.unit != slider.unit)
+                entry.place.refuse("objects whose values have the units " + slider.unit + " and " + object.unit,
+                                   "objects that are driven in the same way");
+            slider.targets.push_back(object.target);
+        }
+        slider.course = entry.value ? TimeTable(*entry.value) : driven.front().course;
+        for (const TimeKey& key : slider.course.keys)
+            if (!(slider.low <= key.value && key.value <= slider.high))
+                entry.place.key(entry.value ? "value" : "low")
+                    .refuse(entry.value ? Json(key.value).dump()
+                                        : "bounds without " + Json(key.value).dump() + ", a value that the object has",
+                            "a value from \"low\" to \"high\", " + Json(slider.low).dump() + " to " +
+                                Json(slider.high).dump());
+        if (entry.value) called_at(entry.place.key("value"), [&] { start_slider(world_, slider); });
+        return slider;
+    }
+
+private:
+    std::vector<Driven> driven_by(const SliderEntry& entry) {
+        std::vector<Driven> found;
+        const auto add = [&](const char* key, const OneOrMore<std::string>& names, auto&& drive) {
+            for (const std::string& name : names.items) {
+                const Place place = entry.place.key(key);
+                if (!taken_.insert(std::string(key) + " " + name + " " + std::to_string(entry.pin.value_or(0))).second)
+                    place.refuse(in_quotes(name) + ", which another slider drives", "one slider for each object");
+                found.push_back(called_at(place, [&] { return drive(name, place); }));
+            }
+        };
+        const auto add_named = [&]<class HandleType>(const char* key, const OneOrMore<std::string>& names,
+                                                     const ObjectView<HandleType>& objects) {
+            add(key, names,
+                [&](const std::string& name, const Place&) { return drive_of(world_, objects.find(name)); });
+        };
+        add("collider", entry.collider, [&](const std::string& name, const Place& place) {
+            const std::size_t c = find_collider(plan_, name, place);
+            return move_of(world_, handles_.colliders[c], plan_.colliders[c].settings.motion, entry, place);
+        });
+        add("body", entry.body, [&](const std::string& name, const Place& place) {
+            const std::size_t b = find_body(plan_, name, place);
+            const auto pin = static_cast<std::size_t>(entry.pin.value_or(0));
+            const std::vector<PinPlan>& pins = plan_.bodies[b].pins;
+            if (pin >= pins.size())
+                place.refuse(in_quotes(name) + ", a body with " + std::to_string(pins.size()) + " pins",
+                             "a body with the pin " + std::to_string(pin));
+            return move_of(world_, handles_.pins[b][pin], pins[pin].motion, entry, place);
+        });
+        add_named("joint", entry.joint, ObjectView<JointHandle>(world_));
+        add_named("cable", entry.cable, ObjectView<CableHandle>(world_));
+        add_named("cavity", entry.cavity, ObjectView<CavityHandle>(world_));
+        add_named("pipe", entry.pipe, ObjectView<PipeHandle>(world_));
+        add_named("spring", entry.spring, ObjectView<SpringHandle>(world_));
+        add_named("load", entry.load, ObjectView<LoadHandle>(world_));
+        add_named("fibres", entry.fibres, ObjectView<FibreHandle>(world_));
+        return found;
+    }
+
+    const ScenePlan& plan_;
+    const PlannedHandles& handles_;
+    World& world_;
+    std::set<std::string> taken_;  // objects of the sliders made so far
+};
+
+}  // namespace
+
+template <>
+const Rule<SliderEntry>& rule_of<SliderEntry>() {
+    using Entry = SliderEntry;
+    static const auto rule =
+        Rule<Entry>("slider",
+                    "A value that a user changes while the scene runs. It drives one object, or several objects in the "
+                    "same way, given by their names (docs/view.md).")
+            .key("name", &Entry::name, {.meaning = "name; no two sliders have the same", .required = true})
+            .key("collider", &Entry::collider, {.meaning = "colliders to displace or to turn"})
+            .key("body", &Entry::body, {.meaning = "bodies whose pins are displaced or turned"})
+            .key("pin", &Entry::pin,
+                 {.meaning = "number of the pin of each body, counted from 0; default: 0", .limits = at_least(0)})
+            .key("along", &Entry::along,
+                 {.meaning = "direction in the world of a displacement in m from the start of the scene"})
+            .key("about", &Entry::about,
+                 {.meaning = "axis in the world of a turn in rad from the start of the scene, through the origin of "
+                             "each collider or the pivot of each pin"})
+            .key("joint", &Entry::joint, {.meaning = "joints whose motors get another target, in its unit"})
+            .key("cable", &Entry::cable,
+                 {.meaning = "cables with another tension in N, length in m or rate in m/s, whichever they have"})
+            .key("cavity", &Entry::cavity,
+                 {.meaning = "cavities with another pressure in Pa, inflow in kg/s or liquid volume in m^3"})
+            .key("pipe", &Entry::pipe, {.meaning = "pipes with another pressure of the reservoir in Pa"})
+            .key("spring", &Entry::spring, {.meaning = "springs with another rest length in m"})
+            .key("load", &Entry::load, {.meaning = "loads with another scale"})
+            .key("fibres", &Entry::fibres, {.meaning = "fibres with another active tension in Pa"})
+            .key("low", &Entry::low, {.meaning = "least value", .required = true})
+            .key("high", &Entry::high, {.meaning = "greatest value", .required = true})
+            .key("value", &Entry::value,
+                 {.meaning = "value at the start; default: the value that the rest of the scene gives, and 0 for a "
+                             "displacement or a turn"})
+            .key("fastest", &Entry::fastest,
+                 {.meaning = "greatest change of the value in a second; default: high - low", .limits = above(0)})
+            .exactly_one({"collider", "body", "joint", "cable", "cavity", "pipe", "spring", "load", "fibres"})
+            .at_most_one({"along", "about"})
+            .check(check_slider);
+    return rule;
+}
+
+std::vector<Slider> make_sliders(const ScenePlan& plan, const PlannedHandles& handles, World& world) {
+    SliderMaker maker(plan, handles, world);
+    std::vector<Slider> sliders;
+    for (const SliderEntry& entry : plan.sliders) {
+        if (std::ranges::find(sliders, entry.name, &Slider::name) != sliders.end())
+            entry.place.key("name").refuse(in_quotes(entry.name) + ", which is already the name of a slider",
+                                           "a different name for every slider");
+        sliders.push_back(maker.make(entry));
+    }
+    return sliders;
+}
+
+}  // namespace skerry
