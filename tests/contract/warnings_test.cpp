@@ -68,8 +68,7 @@ std::vector<std::string> quoted_in(const ProjectFile& page) {
     for (const std::string& line : page.lines) {
         if (!line.starts_with("- `")) continue;
         const std::string head = line.substr(0, line.find("`: ") + 1);
-        for (std::sregex_iterator at(head.begin(), head.end(), quoted), end; at != end; ++at)
-            texts.push_back((*at)[1]);
+        for (std::sregex_iterator at(head.begin(), head.end(), quoted), end; at != end; ++at) texts.push_back((*at)[1]);
     }
     return texts;
 }
