@@ -156,7 +156,8 @@ TEST_CASE("a slider that has its own value changes no bit of a run", "[unit]") {
 
 TEST_CASE("a value out of bounds, and one for a removed object, are refused and change nothing", "[unit]") {
     Scene scene = yard_with(R"({"name": "lift", "collider": "ball", "along": [0, 0, 1], "low": -1, "high": 1},
-        {"name": "force", "load": "push", "low": 0, "high": 2}, {"name": "bend", "joint": "hinge", "low": 0, "high": 1})");
+        {"name": "force", "load": "push", "low": 0, "high": 2},
+        {"name": "bend", "joint": "hinge", "low": 0, "high": 1})");
     const std::uint64_t before = scene.world.state_hash();
     CHECK_THAT(message_of([&] { set_slider(scene.world, scene.sliders[0], 1.5); }),
                Contains("slider 'lift'") && Contains("1.5") && Contains("-1 to 1 m"));
