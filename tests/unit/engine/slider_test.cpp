@@ -37,9 +37,11 @@ std::string yard(const std::string& more) {
     "colliders": [
         {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0, 3],
          "rotation": {"axis": [1, 0, 0], "degrees": 30}},
-        {"name": "belt", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0, 5], "motion": {"velocity": [1, 0, 0]}}],
+        {"name": "belt", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0, 5],
+         "motion": {"velocity": [1, 0, 0]}}],
     "joints": [
-        {"name": "hinge", "kind": "hinge", "first": "lever", "point": [1, 0, 0], "motor": {"position": 0.25, "strength": 9}},
+        {"name": "hinge", "kind": "hinge", "first": "lever", "point": [1, 0, 0],
+         "motor": {"position": 0.25, "strength": 9}},
         {"name": "rail", "kind": "slider", "first": "sled", "point": [2, 0, 0], "axis": [1, 0, 0],
          "motor": {"speed": 0, "strength": 9}},
         {"name": "knee", "kind": "hinge", "first": "peg", "point": [3, 0, 0]}],
@@ -52,7 +54,8 @@ std::string yard(const std::string& more) {
     "pipes": [{"name": "valve", "first": "bag", "conductance": 0},
               {"name": "bridge", "first": "bag", "second": "bag_2", "conductance": 0}],
     "springs": [{"name": "band", "first": {"point": [0, 1, 0]}, "second": {"body": "cube"}, "stiffness": 1}],
-    "loads": [{"name": "push", "kind": "force", "body": "cube", "nodes": [0], "force": [1, 0, 0]}],
+    "loads": [{"name": "push", "kind": "force", "body": "cube", "nodes": [0], "force": [1, 0, 0]},
+              {"name": "press", "kind": "acceleration", "body": "cube", "acceleration": [0, 0, 1], "scale": 2}],
     "fibres": [{"name": "muscle", "body": "cube", "direction": [1, 0, 0], "stiffness": 10}], "sliders": [)" +
            more + "]}";
 }
@@ -69,14 +72,14 @@ std::string refusal_of(const std::string& slider) {
 void check_course(Scene& scene, const Slider& slider, const char* unit, Real start) {
     INFO(slider.name);
     CHECK(slider.unit == unit);
-    CHECK(slider_value(scene.world, slider) == Approx(start).margin(1e-12));
+    CHECK(slider_value(scene.world, slider) == Approx(start).margin(1e-15));
     const Real now = slider_value(scene.world, slider), change = slider.fastest / 2;
     set_slider(scene.world, slider, now + change);
-    CHECK(slider_value(scene.world, slider) == Approx(now).margin(1e-12));
+    CHECK(slider_value(scene.world, slider) == Approx(now).margin(1e-15));
     REQUIRE(scene.world.advance(0.25).ok());
-    CHECK(slider_value(scene.world, slider) == Approx(now + change / 2).margin(1e-9));
+    CHECK(slider_value(scene.world, slider) == Approx(now + change / 2).margin(1e-15));
     REQUIRE(scene.world.advance(0.5).ok());
-    CHECK(slider_value(scene.world, slider) == Approx(now + change).margin(1e-9));
+    CHECK(slider_value(scene.world, slider) == Approx(now + change).margin(1e-15));
 }
 
 }  // namespace
@@ -126,17 +129,26 @@ TEST_CASE("a slider turns an object about an axis of the world through the origi
 }
 
 TEST_CASE("one slider drives several objects, and a scene starts with the value of the slider", "[unit]") {
-    Scene scene = yard_with(R"({"name": "both", "cavity": ["skin"], "low": 0, "high": 8, "value": 3},
-        {"name": "lift", "collider": ["ball"], "along": [0, 0, 1], "low": -1, "high": 1, "value": 0.5})");
+    Scene scene = yard_with(R"({"name": "both", "load": ["push", "press"], "low": 0, "high": 4},
+        {"name": "lift", "collider": ["ball"], "along": [0, 0, 1], "low": -1, "high": 1, "value": 0.5},
+        {"name": "inflate", "cavity": "skin", "low": 0, "high": 8, "value": 3})");
     Cavities cavities(scene.world);
     CHECK(cavities.state(cavities.find("skin")).pressure == 3);
+    Loads loads(scene.world);
+    set_slider(scene.world, scene.sliders[0], 3);
+    REQUIRE(scene.world.advance(0.25).ok());  // half of the time that the first load needs from 1 to 3
+    CHECK(loads.state(loads.find("push")).scale == Approx(2));
+    CHECK(loads.state(loads.find("press")).scale == Approx(2.5));
+    REQUIRE(scene.world.advance(0.5).ok());
+    for (const LoadHandle load : loads.all()) CHECK(loads.state(load).scale == 3);
     CHECK(scene.world.pose(scene.world.colliders()[0]).position == Vec3(0, 0, 3.5));
     CHECK(slider_value(scene.world, scene.sliders[1]) == 0.5);
 }
 
 TEST_CASE("a slider that has its own value changes no bit of a run", "[unit]") {
     Scene without = yard_with(""), with = yard_with(R"({"name": "a", "cavity": "skin", "low": 0, "high": 8, "value": 0},
-              {"name": "b", "joint": "hinge", "low": 0, "high": 1}, {"name": "c", "spring": "band", "low": 0, "high": 2},
+              {"name": "b", "joint": "hinge", "low": 0, "high": 1, "value": 0.25},
+              {"name": "c", "spring": "band", "low": 0, "high": 2},
               {"name": "d", "collider": "ball", "along": [0, 0, 1], "low": -1, "high": 1, "value": 0})");
     for (Scene* scene : {&without, &with}) REQUIRE(scene->world.advance(0.05).ok());
     CHECK(without.world.state_hash() == with.world.state_hash());
@@ -144,12 +156,15 @@ TEST_CASE("a slider that has its own value changes no bit of a run", "[unit]") {
 
 TEST_CASE("a value out of bounds, and one for a removed object, are refused and change nothing", "[unit]") {
     Scene scene = yard_with(R"({"name": "lift", "collider": "ball", "along": [0, 0, 1], "low": -1, "high": 1},
-        {"name": "force", "load": "push", "low": 0, "high": 2})");
+        {"name": "force", "load": "push", "low": 0, "high": 2},
+        {"name": "bend", "joint": "hinge", "low": 0, "high": 1})");
     const std::uint64_t before = scene.world.state_hash();
     CHECK_THAT(message_of([&] { set_slider(scene.world, scene.sliders[0], 1.5); }),
                Contains("slider 'lift'") && Contains("1.5") && Contains("-1 to 1 m"));
     CHECK_THAT(message_of([&] { set_slider(scene.world, scene.sliders[0], std::nan("")); }), Contains("nan"));
     CHECK(scene.world.state_hash() == before);
+    Joints(scene.world).set_motor(Joints(scene.world).find("hinge"), {});
+    CHECK_THAT(message_of([&] { set_slider(scene.world, scene.sliders[2], 0); }), Contains("a joint with a motor"));
     Loads(scene.world).remove(Loads(scene.world).all()[0]);
     CHECK_THAT(message_of([&] { set_slider(scene.world, scene.sliders[1], 0); }), Contains("load"));
 }
