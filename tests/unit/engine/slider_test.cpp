@@ -37,9 +37,11 @@ std::string yard(const std::string& more) {
     "colliders": [
         {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0, 3],
          "rotation": {"axis": [1, 0, 0], "degrees": 30}},
-        {"name": "belt", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0, 5], "motion": {"velocity": [1, 0, 0]}}],
+        {"name": "belt", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0, 5],
+         "motion": {"velocity": [1, 0, 0]}}],
     "joints": [
-        {"name": "hinge", "kind": "hinge", "first": "lever", "point": [1, 0, 0], "motor": {"position": 0.25, "strength": 9}},
+        {"name": "hinge", "kind": "hinge", "first": "lever", "point": [1, 0, 0],
+         "motor": {"position": 0.25, "strength": 9}},
         {"name": "rail", "kind": "slider", "first": "sled", "point": [2, 0, 0], "axis": [1, 0, 0],
          "motor": {"speed": 0, "strength": 9}},
         {"name": "knee", "kind": "hinge", "first": "peg", "point": [3, 0, 0]}],
@@ -136,7 +138,8 @@ TEST_CASE("one slider drives several objects, and a scene starts with the value 
 
 TEST_CASE("a slider that has its own value changes no bit of a run", "[unit]") {
     Scene without = yard_with(""), with = yard_with(R"({"name": "a", "cavity": "skin", "low": 0, "high": 8, "value": 0},
-              {"name": "b", "joint": "hinge", "low": 0, "high": 1}, {"name": "c", "spring": "band", "low": 0, "high": 2},
+              {"name": "b", "joint": "hinge", "low": 0, "high": 1},
+              {"name": "c", "spring": "band", "low": 0, "high": 2},
               {"name": "d", "collider": "ball", "along": [0, 0, 1], "low": -1, "high": 1, "value": 0})");
     for (Scene* scene : {&without, &with}) REQUIRE(scene->world.advance(0.05).ok());
     CHECK(without.world.state_hash() == with.world.state_hash());
