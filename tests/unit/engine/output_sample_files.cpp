@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/mesh/visual/bound_visual.h"
+#include "engine/output/page/stream/pack.h"
 #include "engine/output/vtk/vtk_series.h"
 #include "output_sample.h"
 
@@ -129,4 +130,21 @@ int main(int argc, char** argv) {
     }
     write_page(folder / "visual.html", with_visual, drawn.summary());
     write_page(folder / "empty.html", PageData{}, {.title = "Nothing", .report = {}, .state_hash = 0});
+
+    // A live page, and by frame the new objects and the bytes that a server sends to it.
+    std::ofstream(folder / "live.html") << live_page();
+    OutputSample live(3, 1, 30);
+    PageStream stream;
+    PageCounts known;
+    Json sent = Json::array();
+    for (int i = 0; i < live.frame_count(); ++i) {
+        const std::string bytes(stream.pack(live.frame(i)));
+        Json objects = Json::parse(text_of(json_of_objects(stream, known)));
+        sent.push_back({{"objects", std::move(objects)}, {"bytes", base64(bytes)}});
+        known = {.bodies = stream.body_names().size(),
+                 .visuals = stream.visuals().materials().size(),
+                 .colliders = stream.colliders().size(),
+                 .lines = stream.lines().size()};
+    }
+    std::ofstream(folder / "live.json") << sent;
 }

@@ -51,7 +51,7 @@ function show_line_legend(card, on, run, scales) {
   card.hidden = !on || kinds.length === 0;
   card.replaceChildren(...kinds.map((kind) => legend_line(kind, colors.line[kind])),
     legend_line("thickness: square root of the force"),
-    legend_line("largest force " + text.si(scales.line_force.max, "N")));
+    legend_line(scales.line_force.about + " " + text.si(scales.line_force.max, "N")));
 }
 
 function show_contact_legend(card, mode, scales) {
@@ -62,5 +62,5 @@ function show_contact_legend(card, mode, scales) {
   else
     card.append(legend_line("one colour per contact region"));
   card.append(legend_line("arrow length: square root of the force"),
-    legend_line("largest force " + text.si(scales.force.max, "N")));
+    legend_line(scales.force.about + " " + text.si(scales.force.max, "N")));
 }
