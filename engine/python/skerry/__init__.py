@@ -21,7 +21,7 @@ from ._results import (
 )
 from ._robot import PlacedRobot, Robot, RobotJoint, RobotLink, load_robot
 from ._rollout import RolloutResult, rollout
-from ._scene import ContactProbe, Scene, load_scene, scene_schema
+from ._scene import ContactProbe, Scene, Slider, load_scene, scene_schema
 from ._sets import MeshSet
 from ._settings import (
     Backend,
@@ -212,6 +212,7 @@ __all__ = [
     "SelfCrossing",
     "Settings",
     "Shape",
+    "Slider",
     "Solution",
     "SolverMethod",
     "Sphere",
