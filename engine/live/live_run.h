@@ -15,7 +15,7 @@
 
 namespace skerry {
 
-/// Functions with the names of those of LiveView do what skerry/live.h says.
+/// The public functions are those of LiveView with the same names (skerry/live.h).
 class LiveRun {
 public:
     LiveRun(World& world, const LiveSettings& settings);

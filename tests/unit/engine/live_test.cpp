@@ -137,6 +137,19 @@ void wait_for_next_frame() {
     std::this_thread::sleep_for(std::chrono::milliseconds(35));
 }
 
+/// Shows the world to the browser until it has got a row for which `is_wanted` is true. Returns this row.
+Json row_with(Visit& visit, LiveRun& run, World& world, auto&& is_wanted) {
+    for (int i = 0; i < 100; ++i) {
+        visit.acknowledge(visit.browser.rows().size());
+        run.sync(world);
+        if (const std::vector<Json> rows = visit.browser.rows(); !rows.empty() && is_wanted(rows.back()))
+            return rows.back();
+        wait_for_next_frame();
+    }
+    FAIL("the browser has not got the row");
+    return {};
+}
+
 }  // namespace
 
 TEST_CASE("a browser gets the bytes of the frames of a recorded page", "[unit][live]") {
@@ -180,20 +193,18 @@ TEST_CASE("a browser that misses frames decodes those that it gets", "[unit][liv
     for (std::uint64_t step = 0; step < 40; ++step) {
         REQUIRE(world.advance(0.005).ok());
         positions[world.time()].assign(world.positions(cube).begin(), world.positions(cube).end());
+        const std::size_t frames = visit.browser.rows().size();
         const bool ready = hub.wish().frame;
         take_and_publish(hub, taker, world);
-        if (step < 2 || ready) visit.browser.wait_for_frames(visit.browser.rows().size());
-        if (step % 5 == 4) {  // two frames are on their way meanwhile, and three are dropped
-            visit.browser.wait_for_frames(2 * (step / 5) + 2);
-            visit.acknowledge(2 * (step / 5) + 2);
-        }
+        if (ready) visit.browser.wait_for_frames(frames + 1);
+        if (step % 5 == 4) visit.acknowledge(visit.browser.rows().size());  // meanwhile others were dropped
     }
+    visit.browser.wait_for_frames(hub.frames_sent());
     const ReadRun run = read_frames(visit.browser.bytes());
     const std::vector<Json> rows = visit.browser.rows();
     REQUIRE(run.frames.size() == rows.size());
-    CHECK(rows.size() < 20);
-    CHECK(hub.frames_dropped() > 10);
-    CHECK(hub.frames_sent() == rows.size());
+    CHECK(rows.size() >= 10);
+    CHECK(hub.frames_dropped() >= 10);
     const ReadShape& shape = run.shapes.front();
     for (std::size_t f = 0; f < rows.size(); ++f) {
         const std::vector<Vec3>& expected = positions.at(rows[f]["time"].get<Real>());
@@ -277,7 +288,7 @@ TEST_CASE("a browser that looks changes no bit of the run", "[unit][live]") {
             const std::vector<Json> rows = visit->browser.rows();
             REQUIRE(rows.size() >= 4);
             CHECK(rows.back()["top"]["stress"] > 0);
-            CHECK(rows.back()["probes"][0].size() == 7);
+            CHECK(rows.back()["probes"][0][0] != nullptr);
         }
         return world.state_hash();
     };
@@ -286,7 +297,7 @@ TEST_CASE("a browser that looks changes no bit of the run", "[unit][live]") {
 
 TEST_CASE("a command is refused with the member at fault", "[unit][live]") {
     const auto refusal = [](const std::string& text) { return message_of([&] { read_command(text); }); };
-    CHECK(refusal("") == "command: found , expected a JSON object such as {\"do\":\"play\"}");
+    CHECK(refusal("") == "command: found nothing, expected a JSON object such as {\"do\":\"play\"}");
     CHECK_THAT(refusal(std::string(5000, '[')), StartsWith("command: found [[[["));
     CHECK_THAT(refusal(R"({"do":"plya"})"),
                Contains("do: found \"plya\", expected one of seen, fields, play, pause") && Contains("play\""));
@@ -313,8 +324,6 @@ TEST_CASE("commands control the run, and a reset brings the start back", "[unit]
     LiveRun run(world, {.paused = true});
     Visit visit(run.hub());
     CHECK(run.due(world) == 0);
-    visit.browser.wait_for_frames(1);
-    visit.acknowledge(1);
 
     visit.send({{"do", "step"}});
     const Real step = run.due(world);
@@ -328,29 +337,18 @@ TEST_CASE("commands control the run, and a reset brings the start back", "[unit]
     visit.send({{"do", "play"}});
     CHECK(run.due(world) > 0);
     CHECK(world.settings().gravity == Vec3::Zero());
-    REQUIRE(world.advance(0.01).ok());
-    wait_for_next_frame();
-    CHECK(run.due(world) > 0);
-    visit.browser.wait_for_frames(2);
-    visit.acknowledge(2);
+    CHECK(visit.browser.wait_for_text(R"("type":"state")")["gravity"] == false);
+    row_with(visit, run, world, [](const Json&) { return true; });
     visit.send({{"do", "pull"}, {"body", 0}, {"point", {0, 0, 0.1}}, {"to", {0, 0, 0.3}}});
     CHECK(run.due(world) > 0);
     REQUIRE(world.advance(0.01).ok());
-    wait_for_next_frame();
-    run.sync(world);
-    visit.browser.wait_for_frames(3);
-    CHECK(visit.browser.rows().back()["pull"]["force"] > 0);
-    CHECK(visit.browser.wait_for_text("state")["gravity"] == false);
+    CHECK(row_with(visit, run, world, [](const Json& row) { return !row["pull"].is_null(); })["pull"]["force"] > 0);
 
     visit.send({{"do", "reset"}});
     CHECK(run.due(world) > 0);
     CHECK(world.state_hash() == start);
     CHECK(run.resets() == 1);
-    wait_for_next_frame();
-    run.sync(world);
-    visit.browser.wait_for_frames(4);
-    CHECK(visit.browser.rows().back()["time"] == 0);
-    CHECK(visit.browser.rows().back()["pull"].is_null());
+    CHECK(row_with(visit, run, world, [](const Json& row) { return row["time"] == 0; })["pull"].is_null());
 
     SECTION("a command that fails is reported, and changes nothing") {
         visit.send({{"do", "slider"}, {"number", 2}, {"value", 0}});
