@@ -51,7 +51,7 @@ class Tab:
 
     def open(self, address: str) -> None:
         self.call("Page.navigate", url=address)
-        self.wait("document.readyState === 'complete' && location.href !== 'about:blank'")
+        self.wait("document.documentElement && document.readyState === 'complete'")
 
     def evaluate(self, script: str) -> Any:
         """Value of an expression in JavaScript. Waits for a promise."""
@@ -94,8 +94,8 @@ class Tab:
         self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y, pointerType="mouse")
 
     def press(self, key: str) -> None:
-        """Presses a key with one letter."""
-        self.call("Input.dispatchKeyEvent", type="keyDown", key=key, text=key)
+        """Presses a key, such as "a" or "Home"."""
+        self.call("Input.dispatchKeyEvent", type="keyDown", key=key, **({"text": key} if len(key) == 1 else {}))
         self.call("Input.dispatchKeyEvent", type="keyUp", key=key)
 
     def picture(self, file: Path) -> None:
