@@ -23,7 +23,7 @@ extensions = [
     "site_reference",
 ]
 root_doc = "index"
-exclude_patterns = ["README.md", "docs/site", "tests", "engine", "profiling", "examples/**/*.md"]
+exclude_patterns = ["README.md", "docs/README.md", "docs/site", "tests", "engine", "profiling", "examples/**/*.md"]
 
 # Markdown
 myst_enable_extensions = ["colon_fence", "dollarmath", "deflist"]
@@ -59,7 +59,7 @@ cpp_maximum_signature_line_length = 100
 autodoc_default_options = {
     "members": True,
     "undoc-members": True,
-    "inherited-members": "BaseException, Mapping, Sequence, tuple, dict",  # except for members of these
+    "inherited-members": "BaseException, Mapping, Sequence, dict, list, tuple",  # except for members of these
 }
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"

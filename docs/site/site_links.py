@@ -5,6 +5,7 @@
 - Below a block of commands of docs/gallery.md that writes a page, the page plays.
 """
 
+import html
 import os
 import pathlib
 import re
@@ -20,6 +21,7 @@ from sphinx.util.osutil import relative_uri
 # Pages about folders and files of the repository that are no pages themselves.
 PAGE_OF = {
     "README.md": "index.md",
+    "docs/README.md": "index.md",
     "docs/decisions": "reference/decisions.md",
     "examples/notebooks": "tutorials.md",
     "examples/python": "examples.md",
@@ -27,7 +29,8 @@ PAGE_OF = {
 }
 LINK = re.compile(r"\]\(([^()\s#:]+)(#[^()\s]*)?\)")
 PAGE = re.compile(r"docs/[\w/-]+\.md")
-RUN = re.compile(r"^skerry run (.+) --page (\w+\.html)$", re.MULTILINE)
+# A command of the gallery, and the state in which its page opens.
+RUN = re.compile(r"^skerry run (.+) --page (\w+\.html) +# \w+\.html(#\S+)", re.MULTILINE)
 
 
 def complete_page(app: Sphinx, page: str, source: list[str]) -> None:
@@ -87,11 +90,11 @@ class Players(SphinxTransform):
             for run in RUN.finditer(block.astext()):
                 written = pathlib.Path(os.environ["SKERRY_SITE_RESULTS"]) / run[2]
                 if not written.exists():
-                    command = [os.environ["SKERRY_PROGRAM"], "run", *run[1].split(), "--page", str(written)]
+                    command = [os.environ["SKERRY_PROGRAM"], "run", *run[1].split(), "--page", str(written), "--quiet"]
                     subprocess.run(command, cwd=self.app.srcdir, check=True, stdout=subprocess.DEVNULL)
                 shutil.copy(written, films)
                 address = relative_uri(self.app.builder.get_target_uri(self.env.docname), f"films/{run[2]}")
-                frame = f'<iframe class="run" loading="lazy" src="{address}" title="{run[2]}"></iframe>'
+                frame = f'<iframe class="run" loading="lazy" src="{address}{html.escape(run[3])}&amp;panel=0" title="{run[2]}"></iframe>'
                 players.append(nodes.raw("", frame, format="html"))
             if players:
                 block.parent.insert(block.parent.index(block) + 1, players)

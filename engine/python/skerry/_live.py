@@ -172,7 +172,7 @@ def view(
         port=counted(port, "port"),
         paused=flag(paused, "paused"),
         probes=recorded_probes(given, shown),
-        sliders=getattr(scene, "_sliders", []) if scene else [],
+        sliders=scene._sliders if scene else [],
     )
     opened = View(shown, core)
     if flag(open, "open") and not webbrowser.open(opened.address):
