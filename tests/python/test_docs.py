@@ -79,9 +79,9 @@ def test_the_json_of_a_page_is_a_scene_or_a_part_of_one(page: pathlib.Path, tmp_
         validator = pytest.importorskip("jsonschema").Draft202012Validator
         sweep = json.loads((ROOT / "docs/sweep.schema.json").read_text(encoding="utf-8"))
         parts = [schema, sweep, *({**part, "$defs": schema["$defs"]} for part in schema["$defs"].values())]
-        # Members without braces leave out others that the object needs.
+        # A part may leave out members that the whole object needs.
         errors = [
-            [e for e in validator(part).iter_errors(value) if whole or e.path or e.validator == "additionalProperties"]
+            [e for e in validator(part).iter_errors(value) if e.path or e.validator == "additionalProperties"]
             for part in parts
         ]
         nearest = min(errors, key=lambda found: len(str(found)))
