@@ -71,7 +71,8 @@ endif()
 if(skerry_missing)
     message(FATAL_ERROR "Packages that Skerry needs were not found:${skerry_missing}\n"
         "Install them, with apt-get or another package manager, or name their folder in CMAKE_PREFIX_PATH. "
-        "SKERRY_HDF5=OFF, SKERRY_SCENES=OFF, SKERRY_PAGES=OFF, SKERRY_LIVE=OFF and SKERRY_BACKENDS=threads need fewer of them.\n")
+        "SKERRY_HDF5=OFF, SKERRY_SCENES=OFF, SKERRY_PAGES=OFF, SKERRY_LIVE=OFF and SKERRY_BACKENDS=threads need fewer "
+        "of them.\n")
 endif()
 if(SKERRY_PYTHON)
     find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module ${SKBUILD_SABI_COMPONENT})

@@ -211,12 +211,13 @@ void LiveRun::begin_run(const World& world) {
 }
 
 /// Takes a snapshot if one is due and a browser waits for one. `between_calls`: the world is between two calls of
-/// advance, so that probes and pulls can be read.
+/// advance, so that probes can be read. Within a call the snapshot is taken later, so that only long calls need it.
 void LiveRun::show(const World& world, bool between_calls) {
     if (!hub_.is_busy()) return;
     const Clock::time_point now = Clock::now();
-    if (now < next_show_) return;
-    next_show_ = now + seconds_of(1 / frames_per_second);
+    const Clock::duration interval = seconds_of(1 / frames_per_second);
+    if (now < (between_calls ? next_show_ : next_show_ + interval)) return;
+    next_show_ = now + interval;
     if (std::exchange(changed_, false) || world.time() != shown_time_) hub_.mark_changed();
     shown_time_ = world.time();
     if (between_calls && taker_.is_other_run(world)) begin_run(world);

@@ -7,6 +7,40 @@
 
 namespace skerry {
 
+namespace {
+
+/// Points of a body at which it is held. A rigid body is held at `point`. Another body is held at several nodes of its
+/// surface as well, which lie far from each other and at most a quarter of the size of the body away, because a force
+/// at a single node would distort soft elements.
+std::vector<Vec3> held_points(const World& world, BodyHandle body, const Vec3& point) {
+    constexpr std::size_t most = 12;
+    constexpr Real reach = 0.25;  // of the diagonal of the bounding box
+    std::vector<Vec3> held{point};
+    if (world.dynamics(body) == BodyDynamics::rigid) return held;
+    const std::span<const Vec3> nodes = world.positions(body);
+    Vec3 lower = point, upper = point;
+    for (const Vec3& x : nodes) {
+        lower = lower.cwiseMin(x);
+        upper = upper.cwiseMax(x);
+    }
+    std::vector<std::pair<Real, Vec3>> near;  // distance to the nearest held point, and position [m]
+    for (const std::array<Index, 3>& face : world.surface(body))
+        for (const Index node : face) {
+            const Vec3& x = nodes[static_cast<std::size_t>(node)];
+            if (const Real distance = (x - point).norm(); distance <= reach * (upper - lower).norm())
+                near.emplace_back(distance, x);
+        }
+    while (held.size() < most && !near.empty()) {
+        const auto farthest = std::ranges::max_element(near, {}, &std::pair<Real, Vec3>::first);
+        if (farthest->first == 0) break;
+        held.push_back(farthest->second);
+        for (auto& [distance, x] : near) distance = std::min(distance, (x - held.back()).norm());
+    }
+    return held;
+}
+
+}  // namespace
+
 void Pull::begin(World& world, BodyHandle body, const Vec3& point, const Vec3& target) {
     constexpr Real frequency = 2;        // of a free body on the spring [Hz]
     constexpr Real most_gravities = 50;  // greatest force, in weights of the body
@@ -16,30 +50,47 @@ void Pull::begin(World& world, BodyHandle body, const Vec3& point, const Vec3& t
     std::erase(only_body.except_bodies, body);
     const std::optional<SurfaceHit> held = world.nearest_point(point, infinity, only_body);
     const Real omega = 2 * std::numbers::pi_v<Real> * frequency;
-    const SpringHandle spring = Springs(world).add({.first = {.body = body, .point = held ? held->point : point},
-                                                    .second = {.point = target},
-                                                    .stiffness = mass * omega * omega,
-                                                    .rest_length = 0,
-                                                    .strength = most_gravities * mass * gravity});
+    Pull next;
+    const std::vector<Vec3> points = held_points(world, body, held ? held->point : point);
+    try {
+        for (const Vec3& at : points) {
+            const Real share = 1 / static_cast<Real>(points.size());
+            next.offset_.emplace_back(at - points.front());
+            next.springs_.push_back(Springs(world).add({.first = {.body = body, .point = at},
+                                                        .second = {.point = target + next.offset_.back()},
+                                                        .stiffness = share * mass * omega * omega,
+                                                        .rest_length = 0,
+                                                        .strength = share * most_gravities * mass * gravity}));
+        }
+        next.drag_ = Loads(world).add(DragField{.body = body, .rate = 2 * omega});
+    } catch (...) {
+        next.end(world);
+        throw;
+    }
     end(world);
-    spring_ = spring;
-    drag_ = Loads(world).add(DragField{.body = body, .rate = 2 * omega});
+    *this = std::move(next);
 }
 
 void Pull::move(World& world, const Vec3& target) {
-    if (Springs springs(world); springs.alive(spring_)) springs.set_second(spring_, {.point = target});
+    Springs springs(world);
+    for (std::size_t s = 0; s < springs_.size(); ++s)
+        if (springs.alive(springs_[s])) springs.set_second(springs_[s], {.point = target + offset_[s]});
 }
 
 void Pull::end(World& world) {
-    if (Springs springs(world); springs.alive(spring_)) springs.remove(spring_);
+    Springs springs(world);
+    for (const SpringHandle spring : springs_)
+        if (springs.alive(spring)) springs.remove(spring);
     if (Loads loads(world); loads.alive(drag_)) loads.remove(drag_);
+    *this = {};
 }
 
 std::optional<PullState> Pull::state(const World& world) const {
     const WorldState& state = WorldAccess::state_of(world);
-    if (state.model.spring_map.row(spring_) == no_index) return {};
-    const SpringState now = spring_state(state, spring_);
-    return PullState{.force = now.force, .length = now.length};
+    if (springs_.empty() || state.model.spring_map.row(springs_.front()) == no_index) return {};
+    PullState pull{.force = 0, .length = spring_state(state, springs_.front()).length};
+    for (const SpringHandle spring : springs_) pull.force += spring_state(state, spring).force;
+    return pull;
 }
 
 }  // namespace skerry

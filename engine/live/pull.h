@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "skerry/load.h"
 #include "skerry/spring.h"
@@ -9,20 +10,20 @@
 
 namespace skerry {
 
-/// Present force and length of the spring of a pull.
+/// Present state of a pull.
 struct PullState {
-    Real force = 0;   // [N]
-    Real length = 0;  // [m]
+    Real force = 0;   // sum of the forces of all springs in the last step [N]
+    Real length = 0;  // distance of the pulled point from the target [m]
 };
 
 /// Drags a body by a spring without rest length from a point of its surface to a target. The stiffness is m (2 pi f)^2
-/// with the mass m of the body and f = 2 Hz. The force is at most 50 times m 9.81 m/s^2. A drag field damps the body
-/// critically: a free body of stiffness well above that of the spring approaches the target as (1 + w t) exp(-w t) with
-/// w = 2 pi f. The drag depends on the mass only, so it does not shorten the step of finely meshed bodies, which a
-/// damper at a single point would do.
+/// with the mass m of the body and f = 2 Hz. The force is at most 50 times m 9.81 m/s^2. For a body that deforms, up to
+/// 12 parallel springs around the point share stiffness and force. A drag field damps the body critically: a stiff free
+/// body approaches the target as (1 + w t) exp(-w t) with w = 2 pi f. Unlike a damper at the point, the drag does not
+/// shorten the step of a fine mesh.
 ///
-/// The spring and the field are objects of the world until end(). They are removed with the body. A pull acts on the
-/// world that it began in, or on a clone. After World::reset to a clone without them, a pull is over.
+/// The springs and the field are objects of the world until end(). They are removed with the body. After World::reset
+/// to a clone without them, the pull is over.
 class Pull {
 public:
     /// Starts to drag the nearest surface point of a body to `point`; a previous pull ends. Wakes the body. Throws
@@ -31,13 +32,14 @@ public:
     void begin(World& world, BodyHandle body, const Vec3& point, const Vec3& target);
     /// Moves the target. Does nothing if no body is pulled. Throws SceneError for a target that is not finite.
     void move(World& world, const Vec3& target);
-    /// Removes the spring and the field. Does nothing if no body is pulled.
+    /// Removes the springs and the field. Does nothing if no body is pulled.
     void end(World& world);
     /// Returns nothing if no body is pulled.
     std::optional<PullState> state(const World& world) const;
 
 private:
-    SpringHandle spring_{};
+    std::vector<SpringHandle> springs_{};
+    std::vector<Vec3> offset_{};  // from the pulled point to the first anchor of each spring when the pull began [m]
     LoadHandle drag_{};
 };
 

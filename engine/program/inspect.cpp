@@ -264,6 +264,13 @@ int inspect_scene(const InspectOptions& options) {
                              {"step_bound", bound_json(kind.bound)}});
             bodies.push_back(body);
         }
+        Json sliders = Json::array();
+        for (const Slider& slider : scene.sliders)
+            sliders.push_back({{"name", slider.name},
+                               {"unit", slider.unit},
+                               {"value", slider_value(scene.world, slider)},
+                               {"low", slider.low},
+                               {"high", slider.high}});
         const Json json = {{"schema", "skerry.scene_facts/1"},
                            {"scene", scene.name},
                            {"description", scene.description},
@@ -280,6 +287,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"springs", plan.springs.size()},
                            {"pairs", plan.pairs.size()},
                            {"surfaces", surfaces},
+                           {"sliders", sliders},
                            {"nodes", report.nodes},
                            {"elements", report.elements},
                            {"stable_dt", stable_step},
@@ -331,6 +339,10 @@ int inspect_scene(const InspectOptions& options) {
               << "\n"
               << "  contacts      " << cost.contacts << " at the start\n";
     for (const std::string& choice : choice_texts(report)) std::cout << "  dynamics      " << choice << "\n";
+    for (const Slider& slider : scene.sliders)
+        std::cout << "  slider        " << slider.name << ": " << short_number(slider_value(scene.world, slider))
+                  << " at the start, from " << short_number(slider.low) << " to " << short_number(slider.high) << " "
+                  << slider.unit << "\n";
     for (const BodyKindReport& kind : kinds) {
         std::cout << "  body          " << kind.first_name
                   << (kind.count > 1

@@ -24,6 +24,7 @@ nb::dict values_of(Scene&& scene) {
     values["probe_step"] = scene.probe_step;
     values["contact_probes"] = probes;
     values["recorded"] = scene.recorded;
+    values["sliders"] = scene.sliders;
     values["notes"] = scene.notes;
     values["world"] = nb::cast(new WorldObject(std::move(scene.world)), nb::rv_policy::take_ownership);
     return values;
@@ -69,6 +70,16 @@ FilmColor film_color(const std::string& name) {
 }  // namespace
 
 void bind_scene(nb::module_& module) {
+    nb::class_<Slider>(module, "Slider")
+        .def_ro("name", &Slider::name)
+        .def_ro("unit", &Slider::unit)
+        .def_ro("low", &Slider::low)
+        .def_ro("high", &Slider::high)
+        .def_ro("fastest", &Slider::fastest);
+    module.def("slider_value", guarded([](World& world, const Slider& slider) { return slider_value(world, slider); }));
+    module.def("set_slider", guarded([](World& world, const Slider& slider, Real value) {
+                   set_slider(world, slider, value);
+               }));
     module.def("load_scene", &load, nb::arg(), nb::arg(), nb::arg().none(), nb::arg());
     module.def("load_scene_text", &load_text, nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg());
     module.def("scene_schema", &scene_schema);

@@ -20,8 +20,15 @@ void set_controlled_value(World& world, const ValueControl& control, const TimeT
 /// stay.
 void set_motor_target(World& world, JointHandle joint, JointMotor target);
 
-/// Gives the objects of a slider the value or values of its course, in zero time.
-void start_slider(World& world, const Slider& slider);
+/// Control of the motor of a joint, by its present kind of target. Throws SceneError if the joint has no motor.
+SliderControl motor_control(const World& world, JointHandle joint);
+/// SI unit of the value that a control sets, which must not be a PoseControl.
+std::string unit_of(const World& world, const SliderControl& control);
+/// Value that a control sets, over time. The control must not be a PoseControl. Throws SceneError for a pipe without
+/// reservoir.
+TimeTable course_of(const World& world, const SliderControl& control);
+/// Gives the objects of a slider a value in zero time.
+void start_slider(World& world, const Slider& slider, Real value);
 /// Number of values that a control has per interval. Throws SceneError if the world lacks the controlled object, or if
 /// the object is a joint without motor.
 std::size_t number_count(const World& world, const RolloutControl& control);

@@ -5,12 +5,62 @@
 #include "components/key_lists.h"
 #include "engine/rollout/controls.h"
 #include "engine/world/complaint.h"
-#include "skerry/slider.h"
+#include "engine/world/control/control.h"
+#include "engine/world/edit/objects.h"
+#include "engine/world/validate.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
 
 namespace {
+
+/// Unit of the value of a control.
+struct UnitOfControl {
+    const Model& model;
+
+    std::string operator()(const PoseControl&) const { return "m"; }
+    std::string operator()(const MotorSpeedControl& control) const {
+        return (*this)(MotorPositionControl{control.joint}) + "/s";
+    }
+    std::string operator()(const MotorPositionControl& control) const {
+        return model.joints.kind[row(control.joint)] == JointKind::hinge ? "rad" : "m";
+    }
+    std::string operator()(const ValueControl& control) const { return std::visit(*this, control.object); }
+    std::string operator()(CableHandle cable) const {
+        constexpr std::array units{"N", "m", "m/s"};  // in the order of CableControl
+        return units[static_cast<std::size_t>(model.cables.control[row(cable)])];
+    }
+    std::string operator()(CavityHandle cavity) const {
+        const CavityLaw law = model.cavities.law[row(cavity)];
+        return law == CavityLaw::pressure ? "Pa" : law == CavityLaw::gas ? "kg/s" : "m^3";
+    }
+    std::string operator()(PipeHandle) const { return "Pa"; }
+    std::string operator()(SpringHandle) const { return "m"; }
+    std::string operator()(LoadHandle) const { return "1"; }
+    std::string operator()(FibreHandle) const { return "Pa"; }
+
+private:
+    std::size_t row(auto handle) const { return static_cast<std::size_t>(model.row(handle, "slider")); }
+};
+
+/// Value of a control over time.
+struct CourseOfControl {
+    const Model& model;
+
+    TimeTable operator()(const PoseControl&) const { return 0; }
+    TimeTable operator()(const MotorSpeedControl& control) const { return (*this)(control.joint); }
+    TimeTable operator()(const MotorPositionControl& control) const { return (*this)(control.joint); }
+    TimeTable operator()(const ValueControl& control) const { return std::visit(*this, control.object); }
+    template <class HandleType>
+    TimeTable operator()(HandleType object) const {
+        const auto row = static_cast<std::size_t>(model.row(object, "slider"));
+        const std::span<const TimeKey> keys = ObjectsOf<HandleType>::table(model).keys_of(row);
+        if (!keys.empty()) return time_table_of(keys);
+        if constexpr (std::is_same_v<HandleType, JointHandle>) return model.joints.motor[row].target;
+        refuse("pipe '" + object_name(model, object) + "'", "pressure", "a pipe between two cavities",
+               "a pipe between a cavity and a reservoir");
+    }
+};
 
 Pose pose_at(const Slider& slider, const Pose& start, Real value) {
     return {start.position + value * slider.along,
@@ -19,13 +69,7 @@ Pose pose_at(const Slider& slider, const Pose& start, Real value) {
                 : rotation_vector(rotation_matrix(value * slider.about) * rotation_matrix(start.rotation))};
 }
 
-JointMotor motor_target(const TimeTable& course, std::optional<Real> MotorKey::*quantity) {
-    JointMotor motor;
-    for (const TimeKey& key : course.keys) motor.keys.emplace_back(MotorKey{.time = key.time}).*quantity = key.value;
-    return motor;
-}
-
-/// Lets one target follow a course.
+/// Lets one target of a slider follow a course to its last key.
 struct FollowCourse {
     World& world;
     const Slider& slider;
@@ -33,65 +77,80 @@ struct FollowCourse {
     const TimeTable& course;
 
     void operator()(const PoseControl& control) const {
-        constexpr Real shortest = 1e-3;  // duration of a motion by nothing but rounding errors [s]
-        const Real duration = std::max(course.keys.back().time - world.time(), shortest);
         const Pose pose = pose_at(slider, target.start, course.keys.back().value);
+        const Real duration = course.keys.back().time - world.time();
         std::visit([&](auto object) { world.move_to(object, pose, duration); }, control.object);
     }
     void operator()(const MotorSpeedControl& control) const {
-        set_motor_target(world, control.joint, motor_target(course, &MotorKey::speed));
+        JointMotor motor;
+        for (const TimeKey& key : course.keys) motor.keys.push_back({.time = key.time, .speed = key.value});
+        set_motor_target(world, control.joint, motor);
     }
     void operator()(const MotorPositionControl& control) const {
-        set_motor_target(world, control.joint, motor_target(course, &MotorKey::position));
+        JointMotor motor;
+        for (const TimeKey& key : course.keys) motor.keys.push_back({.time = key.time, .position = key.value});
+        set_motor_target(world, control.joint, motor);
     }
     void operator()(const ValueControl& control) const { set_controlled_value(world, control, course); }
 };
 
 }  // namespace
 
+SliderControl motor_control(const World& world, JointHandle joint) {
+    const Model& model = WorldAccess::state_of(world).model;
+    switch (model.joints.drive[static_cast<std::size_t>(model.row(joint, "slider"))]) {
+        case JointDrive::speed:
+            return MotorSpeedControl{joint};
+        case JointDrive::position:
+            return MotorPositionControl{joint};
+        case JointDrive::none:
+            break;
+    }
+    refuse("joint '" + object_name(model, joint) + "'", "motor", "no motor", "a joint with a motor");
+}
+
+std::string unit_of(const World& world, const SliderControl& control) {
+    return std::visit(UnitOfControl{WorldAccess::state_of(world).model}, control);
+}
+
+TimeTable course_of(const World& world, const SliderControl& control) {
+    return std::visit(CourseOfControl{WorldAccess::state_of(world).model}, control);
+}
+
 Real slider_value(const World& world, const Slider& slider) {
     const SliderTarget& first = slider.targets.front();
-    const auto* const control = std::get_if<PoseControl>(&first.what);
-    if (!control) return value_at(slider.course.keys, world.time());
+    const auto* const control = std::get_if<PoseControl>(&first.control);
+    if (!control) return value_at(course_of(world, first.control).keys, world.time());
     const MotionKey now = std::visit([&](auto object) { return world.pose(object); }, control->object);
     const Mat3 turned = rotation_matrix(now.rotation) * rotation_matrix(first.start.rotation).transpose();
     return slider.along.dot(now.position - first.start.position) + slider.about.dot(rotation_vector(turned));
 }
 
-void set_slider(World& world, Slider& slider, Real value) {
+void set_slider(World& world, const Slider& slider, Real value) {
     if (!(slider.low <= value && value <= slider.high))
-        Complaint{
-            .file = {},
-            .object = "slider '" + slider.name + "'",
-            .field = "value",
-            .found = short_text(value),
-            .expected = "a value from " + short_text(slider.low) + " to " + short_text(slider.high) + " " + slider.unit,
-            .hint = {}}
-            .raise();
+        refuse("slider '" + slider.name + "'", "value", short_text(value),
+               "a value from " + short_text(slider.low) + " to " + short_text(slider.high) + " " + slider.unit);
     for (const SliderTarget& target : slider.targets) {
         RolloutControl control;
-        std::visit([&](const auto& what) { control.what = what; }, target.what);
+        std::visit([&](const auto& of) { control.what = of; }, target.control);
         (void)number_count(world, control);  // refuses an object that was removed before any object is changed
     }
+    constexpr Real shortest = 1e-3;  // also for changes of nothing but rounding errors [s]
     const Real now = world.time(), from = slider_value(world, slider);
-    const TimeTable course = value == from
-                                 ? TimeTable(value)
-                                 : TimeTable({{now, from}, {now + std::abs(value - from) / slider.fastest, value}});
+    const Real duration = std::max(std::abs(value - from) / slider.fastest, shortest);
+    const TimeTable course({{now, from}, {now + duration, value}});
     for (const SliderTarget& target : slider.targets)
-        std::visit(FollowCourse{world, slider, target, course}, target.what);
-    slider.course = course;
+        std::visit(FollowCourse{world, slider, target, course}, target.control);
 }
 
-void start_slider(World& world, const Slider& slider) {
+void start_slider(World& world, const Slider& slider, Real value) {
     for (const SliderTarget& target : slider.targets)
-        if (const auto* const control = std::get_if<PoseControl>(&target.what))
-            std::visit(
-                [&](auto object) {
-                    world.set_pose(object, pose_at(slider, target.start, slider.course.keys.back().value));
-                },
-                control->object);
-        else
-            std::visit(FollowCourse{world, slider, target, slider.course}, target.what);
+        if (const auto* const control = std::get_if<PoseControl>(&target.control)) {
+            const Pose pose = pose_at(slider, target.start, value);
+            std::visit([&](auto object) { world.set_pose(object, pose); }, control->object);
+        } else {
+            std::visit(FollowCourse{world, slider, target, value}, target.control);
+        }
 }
 
 }  // namespace skerry

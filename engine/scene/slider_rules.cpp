@@ -34,71 +34,13 @@ void check_slider(const Place& place, const SliderEntry& slider) {
                      "at most half a revolution in each direction");
 }
 
-/// An object that a slider drives, with the unit and the present course of its value.
-struct Driven {
-    SliderTarget target;
-    std::string unit;
-    TimeTable course = 0;
-};
-
-Driven drive_of(World& world, CableHandle cable) {
-    const CableDrive drive = Cables(world).settings(cable).drive;
-    if (drive.tension) return {{ValueControl{cable}}, "N", *drive.tension};
-    if (drive.length) return {{ValueControl{cable}}, "m", *drive.length};
-    return {{ValueControl{cable}}, "m/s", *drive.rate};
-}
-Driven drive_of(World& world, CavityHandle cavity) {
-    const CavitySettings settings = Cavities(world).settings(cavity);
-    if (const auto* const gas = std::get_if<GasFilling>(&settings.filling))
-        return {{ValueControl{cavity}}, "kg/s", gas->inflow};
-    if (const auto* const liquid = std::get_if<LiquidFilling>(&settings.filling))
-        return {{ValueControl{cavity}}, "m^3", *liquid->volume};
-    return {{ValueControl{cavity}}, "Pa", std::get<TimeTable>(settings.filling)};
-}
-Driven drive_of(World& world, PipeHandle pipe) {
-    return {{ValueControl{pipe}}, "Pa", Cavities(world).settings(pipe).pressure};
-}
-Driven drive_of(World& world, SpringHandle spring) {
-    return {{ValueControl{spring}}, "m", *Springs(world).settings(spring).rest_length};
-}
-Driven drive_of(World& world, LoadHandle load) {
-    const AnyLoad settings = Loads(world).settings(load);
-    return {{ValueControl{load}}, "1", std::visit([](const auto& of) { return of.scale; }, settings)};
-}
-Driven drive_of(World& world, FibreHandle fibres) {
-    return {{ValueControl{fibres}}, "Pa", Fibres(world).settings(fibres).tension};
-}
-Driven drive_of(World& world, JointHandle joint) {
-    const Joints joints(world);
-    const std::optional<JointMotor> motor = joints.motor(joint);
-    if (!motor)
-        Complaint{.file = {},
-                  .object = "joint '" + joints.name(joint) + "'",
-                  .field = "motor",
-                  .found = "no motor",
-                  .expected = "a joint with a motor",
-                  .hint = {}}
-            .raise();
-    std::vector<MotorKey> keys = motor->keys;
-    if (keys.empty()) keys.push_back({.speed = motor->speed, .position = motor->position});
-    const std::string unit = joints.state(joint).kind == JointKind::hinge ? "rad" : "m";
-    const bool is_speed = keys.front().speed.has_value();
-    Driven driven{{is_speed ? decltype(SliderTarget::what)(MotorSpeedControl{joint}) : MotorPositionControl{joint}},
-                  is_speed ? unit + "/s" : unit,
-                  {}};
-    driven.course.keys.clear();
-    for (const MotorKey& key : keys) driven.course.keys.push_back({key.time, is_speed ? *key.speed : *key.position});
-    return driven;
-}
-
-/// `motion`: motion that the scene gives the collider or the pin.
+/// A collider or a pin that a slider moves. `motion`: motion that the scene gives the object.
 template <class HandleType>
-Driven move_of(const World& world, HandleType object, const Motion& motion, const SliderEntry& entry,
-               const Place& place) {
+SliderTarget moved(const World& world, HandleType object, const Motion& motion, const Place& place) {
     if (!motion.keys.empty() || !motion.velocity.isZero(0) || !motion.angular_velocity.isZero(0))
         place.refuse("an object with a \"motion\"", "an object that only the slider moves");
     const MotionKey pose = world.pose(object);
-    return {{PoseControl{object}, {pose.position, pose.rotation}}, entry.about ? "rad" : "m"};
+    return {PoseControl{object}, {pose.position, pose.rotation}};
 }
 
 class SliderMaker {
@@ -107,49 +49,52 @@ public:
         : plan_(plan), handles_(handles), world_(world) {}
 
     Slider make(const SliderEntry& entry) {
-        const std::vector<Driven> driven = driven_by(entry);
-        if (driven.empty()) entry.place.refuse("an empty list of objects", "the name of at least one object");
-        Slider slider{.name = entry.name, .unit = driven.front().unit, .low = entry.low, .high = entry.high};
+        Slider slider{.name = entry.name, .unit = {}, .low = entry.low, .high = entry.high};
         slider.fastest = entry.fastest.value_or(entry.high - entry.low);
         if (entry.along) slider.along = entry.along->normalized();
         if (entry.about) slider.about = entry.about->normalized();
-        for (const Driven& object : driven) {
-            if (object.unit != slider.unit)
-                entry.place.refuse("objects whose values have the units " + slider.unit + " and " + object.unit,
+        slider.targets = targets_of(entry);
+        if (slider.targets.empty()) entry.place.refuse("an empty list of objects", "the name of at least one object");
+        for (const SliderTarget& target : slider.targets) {
+            const std::string unit = entry.about ? "rad" : unit_of(world_, target.control);
+            if (slider.unit.empty()) slider.unit = unit;
+            if (unit != slider.unit)
+                entry.place.refuse("objects whose values have the units " + slider.unit + " and " + unit,
                                    "objects that are driven in the same way");
-            slider.targets.push_back(object.target);
         }
-        slider.course = entry.value ? TimeTable(*entry.value) : driven.front().course;
-        for (const TimeKey& key : slider.course.keys)
+        const TimeTable own = called_at(entry.place, [&] { return course_of(world_, slider.targets.front().control); });
+        const TimeTable start = entry.value ? TimeTable(*entry.value) : own;
+        for (const TimeKey& key : start.keys)
             if (!(slider.low <= key.value && key.value <= slider.high))
                 entry.place.key(entry.value ? "value" : "low")
                     .refuse(entry.value ? Json(key.value).dump()
                                         : "bounds without " + Json(key.value).dump() + ", a value that the object has",
                             "a value from \"low\" to \"high\", " + Json(slider.low).dump() + " to " +
                                 Json(slider.high).dump());
-        if (entry.value) called_at(entry.place.key("value"), [&] { start_slider(world_, slider); });
+        if (start != own) called_at(entry.place.key("value"), [&] { start_slider(world_, slider, *entry.value); });
         return slider;
     }
 
 private:
-    std::vector<Driven> driven_by(const SliderEntry& entry) {
-        std::vector<Driven> found;
-        const auto add = [&](const char* key, const OneOrMore<std::string>& names, auto&& drive) {
+    std::vector<SliderTarget> targets_of(const SliderEntry& entry) {
+        std::vector<SliderTarget> found;
+        const auto add = [&](const char* key, const OneOrMore<std::string>& names, auto&& target) {
             for (const std::string& name : names.items) {
                 const Place place = entry.place.key(key);
                 if (!taken_.insert(std::string(key) + " " + name + " " + std::to_string(entry.pin.value_or(0))).second)
                     place.refuse(in_quotes(name) + ", which another slider drives", "one slider for each object");
-                found.push_back(called_at(place, [&] { return drive(name, place); }));
+                found.push_back(called_at(place, [&]() -> SliderTarget { return target(name, place); }));
             }
         };
-        const auto add_named = [&]<class HandleType>(const char* key, const OneOrMore<std::string>& names,
-                                                     const ObjectView<HandleType>& objects) {
-            add(key, names,
-                [&](const std::string& name, const Place&) { return drive_of(world_, objects.find(name)); });
+        const auto add_valued = [&]<class HandleType>(const char* key, const OneOrMore<std::string>& names,
+                                                      const ObjectView<HandleType>& objects) {
+            add(key, names, [&](const std::string& name, const Place&) -> SliderTarget {
+                return {ValueControl{objects.find(name)}};
+            });
         };
         add("collider", entry.collider, [&](const std::string& name, const Place& place) {
             const std::size_t c = find_collider(plan_, name, place);
-            return move_of(world_, handles_.colliders[c], plan_.colliders[c].settings.motion, entry, place);
+            return moved(world_, handles_.colliders[c], plan_.colliders[c].settings.motion, place);
         });
         add("body", entry.body, [&](const std::string& name, const Place& place) {
             const std::size_t b = find_body(plan_, name, place);
@@ -158,15 +103,17 @@ private:
             if (pin >= pins.size())
                 place.refuse(in_quotes(name) + ", a body with " + std::to_string(pins.size()) + " pins",
                              "a body with the pin " + std::to_string(pin));
-            return move_of(world_, handles_.pins[b][pin], pins[pin].motion, entry, place);
+            return moved(world_, handles_.pins[b][pin], pins[pin].motion, place);
         });
-        add_named("joint", entry.joint, ObjectView<JointHandle>(world_));
-        add_named("cable", entry.cable, ObjectView<CableHandle>(world_));
-        add_named("cavity", entry.cavity, ObjectView<CavityHandle>(world_));
-        add_named("pipe", entry.pipe, ObjectView<PipeHandle>(world_));
-        add_named("spring", entry.spring, ObjectView<SpringHandle>(world_));
-        add_named("load", entry.load, ObjectView<LoadHandle>(world_));
-        add_named("fibres", entry.fibres, ObjectView<FibreHandle>(world_));
+        add("joint", entry.joint, [&](const std::string& name, const Place&) -> SliderTarget {
+            return {motor_control(world_, Joints(world_).find(name))};
+        });
+        add_valued("cable", entry.cable, ObjectView<CableHandle>(world_));
+        add_valued("cavity", entry.cavity, ObjectView<CavityHandle>(world_));
+        add_valued("pipe", entry.pipe, ObjectView<PipeHandle>(world_));
+        add_valued("spring", entry.spring, ObjectView<SpringHandle>(world_));
+        add_valued("load", entry.load, ObjectView<LoadHandle>(world_));
+        add_valued("fibres", entry.fibres, ObjectView<FibreHandle>(world_));
         return found;
     }
 

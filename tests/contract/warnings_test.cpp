@@ -26,7 +26,6 @@ const std::vector<Source> sources{{"engine/program/warnings.cpp", ""},
                                   {"engine/program/mesh_text.cpp", "problems_of("},
                                   {"engine/program/inspect.cpp", "Problems problems_of("},
                                   {"engine/program/run.cpp", "bad_boundaries(const"},
-                                  {"engine/program/run.cpp", "separate_parts("},
                                   {"engine/mesh/visual/bind_visual.cpp", "std::string warning_of("},
                                   {"engine/world/world_report.cpp", "WorldReport::distrust("},
                                   {"engine/world/world_report.cpp", "StepReport::message("},
@@ -69,8 +68,7 @@ std::vector<std::string> quoted_in(const ProjectFile& page) {
     for (const std::string& line : page.lines) {
         if (!line.starts_with("- `")) continue;
         const std::string head = line.substr(0, line.find("`: ") + 1);
-        for (std::sregex_iterator at(head.begin(), head.end(), quoted), end; at != end; ++at)
-            texts.push_back((*at)[1]);
+        for (std::sregex_iterator at(head.begin(), head.end(), quoted), end; at != end; ++at) texts.push_back((*at)[1]);
     }
     return texts;
 }

@@ -37,6 +37,28 @@ def test_overrides_replace_values_of_a_scene() -> None:
     assert sk.load_scene(SCENE, overrides={"name": "7"}).name == "7"
 
 
+def test_a_slider_changes_a_value_while_the_scene_runs() -> None:
+    lift = {"name": "lift", "collider": "floor", "along": [0, 0, 2], "low": -0.5, "high": 0.5, "value": -0.25}
+    scene = sk.load_scene(changed(sliders=[lift]))
+    assert list(scene.sliders) == ["lift"]
+    slider = scene.sliders["lift"]
+    assert (slider.name, slider.unit, slider.low, slider.high, slider.fastest) == ("lift", "m", -0.5, 0.5, 1)
+    assert slider.value == -0.25
+    slider.set(-0.21)
+    scene.world.advance(0.02)
+    assert slider.value == pytest.approx(-0.23)
+    scene.world.advance(0.04)
+    assert slider.value == -0.21
+    assert scene.world.colliders["floor"].pose.position == pytest.approx([0, 0, -0.21])
+    with pytest.raises(sk.SceneError, match="slider 'lift': value: found 0.6, expected a value from -0.5 to 0.5 m"):
+        slider.set(0.6)
+    with pytest.raises(TypeError, match="value"):
+        slider.set("high")  # type: ignore[arg-type]
+    scene.world.colliders["floor"].remove()
+    with pytest.raises(sk.SceneError, match="removed"):
+        slider.set(0)
+
+
 def test_a_wrong_scene_is_refused_with_the_place() -> None:
     with pytest.raises(sk.SceneError, match=r"bodies\[0\]") as caught:
         sk.load_scene(SCENE, overrides={"bodies[0].position": [0, 0]})

@@ -106,6 +106,12 @@ film: sk.Film = world.record()
 with recorder, film, world.contact_problems() as steps:
     report: sk.StepReport = world.advance(0.02)
 page: sk.Page = world.show()
+try:
+    with sk.view(world, open=False) as view:
+        opened: sk.View = view
+        opened.sync()
+except sk.SceneError as without_server:
+    assert "live view" in str(without_server)
 color: sk.FilmColor = "speed"
 world.gltf(folder / "end.glb", color=color)
 step: sk.StepProblem = steps[-1]
@@ -137,7 +143,11 @@ block = {"name": "block", "mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]
 described = {"seconds": 0.01, "materials": {"rubber": {}}, "bodies": [block], "settings": {"threads": 1}}
 part = {"lower": [-1, -1, -1], "upper": [1, 1, 0]}
 described["probes"] = [{"name": "low", "quantity": "contacts", "body": "block", "box": part}]
+described["loads"] = [{"name": "wind", "kind": "acceleration", "acceleration": [1, 0, 0]}]
+described["sliders"] = [{"name": "wind", "load": "wind", "low": 0, "high": 2}]
 scene: sk.Scene = sk.load_scene(described)
+wind: sk.Slider = scene.sliders["wind"]
+wind.set(wind.low + wind.fastest * wind.value * 0.1)
 contact_probes: tuple[sk.ContactProbe, ...] = scene.contact_probes
 table = sk.sweep(described, {"materials.rubber.density": [500, 1000]}, jobs=1)
 assert math.isfinite(energy.kinetic) and "properties" in sk.scene_schema() and isinstance(sk.__version__, str)

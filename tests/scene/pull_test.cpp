@@ -20,7 +20,8 @@ struct Cube {
     World world;
     BodyHandle body;
 
-    explicit Cube(BodyDynamics dynamics, const Vec3& velocity = Vec3::Zero(), const Settings& settings = accurate(Vec3::Zero()))
+    explicit Cube(BodyDynamics dynamics, const Vec3& velocity = Vec3::Zero(),
+                  const Settings& settings = accurate(Vec3::Zero()))
         : world(settings) {
         const auto material = world.add_material(lossless({.young_modulus = 1e6, .density = 1000}));
         body = world.add_body(mesh::box({0.02, 0.02, 0.02}, {2, 2, 2}),
@@ -63,7 +64,7 @@ TEST_CASE("a pulled body approaches the target as a critically damped mass, from
     CHECK(cube.world.report().energy_error_share < 0.01);
     CHECK(cube.world.report().momentum_error_share < 1e-9);
 }
- 
+
 TEST_CASE("the force of a pull is at most 50 weights, and ends exactly when the pull ends", "[scene]") {
     Cube cube(BodyDynamics::rigid);
     const std::uint64_t before = cube.world.state_hash();
@@ -144,7 +145,7 @@ TEST_CASE("a pull wakes a sleeping body, lifts it, and does not pull it through 
 
 TEST_CASE("a pull at a body that an attachment holds is stable and gives the body back", "[scene]") {
     World world(accurate(Vec3::Zero()));
-    const auto material = world.add_material({.young_modulus = 1e5, .density = 1000, .damping = 20});
+    const auto material = world.add_material({.young_modulus = 1e5, .density = 1000, .damping = 10});
     const BodyHandle bar = world.add_body(mesh::box({0.3, 0.05, 0.05}, {6, 1, 1}), {.material = material});
     std::vector<Index> end;
     for (std::size_t n = 0; n < world.positions(bar).size(); ++n)
@@ -159,7 +160,7 @@ TEST_CASE("a pull at a body that an attachment holds is stable and gives the bod
     REQUIRE(world.advance(0.5).ok());
     CHECK(pull.state(world)->force == Approx(50 * 9.81 * world.mass(bar)));
     pull.end(world);
-    REQUIRE(world.advance(1).ok());
+    REQUIRE(world.advance(2).ok());  // the first mode is damped nearly critically
     CHECK((world.center_of_mass(bar) - before).norm() < 1e-3);
 }
 

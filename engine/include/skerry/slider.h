@@ -6,14 +6,15 @@
 #include <vector>
 
 #include "skerry/rollout.h"
-#include "skerry/time_table.h"
 
 #pragma GCC visibility push(default)
 namespace skerry {
 
+using SliderControl = std::variant<PoseControl, MotorSpeedControl, MotorPositionControl, ValueControl>;
+
 /// An object that a slider moves or drives.
 struct SliderTarget {
-    std::variant<PoseControl, MotorSpeedControl, MotorPositionControl, ValueControl> what;
+    SliderControl control;
     Pose start{};  // for a PoseControl: pose of the object at the value 0
 };
 
@@ -28,14 +29,13 @@ struct Slider {
     Vec3 along = Vec3::Zero();  // unit vector in the world, or zero
     Vec3 about = Vec3::Zero();  // unit vector in the world, or zero
     std::vector<SliderTarget> targets{};
-    TimeTable course{};  // value over time; its last key is the value that was set last
 };
 
-/// Present value of a slider. For a moved object it is measured from the present pose.
+/// Present value of a slider, by the first of its objects. Throws SceneError if this object was removed.
 Real slider_value(const World& world, const Slider& slider);
 /// Lets the value change to `value` steadily, at the rate `fastest`, during the next calls of advance. Throws
 /// SceneError if the value is out of bounds or an object was removed.
-void set_slider(World& world, Slider& slider, Real value);
+void set_slider(World& world, const Slider& slider, Real value);
 
 }  // namespace skerry
 #pragma GCC visibility pop

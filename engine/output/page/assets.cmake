@@ -29,6 +29,7 @@ set(page_scripts
     panel/page_legend.js
     panel/page_tip.js
     panel/page_picture.js
+    panel/page_video.js
     panel/page_keys.js
     live/page_link.js
     live/page_sliders.js

@@ -2,6 +2,7 @@
 
 from ._core import version as __version__
 from ._errors import BusyError, Doubt, SceneError, StepError
+from ._live import View, view
 from ._materials import KnownFriction, NamedMaterials, materials, mooney_rivlin, ogden, orthotropic
 from ._mesh import Mesh, read_surface
 from ._mesh_report import MeshReport
@@ -20,7 +21,7 @@ from ._results import (
 )
 from ._robot import PlacedRobot, Robot, RobotJoint, RobotLink, load_robot
 from ._rollout import RolloutResult, rollout
-from ._scene import ContactProbe, Scene, load_scene, scene_schema
+from ._scene import ContactProbe, Scene, Slider, load_scene, scene_schema
 from ._sets import MeshSet
 from ._settings import (
     Backend,
@@ -211,6 +212,7 @@ __all__ = [
     "SelfCrossing",
     "Settings",
     "Shape",
+    "Slider",
     "Solution",
     "SolverMethod",
     "Sphere",
@@ -241,6 +243,7 @@ __all__ = [
     "TieState",
     "VelocityProbe",
     "VisualMaterial",
+    "View",
     "VisualSurface",
     "VolumeProbe",
     "World",
@@ -261,4 +264,5 @@ __all__ = [
     "scene_schema",
     "solve",
     "sweep",
+    "view",
 ]

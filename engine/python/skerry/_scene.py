@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._arrays import counted, path_text, seconds
+from ._arrays import counted, path_text, real, seconds
 from ._errors import Doubt, scene_error
 from ._recorder import Recorder
 from ._world import Body, World
@@ -44,10 +44,45 @@ class ContactProbe:
     nodes: NDArray[np.int32]
 
 
+class Slider:
+    """A value of a scene that can be changed while the scene runs, as the scene key "sliders" describes it.
+    Scene.sliders has them by name."""
+
+    __slots__ = ("_core", "_world", "fastest", "high", "low", "name", "unit")
+
+    def __init__(self, world: World, core: Any) -> None:
+        self._world = world
+        self._core = core
+        self.name: str = core.name
+        """Name."""
+        self.unit: str = core.unit
+        """SI unit of the value; 1 for factors."""
+        self.low: float = core.low
+        """Least value."""
+        self.high: float = core.high
+        """Greatest value."""
+        self.fastest: float = core.fastest
+        """Greatest change of the value in a second."""
+
+    @property
+    def value(self) -> float:
+        """Present value."""
+        value: float = _core.slider_value(self._world._core, self._core)
+        return value
+
+    def set(self, value: float) -> None:
+        """Lets the value change to `value` steadily, at the rate `fastest`, during the next steps.
+
+        value: from `low` to `high`.
+        """
+        _core.set_slider(self._world._core, self._core, real(value, "value"))
+
+
 class Scene:
     """The content of a scene, with its world. load_scene() makes it."""
 
     __slots__ = (
+        "_sliders",
         "contact_probes",
         "description",
         "frame_step",
@@ -56,6 +91,7 @@ class Scene:
         "probe_step",
         "probes",
         "seconds",
+        "sliders",
         "world",
     )
 
@@ -81,6 +117,9 @@ class Scene:
             for name, body, nodes in values["contact_probes"]
         )
         """Nodes whose contacts `skerry run` reports."""
+        self._sliders: list[Any] = values["sliders"]
+        self.sliders: dict[str, Slider] = {slider.name: Slider(self.world, slider) for slider in self._sliders}
+        """Values that can be changed while the scene runs, by name."""
 
     def run(
         self,

@@ -57,8 +57,7 @@ function make_controls(page, player) {
   function save_picture() {
     if (!page.scene) return;
     player.show();
-    page.scene.view.render();
-    page.scene.picture.compose();
+    page.scene.compose();
     page.scene.picture.canvas.toBlob((blob) => {
       save(blob, file_name(run) + "_" + state.time.toFixed(3) + "s.png");
       root.dataset.picture = blob.size;

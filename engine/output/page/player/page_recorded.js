@@ -63,9 +63,9 @@ function make_recorded(page, frames) {
       return;
     }
     if (!page.scene || last < 1) return;
-    if (!video_type()) {
-      page.notice("This browser cannot record videos: it lacks MediaRecorder or a supported video format. "
-        + "Use another browser.");
+    if (!can_record()) {
+      page.notice("This browser cannot record videos, because it lacks VideoEncoder. Use Chrome or Edge 94, "
+        + "Firefox 130, Safari 16.4, or a later version.");
       return;
     }
     const button = find("record"), label = button.textContent, place = state.frame, pictures_a_second = 30;
@@ -76,14 +76,13 @@ function make_recorded(page, frames) {
       const count = Math.round((times[last] - times[0]) / state.rate * pictures_a_second) + 1;
       const blob = await record(page.scene.picture.canvas, count, pictures_a_second, (i) => {
         go_to_time(times[0] + i * state.rate / pictures_a_second);
-        page.scene.view.render();
-        page.scene.picture.compose();
+        page.scene.compose();
       }, (share) => {
         button.textContent = Math.floor(100 * share) + "\u202f% \u2013 stop";
         return state.recording;
       });
       if (blob) {
-        save(blob, file_name(run) + (blob.type.endsWith("mp4") ? ".mp4" : ".webm"));
+        save(blob, file_name(run) + ".webm");
         root.dataset.video = blob.size;
         root.dataset.pictures = count;
       }
@@ -121,7 +120,7 @@ function make_recorded(page, frames) {
         show();
       }
     }
-    if (page.scene) {
+    if (page.scene && !state.recording) {
       page.scene.render();
       if (!root.dataset.ready) {
         root.dataset.frames = frames.length;
@@ -145,7 +144,7 @@ function make_recorded(page, frames) {
     [["ArrowRight"], "one frame forward; with Shift: ten frames", frame_by(1)],
     [["Home"], "to the start", () => go_to(0)],
     [["End"], "to the end", () => go_to(last)],
-    [["r"], "record the run as a video at this playback speed (keep the page visible); again: stop", record_run],
+    [["r"], "record the run as a video at this playback speed; again: stop", record_run],
   ];
   return { show, toggle, keys, read, start, colored: () => {}, set_rate: (rate) => { state.rate = rate; } };
 }

@@ -117,6 +117,11 @@ function make_scene({ find, run, state, scales }, box, changed, pull) {
       show_overlay();
       point_again();
     },
+    // Composes the picture with all pixels and shadows.
+    compose: () => {
+      view.render_fine();
+      picture.compose();
+    },
     render: () => {
       view.render();
       if (!pointed) point();

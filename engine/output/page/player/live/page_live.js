@@ -176,10 +176,10 @@ function make_live(page, has_view) {
   function draw_new() {
     is_new = false;
     state.time = row.time;
+    pull.measured(row.pull);
     if (page.scene && state.follow) page.scene.view.aim(aim(frame));
     show();
     if (page.scene) page.scene.render();
-    pull.update(row.pull);
     link.send({ do: "seen", number: row.number });
     root.dataset.drawn = ++drawn;
     Object.assign(root.dataset, { frame: row.number, number: row.number, time: row.time });
@@ -196,6 +196,7 @@ function make_live(page, has_view) {
   function tick(now) {
     requestAnimationFrame(tick);
     const is_due = is_new;
+    pull.tick();
     if (is_new) draw_new();
     else if (page.scene) page.scene.render();
     stale = stale || is_due;

@@ -27,13 +27,16 @@ function make_pull(page, link) {
     if (held) link.send({ do: "release" });
     forget();
   }
-  // Sends the last movement, once a picture. pull: that of the row, or null.
-  function update(pull) {
+  // pull: that of a new row, or null.
+  const measured = (pull) => { if (held) held.force = pull ? pull.force : 0; };
+  // Called at each turn of the loop: sends the last movement.
+  function tick() {
     if (!held) return;
     if (!page.scene.bodies.list[held.body]) return drop();
-    held.force = pull ? pull.force : 0;
-    if (held.moved) link.send({ do: "move", to: held.to.toArray() });
+    if (!held.moved) return;
     held.moved = false;
+    link.send({ do: "move", to: held.to.toArray() });
+    page.scene.set_over(draw);
   }
 
   // A line from the point of the body to the pointer, with the force.
@@ -65,5 +68,5 @@ function make_pull(page, link) {
     }
     pen.restore();
   }
-  return { grab, drag, drop, forget, update };
+  return { grab, drag, drop, forget, measured, tick };
 }

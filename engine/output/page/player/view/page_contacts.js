@@ -5,7 +5,7 @@
 // A force of scales.force.top gets an arrow about as long as half a body is thick; dots leave room between vertices.
 function make_contacts(scene, { size, spacing }, scales) {
   const dot_radius = 0.2 * spacing, arrow_length = 0.75 * size, arrow_width = Math.min(1.1 * spacing, 0.2 * size);
-  const copies = make_instances(scene, [new THREE.IcosahedronBufferGeometry(1, 1), arrow_geometry()]);
+  const copies = make_instances(scene, new THREE.IcosahedronBufferGeometry(1, 1), arrow_geometry());
   const fixed = { open: 0, stick: 1, slide: 2 };
   const motion_colors = [], region_colors = [];
   for (const name in fixed) motion_colors[fixed[name]] = colors.linear(colors.parse(colors.motion[name]));

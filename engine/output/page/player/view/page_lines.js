@@ -7,7 +7,7 @@ function make_lines(scene, run, { size, spacing }, scales) {
   const full_radius = Math.min(0.14 * spacing, 0.06 * size);
   const tube = new THREE.CylinderBufferGeometry(1, 1, 1, 10, 1, true);
   tube.translate(0, 0.5, 0);
-  const copies = make_instances(scene, [new THREE.IcosahedronBufferGeometry(1, 1), tube]);
+  const copies = make_instances(scene, new THREE.IcosahedronBufferGeometry(1, 1), tube);
   const kind_colors = Object.fromEntries(Object.entries(colors.line).map(([kind, hex]) =>
     [kind, colors.linear(colors.parse(hex))]));
 

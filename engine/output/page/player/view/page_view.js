@@ -140,8 +140,9 @@ function make_view(host, up, box) {
     moved();
   }
 
-  function render() {
-    const level = pace.next(dirty);
+  const render = () => draw_at(pace.next(dirty));
+  const render_fine = () => draw_at(pace_levels[0]);
+  function draw_at(level) {
     key.castShadow = level.shadows;
     if (level.share !== share) {
       share = level.share;
@@ -172,7 +173,7 @@ function make_view(host, up, box) {
   resize();
 
   return {
-    scene, camera, canvas: renderer.domElement, ray, turn, zoom, reset, render,
+    scene, camera, canvas: renderer.domElement, ray, turn, zoom, reset, render, render_fine,
     // What turns and zooms with pointers asks: pick(origin, direction) gives {distance} or null.
     attach: (picker, hover, leave, pull) => {
       pick = picker;
