@@ -4,7 +4,7 @@
 packages_for() {
     local wanted=" $1 " package use reason
     case $1 in
-        test | wheel | profiling | fuzz) wanted=" demo $1 " ;;
+        test | wheel | profiling | fuzz | site) wanted=" demo $1 " ;;
         ci) wanted=" demo test ci " ;;
     esac
     while read -r package use reason; do

@@ -1,4 +1,4 @@
-// A live view: a page in the browser that shows a world while it is simulated, and that controls it (docs/control.md).
+// A live view: a page in the browser that shows a world while it is simulated, and that controls it (docs/view.md).
 #pragma once
 
 #include <cstdint>

@@ -162,7 +162,9 @@ function make_live(page, has_view) {
     link.send({ do: "fields", names });
   }
   function colored(color) {
-    state.fields = [...new Set(["speed", ...(fields[color] ? [color] : [])])];
+    const wanted = [...new Set(["speed", ...(fields[color] ? [color] : [])])];
+    if (wanted.join() === state.fields.join()) return;
+    state.fields = wanted;
     ask_for_fields();
   }
 

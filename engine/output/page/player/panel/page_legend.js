@@ -23,14 +23,16 @@ function legend_line(content, swatch) {
 
 // bodies: {name} by number.
 function show_color_legend(card, color, bodies, scales) {
-  const [name, bar, ticks, list] = card.children, by_value = color !== "body";
+  const [name, bar, ticks, list] = card.children, by_value = color !== "body", names = [];
+  if (!by_value) bodies.forEach((body, i) => names.push([i, body.name || "body " + i]));
+  const content = JSON.stringify(by_value ? [color, legend_ticks(color, scales)] : names);
+  if (card.dataset.content === content) return;  // it is called often, and the list of bodies may be scrolled
+  card.dataset.content = content;
   bar.hidden = ticks.hidden = !by_value;
   list.hidden = by_value;
   if (!by_value) {
-    const lines = [];
-    bodies.forEach((body, i) => lines.push(legend_line(body.name || "body " + i, colors.css(colors.of_body(i)))));
-    name.textContent = count_of(lines.length, "body", "bodies");
-    list.replaceChildren(...lines);
+    name.textContent = count_of(names.length, "body", "bodies");
+    list.replaceChildren(...names.map(([i, shown]) => legend_line(shown, colors.css(colors.of_body(i)))));
     return;
   }
   name.textContent = fields[color].name;
