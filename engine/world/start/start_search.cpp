@@ -93,9 +93,12 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
 
 std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
     const std::optional<Overlap> overlap = pair.is_analytic ? overlap_with_collider(pair) : overlap_of_bodies(pair);
-    // An overlap this small counts as touching, as it does in a step.
-    if (overlap && overlap->depth <= touching_fraction * margin(pair)) return std::nullopt;
-    return overlap;
+    // A smaller overlap counts as touching, as it does in a step.
+    if (overlap && overlap->depth > touching_fraction * margin(pair)) return overlap;
+    if (pair.is_analytic || model_.bodies.kind[pair.second] != BodyKind::kinematic || has_inside(pair.second))
+        return std::nullopt;
+    return find_touch_of_back({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
+                              rounding(pair));
 }
 
 std::optional<RoundSolid> StartSearch::round(Index body) const {
