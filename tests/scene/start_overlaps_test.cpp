@@ -305,7 +305,7 @@ TEST_CASE("a body that touches the back of an open surface is lifted off it and 
                            {.material = world.add_material({}), .position = {0.1, 0.05, 0.1}, .dynamics = dynamics});
         REQUIRE(world.advance(0.2).ok());
         REQUIRE(world.report().start_moves.size() == 1);
-        CHECK(world.report().start_moves[0].shift.z() > 0);
+        CHECK(world.report().start_moves[0].translation.z() > 0);
         CHECK(std::abs(world.center_of_mass(body).z() - 0.1) < 0.005);
     }
 }
