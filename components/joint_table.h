@@ -166,11 +166,12 @@ struct JointBlock {
     bool turning;                   // true: the equations constrain angular velocities
     Index first, second;            // rows of RigidBodyTable; no_index for the world
     Index first_node, second_node;  // first node of each body; no_index if impulses cannot move the body
-    Vec3 point;                     // joint point in the world frame [m]
+    Vec3 point;                     // point of the equations in the world frame [m]
     Mat3 frame;                     // columns: directions of the three equations
     Vec3 error;                     // position error of the joint along the locked directions [m or rad]
     AxisLaw axis;
     MimicShare mimic{};
+    Vec3 shift = Vec3::Zero();  // vector from the joint point to `point`, along the columns of `frame` [m]
 
     /// A node of a body of the block that impulses can move; no_index if there is none.
     Index own_node() const { return first_node == no_index ? second_node : first_node; }

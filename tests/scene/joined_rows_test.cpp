@@ -4,6 +4,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -75,6 +76,26 @@ TEST_CASE("a joint holds a body within the contact distance of a wall", "[scene]
             for (const Contact& contact : world.contacts()) CHECK(contact.impulse.norm() < 1e-12);
             CHECK(std::abs(world.center_of_mass(block).x()) < 1e-12);
         }
+}
+
+TEST_CASE("a joint whose point is far from a small body holds it", "[scene]") {
+    constexpr Real radius = 0.02, density = 1000, distance = 1;  // [m], [kg/m^3]
+    for (const JointKind kind : {JointKind::slider, JointKind::fixed, JointKind::hinge}) {
+        CAPTURE(static_cast<int>(kind));
+        World world({.gravity = {0, 0, -standard_gravity}, .tolerance = 1e-9, .sleep = false});
+        const MaterialHandle of = world.add_material({.density = density});
+        const BodyHandle ball = world.add_body(
+            Sphere{radius}, {.material = of, .position = {distance, 0, 0}, .dynamics = BodyDynamics::rigid});
+        Joints joints(world);
+        const JointHandle joint = joints.add({.kind = kind, .first = ball, .axis = {1, 0, 0}});
+        REQUIRE(world.advance(0.3).ok());
+        CHECK(world.report().unconverged == 0);
+        CHECK((world.center_of_mass(ball) - Vec3(distance, 0, 0)).norm() < 1e-8);
+        const JointState state = joints.state(joint);
+        const Real weight = 4 * std::numbers::pi / 3 * radius * radius * radius * density * standard_gravity;  // [N]
+        CHECK((state.force - Vec3(0, 0, weight)).norm() < 1e-6 * weight);
+        CHECK((state.moment - Vec3(0, -weight * distance, 0)).norm() < 1e-6 * weight * distance);
+    }
 }
 
 TEST_CASE("ties hold bodies whose edges touch", "[scene][ties]") {

@@ -1,4 +1,5 @@
 // Loads and force fields in whole steps, against closed forms (docs/methods/loads.md).
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -143,7 +144,7 @@ TEST_CASE("a stiff drag that is added in flight never speeds a body up", "[scene
         for (int k = 0; k < 10; ++k) {
             REQUIRE(flight.world.advance(1 / rate).ok());
             const Real speed = flight.velocity().norm();
-            CHECK(speed <= 0.6 * last);
+            CHECK(speed <= std::max(0.6 * last, 1e-9));  // below 1e-9 m/s rounding errors remain
             last = speed;
         }
     }

@@ -2,6 +2,7 @@
 // settings.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "systems/geometry/rotation.h"
 #include "tests/support/random.h"
@@ -291,6 +292,21 @@ TEST_CASE("bodies that touch, or are within the contact distance, do not overlap
         s.world.add_collider(Plane{});
         CHECK(s.world.advance(1e-4).ok());
         CHECK(s.world.report().start_overlaps.empty());
+    }
+}
+
+TEST_CASE("a body that touches the back of an open surface is lifted off it and stays there", "[scene]") {
+    const SurfaceMesh sheet{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 2, 1}, {0, 3, 2}}};
+    for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::rigid}) {
+        World world;
+        world.add_collider(sheet, {.name = "sheet"});
+        const BodyHandle body =
+            world.add_body(mesh::box({0.2, 0.2, 0.2}, {2, 2, 2}),
+                           {.material = world.add_material({}), .position = {0.1, 0.05, 0.1}, .dynamics = dynamics});
+        REQUIRE(world.advance(0.2).ok());
+        REQUIRE(world.report().start_moves.size() == 1);
+        CHECK(world.report().start_moves[0].translation.z() > 0);
+        CHECK(std::abs(world.center_of_mass(body).z() - 0.1) < 0.005);
     }
 }
 

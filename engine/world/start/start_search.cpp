@@ -18,6 +18,9 @@ namespace {
 // user has set a very large contact distance.
 constexpr Real largest_margin = 0.02;
 
+// Rounding errors of positions, as a fraction of the mean edge length.
+constexpr Real rounding_of_edges = 1e-9;
+
 /// True if a part of the box lies on the inner side of the plane.
 bool reaches_behind(const Aabb& box, const RigidMotion& plane) {
     const Vec3 normal = plane.rotation.col(2);
@@ -53,7 +56,11 @@ std::vector<PairOverlap> StartSearch::find_all() {
 
 std::vector<StartPair> StartSearch::close_pairs(const std::vector<char>& marked) const {
     std::vector<Aabb> boxes;
-    for (std::size_t b = 0; b < box_.size(); ++b) boxes.push_back(box(static_cast<Index>(b)));
+    for (std::size_t b = 0; b < box_.size(); ++b) {
+        const Aabb own = box(static_cast<Index>(b));
+        const Real wider = rounding_of_edges * model_.bodies.mean_edge[b];  // includes boxes that only touch
+        boxes.push_back({own.lower.array() - wider, own.upper.array() + wider});
+    }
     const BoxTree tree(boxes);
     std::vector<StartPair> pairs;
     const auto deforms = [&](Index b) { return model_.bodies.kind[b] == BodyKind::deformable; };
@@ -93,9 +100,12 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
 
 std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
     const std::optional<Overlap> overlap = pair.is_analytic ? overlap_with_collider(pair) : overlap_of_bodies(pair);
-    // An overlap this small counts as touching, as it does in a step.
-    if (overlap && overlap->depth <= touching_fraction * margin(pair)) return std::nullopt;
-    return overlap;
+    // A smaller overlap counts as touching, as it does in a step.
+    if (overlap && overlap->depth > touching_fraction * margin(pair)) return overlap;
+    if (pair.is_analytic || model_.bodies.kind[pair.second] != BodyKind::kinematic || has_inside(pair.second))
+        return std::nullopt;
+    return find_touch_of_back({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
+                              rounding(pair));
 }
 
 std::optional<RoundSolid> StartSearch::round(Index body) const {
@@ -189,10 +199,10 @@ Real StartSearch::mean_edge(const StartPair& pair) const {
 }
 
 Real StartSearch::rounding(const StartPair& pair) const {
-    constexpr Real of_positions = 16 * std::numeric_limits<Real>::epsilon(), of_edges = 1e-9;
+    constexpr Real of_positions = 16 * std::numeric_limits<Real>::epsilon();
     const Aabb own = box(pair.first);
     const Real furthest = own.lower.cwiseAbs().cwiseMax(own.upper.cwiseAbs()).maxCoeff();
-    return of_edges * mean_edge(pair) + of_positions * furthest;
+    return rounding_of_edges * mean_edge(pair) + of_positions * furthest;
 }
 
 }  // namespace skerry

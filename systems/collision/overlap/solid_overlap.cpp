@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "systems/collision/tree/box.h"
+#include "systems/geometry/closest_points.h"
 
 namespace skerry {
 
@@ -238,6 +239,29 @@ std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid&
     overlap.direction = best_direction(first, second, tolerance, meetings);
     overlap.depth = way_out_along(first, second, tolerance, overlap.direction);
     return overlap;
+}
+
+std::optional<Overlap> find_touch_of_back(const PlacedSolid& solid, const PlacedSolid& surface, Real tolerance) {
+    std::vector<Vec3> outward(solid.solid.point.size(), Vec3::Zero());  // by point: sum of twice the area vectors [m^2]
+    for (const SolidTriangle& triangle : solid.solid.surface) {
+        const auto at = [&](std::size_t k) { return solid.solid.point[static_cast<std::size_t>(triangle.node[k])]; };
+        const Vec3 area = (at(1) - at(0)).cross(at(2) - at(0));
+        for (const Index node : triangle.node) outward[static_cast<std::size_t>(node)] += area;
+    }
+    std::optional<Overlap> found;
+    for (const Index p : solid.solid.surface_point) {
+        const auto row = static_cast<std::size_t>(p);
+        const Vec3 point = solid.solid.point[row] + solid.shift - surface.shift;
+        surface.solid.tree.for_each_overlap({point.array() - tolerance, point.array() + tolerance}, [&](Index s) {
+            const auto& [a, b, c, none] = surface.solid.at(s).point;
+            const Vec3 normal = (b - a).cross(c - a).normalized();
+            const Real distance_squared = closest_point_on_triangle(point, a, b, c).distance_squared;
+            if (distance_squared <= tolerance * tolerance && outward[row].dot(normal) > 0)
+                found = Overlap{OverlapKind::crossing, 2 * tolerance, -normal, point + surface.shift};
+        });
+        if (found) return found;
+    }
+    return found;
 }
 
 }  // namespace skerry

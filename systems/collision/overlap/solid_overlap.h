@@ -30,4 +30,8 @@ struct PlacedSolid {
 /// best of a few directions, and a motion by `depth` takes the first solid past the end of the second.
 std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance);
 
+/// Finds a point of a solid that touches the back of an open surface: its distance is at most `tolerance` [m]. At such
+/// a distance contacts cannot tell on which side of the surface the solid is.
+std::optional<Overlap> find_touch_of_back(const PlacedSolid& solid, const PlacedSolid& surface, Real tolerance);
+
 }  // namespace skerry

@@ -47,6 +47,25 @@ AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, const
     return axis;
 }
 
+/// Vector from the point of joint `j` to the point of its equations, along the axes of the second frame [m]. Bodies
+/// that cannot rotate relative to each other have the same relative velocity everywhere, those of a hinge along its
+/// axis, so the equations may use any of these points. They use the one next to the centre of mass, which couples the
+/// equations of velocity and spin least. The centres of two moving bodies are weighted by their inverse inertia.
+Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPlace& first, const JointPlace& second) {
+    if (joints.kind[j] == JointKind::ball) return Vec3::Zero();
+    Vec3 sum = Vec3::Zero();
+    Real weights = 0;
+    for (const Index body : {joints.first[j], joints.second[j]}) {
+        if (joints.moving_node(body) == no_index) continue;
+        const auto r = static_cast<std::size_t>(joints.rigid(body));
+        const Real weight = joints.moments[r].cwiseInverse().sum();
+        sum += weight * joints.center[r];
+        weights += weight;
+    }
+    const Vec3 shift = second.axes.transpose() * (sum / weights - first.point);
+    return joints.kind[j] == JointKind::hinge ? Vec3(0, 0, shift.z()) : shift;
+}
+
 /// Block for the axis of joint `j` in a mimic row, and the coordinate of the joint.
 struct MimicAxis {
     JointBlock block;
@@ -139,6 +158,9 @@ bool prepare_joints(const JointInputs& joints, Real t, Real h, Real kick, JointB
                          .error = second.axes.transpose() * (first.point - second.point),
                          .axis = {}};
         if (block.first_node == no_index && block.second_node == no_index) continue;
+        block.shift = shift_of(joints, j, first, second);
+        block.point += first.axes * block.shift;
+        block.error += second.axes.transpose() * first.axes * block.shift - block.shift;
         const Real scale = joints.step[j] > 0 ? kick / joints.step[j] : 0;
         if (kind == JointKind::slider) block.axis = axis_of(joints, j, blocks.coordinate[j], step);
         blocks.block.push_back(block);
@@ -148,7 +170,7 @@ bool prepare_joints(const JointInputs& joints, Real t, Real h, Real kick, JointB
         block.error = turning_error(kind, first.axes, second.axes);
         block.axis = kind == JointKind::hinge ? axis_of(joints, j, blocks.coordinate[j], step) : AxisLaw{};
         blocks.block.push_back(block);
-        blocks.impulse.push_back(scale * joints.moment[j]);
+        blocks.impulse.push_back(scale * (joints.moment[j] - block.shift.cross(joints.impulse[j])));
     }
     for (std::size_t j = 0; j < joints.size(); ++j)
         if (joints.leader[j] != no_index && blocks.resting[j] == 0) add_mimic(joints, j, kick, blocks);
@@ -183,7 +205,10 @@ bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& o
             if (!mimic.leads) out.mimic_impulse[j] = blocks.impulse[i].z();
             continue;
         }
-        (blocks.block[i].turning ? out.moment : out.impulse)[j] = blocks.impulse[i];
+        if (blocks.block[i].turning)
+            out.moment[j] = blocks.impulse[i] + blocks.block[i].shift.cross(out.impulse[j]);
+        else
+            out.impulse[j] = blocks.impulse[i];
         out.impulse_axes[j] = blocks.block[i].frame;
         if (!blocks.block[i].axis.locked) out.axis_impulse[j] = blocks.axis_impulse[i];
     }

@@ -36,7 +36,7 @@ struct JointInputs {
     std::span<const std::uint8_t> body_asleep;      // column of BodyTable; empty if no body is asleep
     // RigidBodyTable
     std::span<const Index> holder;
-    std::span<const Vec3> center, rest_center;
+    std::span<const Vec3> center, rest_center, moments;
     std::span<const Mat3> axes, rotation;
 
     static JointInputs bind(const Binder& binder, const JointTable& joint, const BodyTable& body,
@@ -66,6 +66,7 @@ struct JointInputs {
                 .holder = binder.read(rigid.holder),
                 .center = binder.read(rigid.center),
                 .rest_center = binder.read(rigid.rest_center),
+                .moments = binder.read(rigid.moments),
                 .axes = binder.read(rigid.axes),
                 .rotation = binder.read(rigid.rotation)};
     }
