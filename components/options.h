@@ -32,7 +32,7 @@ enum class StartOverlaps { resolve, refuse, ignore };
 /// Kind of overlap of two objects. crossing: their surfaces intersect. inside: the first object is inside the second.
 /// around: the second object is inside the first. coincident: each object is inside the other.
 enum class OverlapKind { crossing, inside, around, coincident };
-/// Time integrators (docs/integration.md). Both integrators alternate a kick, in which forces change velocities, and a
+/// Time integrators (docs/step_length.md). Both integrators alternate a kick, in which forces change velocities, and a
 /// drift, in which velocities change positions. symplectic_euler: first order in the step length when started from
 /// given velocities, with bounded energy. leapfrog: the positions also drift forward by half a step before the first
 /// step of a call, and back by half a step after the last step of the call. This makes the method second order in

@@ -1,5 +1,5 @@
 // profile_first_scene: the first scene of a newcomer, an explicit body on a slope. Does it hold below the
-// critical angle, and slide above it by Coulomb's law? Prints the tables of docs/first_scene.md and more.
+// critical angle, and slide above it by Coulomb's law? Prints the tables of docs/slope.md and more.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>

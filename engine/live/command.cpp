@@ -109,7 +109,8 @@ std::vector<CommandMember> members_of(LiveAction action) {
 LiveCommand read_command(std::string_view text) {
     const CommandJson json = CommandJson::parse(text, nullptr, false);
     if (!json.is_object())
-        refuse_command("", std::string(text.substr(0, 60)), "a JSON object such as {\"do\":\"play\"}");
+        refuse_command("", text.empty() ? "nothing" : std::string(text.substr(0, 60)),
+                       "a JSON object such as {\"do\":\"play\"}");
     const CommandJson& name = json.contains("do") ? json["do"] : CommandJson();
     const auto action = name.is_string() ? from_name<LiveAction>(name.get<std::string>()) : std::nullopt;
     if (!action) {

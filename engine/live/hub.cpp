@@ -183,6 +183,11 @@ void LiveHub::close() {
     changed_.notify_all();
 }
 
+LiveState LiveHub::state() const {
+    const std::lock_guard lock(mutex_);
+    return state_;
+}
+
 int LiveHub::clients() const {
     const std::lock_guard lock(mutex_);
     return static_cast<int>(clients_.size());

@@ -82,6 +82,9 @@ public:
     /// Ends all connections. Later ones are refused.
     void close();
 
+    // For any thread.
+
+    LiveState state() const;
     int clients() const;
     std::uint64_t frames_sent() const { return sent_.load(std::memory_order_relaxed); }
     std::uint64_t frames_dropped() const { return dropped_.load(std::memory_order_relaxed); }

@@ -13,6 +13,7 @@ namespace {
 
 constexpr Real frame_step = 1.0 / 60;   // longest call of advance, as the frames of a scene [s]
 constexpr Real frames_per_second = 30;  // most snapshots per wall time [1/s]
+constexpr int pause = 4;                // least time between two snapshots, in durations of a snapshot
 constexpr Real longest_wait = 0.02;     // of due() [s]
 constexpr Real longest_lag = 0.1;       // lag behind the wall clock that the simulation makes up for [s]
 constexpr Real fastest_rate = 1000;     // largest simulated time per wall time
@@ -36,6 +37,15 @@ void require_rate(Real rate) {
               .expected = "a number from 0 to " + short_text(fastest_rate),
               .hint = "0: as fast as possible"}
         .raise();
+}
+
+/// Value of a slider; NaN if its object was removed.
+Real value_of(const World& world, const Slider& slider) {
+    try {
+        return slider_value(world, slider);
+    } catch (const SceneError&) {
+        return not_a_number;
+    }
 }
 
 std::vector<LivePlot> plots_of(const World& world, const std::vector<RecordedProbe>& probes) {
@@ -201,7 +211,7 @@ void LiveRun::begin_run(const World& world) {
                      .sliders = settings_.sliders,
                      .slider_values = {},
                      .plots = plots_};
-    for (const Slider& slider : settings_.sliders) info.slider_values.push_back(slider_value(world, slider));
+    for (const Slider& slider : settings_.sliders) info.slider_values.push_back(value_of(world, slider));
     hub_.begin_run(info, state_);
     pace_from_now(world);
     speed_wall_ = pace_wall_;
@@ -211,12 +221,13 @@ void LiveRun::begin_run(const World& world) {
 }
 
 /// Takes a snapshot if one is due and a browser waits for one. `between_calls`: the world is between two calls of
-/// advance, so that probes and pulls can be read.
+/// advance, so that probes can be read. Within a call the snapshot is taken later, so that only long calls need it.
 void LiveRun::show(const World& world, bool between_calls) {
     if (!hub_.is_busy()) return;
     const Clock::time_point now = Clock::now();
-    if (now < next_show_) return;
-    next_show_ = now + seconds_of(1 / frames_per_second);
+    const Clock::duration interval = seconds_of(1 / frames_per_second);
+    if (now < (between_calls ? next_show_ : next_show_ + interval)) return;
+    next_show_ = now + interval;
     if (std::exchange(changed_, false) || world.time() != shown_time_) hub_.mark_changed();
     shown_time_ = world.time();
     if (between_calls && taker_.is_other_run(world)) begin_run(world);
@@ -241,11 +252,12 @@ void LiveRun::show(const World& world, bool between_calls) {
         snapshot->probes[p] = probe.values;
     }
     snapshot->sliders.clear();
-    for (const Slider& slider : settings_.sliders) snapshot->sliders.push_back(slider_value(world, slider));
+    for (const Slider& slider : settings_.sliders) snapshot->sliders.push_back(value_of(world, slider));
     snapshot->pulls.clear();
     for (const auto& [client, pull] : pulls_)
         if (const auto state = pull.state(world)) snapshot->pulls.emplace_back(client, *state);
     hub_.publish(snapshot);
+    next_show_ = std::max(next_show_, now + pause * (Clock::now() - now));
 }
 
 std::vector<LiveRun::PlottedProbe> LiveRun::tracked_probes(World& world) const {

@@ -1,6 +1,7 @@
 // The simulation's side of a live view: commands, snapshots, and the pace of the simulation.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <map>
@@ -14,13 +15,12 @@
 
 namespace skerry {
 
-/// Functions with the names of those of LiveView do what skerry/live.h says.
+/// The public functions are those of LiveView with the same names (skerry/live.h).
 class LiveRun {
 public:
     LiveRun(World& world, const LiveSettings& settings);
 
     LiveHub& hub() { return hub_; }
-    bool playing() const { return state_.playing; }
     std::uint64_t resets() const { return resets_; }
 
     void sync(World& world);
@@ -59,7 +59,7 @@ private:
     std::map<std::uint64_t, Pull> pulls_;  // by number of the browser
     bool step_asked_ = false;
     bool failed_ = false;  // paused by fail()
-    std::uint64_t resets_ = 0;
+    std::atomic<std::uint64_t> resets_ = 0;
 
     SnapshotTaker taker_;
     bool changed_ = false;            // the world may differ from the last snapshot although the time is the same

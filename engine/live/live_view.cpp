@@ -1,3 +1,7 @@
+#include <atomic>
+#include <memory>
+#include <mutex>
+
 #include "engine/live/live_run.h"
 #include "engine/live/server/live_server.h"
 #include "skerry/error.h"
@@ -7,8 +11,10 @@ namespace skerry {
 
 struct LiveView::Impl {
     LiveRun run;
+    std::mutex closing;
     std::unique_ptr<LiveServer> server;  // none after close()
     std::string address;
+    std::atomic<bool> open = true;
 
     Impl(World& world, const LiveSettings& settings)
         : run(world, settings),
@@ -73,15 +79,17 @@ void LiveView::run(World& world, const std::function<bool()>& go_on,
 }
 
 void LiveView::close() {
+    impl_->open = false;
+    const std::lock_guard lock(impl_->closing);
     impl_->server = nullptr;
 }
 
 bool LiveView::is_open() const {
-    return impl_->server != nullptr;
+    return impl_->open;
 }
 
 bool LiveView::playing() const {
-    return impl_->run.playing();
+    return impl_->run.hub().state().playing;
 }
 
 int LiveView::clients() const {

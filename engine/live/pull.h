@@ -1,4 +1,4 @@
-// A spring with which a user drags a body (docs/control.md).
+// A spring with which a user drags a body (docs/view.md).
 #pragma once
 
 #include <optional>

@@ -11,6 +11,15 @@ void SnapshotTaker::take(const World& world, bool stresses, Snapshot& snapshot) 
     const Model& model = WorldAccess::state_of(world).model;
     snapshot.frame = collect_frame(world, stresses ? FrameContent::node_values : FrameContent::motion);
     Frame& frame = snapshot.frame;
+    const auto now = std::chrono::steady_clock::now();
+    if (stresses) {
+        energy_ = frame.energy;
+    } else if (now >= next_energy_) {
+        constexpr int pause = 100;  // in durations of the calculation
+        energy_ = world.energy();
+        next_energy_ = now + pause * (std::chrono::steady_clock::now() - now);
+    }
+    frame.energy = energy_;
     snapshot.bodies.resize(frame.bodies.size());
     for (std::size_t b = 0; b < frame.bodies.size(); ++b) {
         BodyFrame& body = frame.bodies[b];

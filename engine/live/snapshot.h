@@ -1,6 +1,7 @@
 // State of a world in one frame of a live view, as data of its own.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -38,7 +39,9 @@ struct Snapshot {
 /// Takes snapshots of a world. Surfaces and shapes, which do not change, are copied once and shared by all snapshots.
 class SnapshotTaker {
 public:
-    /// Replaces the frame of `snapshot`, whose memory is used again. `stresses`: also stress and strain by node.
+    /// Replaces the frame of `snapshot`, whose memory is used again. `stresses`: also stress and strain by node. The
+    /// energy takes a pass over all elements. Its calculation may take 1 % of the wall time; otherwise the frame gets
+    /// the last energy.
     void take(const World& world, bool stresses, Snapshot& snapshot);
     /// Returns true if time went back, or if a body has another number of nodes or triangles than in an earlier
     /// snapshot. The world was then reset or replaced by its owner, and a stream cannot continue.
@@ -53,7 +56,9 @@ private:
     };
     std::map<BodyHandle, KnownBody> bodies_;
     std::map<ColliderHandle, std::shared_ptr<const Shape>> shapes_;
-    Real time_ = -infinity;  // simulated time of the last snapshot [s]
+    Energy energy_{};
+    std::chrono::steady_clock::time_point next_energy_{};  // wall time of the next calculation of the energy
+    Real time_ = -infinity;                                // simulated time of the last snapshot [s]
 };
 
 }  // namespace skerry

@@ -40,7 +40,7 @@ std::vector<T> values_of_cells(std::vector<T> of_tetrahedra, const BodyFrame& bo
 Frame collect_frame(const World& world, FrameContent content) {
     Frame frame{.time = world.time(),
                 .gravity = world.settings().gravity,
-                .energy = world.energy(),
+                .energy = content >= FrameContent::node_values ? world.energy() : Energy{},
                 .bodies = {},
                 .colliders = {},
                 .contacts = world.contacts(),

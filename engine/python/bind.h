@@ -25,6 +25,7 @@ namespace nb = nanobind;
 // Each function adds one part to the module.
 void bind_errors(nb::module_& module);
 void bind_settings(nb::module_& module);
+void bind_live(nb::module_& module);
 void bind_materials(nb::module_& module);
 void bind_mesh(nb::module_& module);
 void bind_problem(nb::module_& module);

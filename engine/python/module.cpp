@@ -60,4 +60,5 @@ NB_MODULE(_core, module) {
     bind_recorder(module);
     bind_rollout(module);
     bind_scene(module);
+    bind_live(module);
 }

@@ -135,7 +135,7 @@ const Rule<SliderEntry>& rule_of<SliderEntry>() {
     static const auto rule =
         Rule<Entry>("slider",
                     "A value that a user changes while the scene runs. It drives one object, or several objects in the "
-                    "same way, given by their names (docs/control.md).")
+                    "same way, given by their names (docs/view.md).")
             .key("name", &Entry::name, {.meaning = "name; no two sliders have the same", .required = true})
             .key("collider", &Entry::collider, {.meaning = "colliders to displace or to turn"})
             .key("body", &Entry::body, {.meaning = "bodies whose pins are displaced or turned"})

@@ -157,6 +157,26 @@ def write_tetgen(mesh, name):
     (FOLDER / f"{name}.ele").write_text("\n".join([f"{len(mesh.tetrahedra)} 4 0", *elements, ""]))
 
 
+def write_pebble(name, half_axes, rings, around):
+    """A closed surface for examples: an ellipsoid that is flatter below."""
+    def point(ring, k):
+        polar, angle = math.pi * ring / rings, 2 * math.pi * k / around
+        unit = (math.sin(polar) * math.cos(angle), math.sin(polar) * math.sin(angle), math.cos(polar))
+        return unit[0] * half_axes[0], unit[1] * half_axes[1], unit[2] * half_axes[2] * (1 if unit[2] > 0 else 0.5)
+
+    points = [point(0, 0), *(point(ring, k) for ring in range(1, rings) for k in range(around)), point(rings, 0)]
+    first = [1 + ring * around for ring in range(rings - 1)]  # first node of each ring
+    faces = []
+    for k in range(around):
+        l = (k + 1) % around
+        faces += [(0, first[0] + k, first[0] + l), (len(points) - 1, first[-1] + l, first[-1] + k)]
+        for a, b in zip(first, first[1:]):
+            faces += [(a + k, b + k, b + l), (a + k, b + l, a + l)]
+    lines = [f"v {x:.5g} {y:.5g} {z:.5g}" for x, y, z in points]
+    (FOLDER / name).write_text("\n".join([*lines, *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces), ""]))
+
+
+write_pebble("pebble.obj", (0.05, 0.035, 0.025), 8, 16)
 write_gmsh(torus(0.06, 0.028, 3, 18), "torus.msh")
 write_vtk(voxels([".x.", "xxx", ".x."], 0.04, 2), "cross.vtk")
 write_tetgen(voxels(["xxx", "x..", "xxx", "..x", "xxx"], 0.028, 2), "letter_s")

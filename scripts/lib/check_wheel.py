@@ -8,8 +8,9 @@ import sys
 import zipfile
 
 WHEEL = pathlib.Path(sys.argv[1])
-# Libraries that each system with glibc has. The policies of manylinux count zlib among them.
-SYSTEM = re.compile(r"(linux-vdso|libc|libm|libpthread|libstdc\+\+|libgcc_s|libz|.*/ld-linux-x86-64)\.so\.\d+")
+# CivetWeb, which the wheel contains, and libraries of every system with glibc. The policies of manylinux include zlib.
+EXPECTED = re.compile(r"libcivetweb-[0-9a-f]+\.so\.[0-9.]+|"
+                      r"(linux-vdso|libc|libm|libpthread|libstdc\+\+|libgcc_s|libz|.*/ld-linux-x86-64)\.so\.\d+")
 
 
 def needed(library):
@@ -35,9 +36,9 @@ def main():
         sys.exit(f"skerry: found {folder}, expected the installed wheel")
     libraries = [path for folder in folder.parent.glob("skerry*") for path in folder.rglob("*.so*")]
     foreign = [f"{path.name}: found {name}" for path in libraries for name in needed(path)
-               if not SYSTEM.fullmatch(name)]
+               if not EXPECTED.fullmatch(name)]
     if foreign or not libraries:
-        sys.exit("\n".join(foreign) + "\nexpected libraries of the system only")
+        sys.exit("\n".join(foreign) + "\nexpected libraries of the system, and CivetWeb")
     with zipfile.ZipFile(WHEEL) as archive:
         unpacked = sum(entry.file_size for entry in archive.infolist())
     total, numpy = import_times()

@@ -8,7 +8,7 @@ from records import rows_of, write_csv
 
 HEADER = """# Stress
 
-This page lists extreme inputs that the engine withstands. `scripts/stress` runs the tests tagged `[stress]`, writes
+The engine withstands these inputs. `scripts/stress` runs the tests tagged `[stress]`, writes
 this page, and lists all {checks} checks in `build/stress/stress.csv`. {failed} of the checks failed.
 
 In all tests the engine takes each step or refuses it with a message, the state stays finite, no scene gains more than
@@ -56,15 +56,11 @@ a hundredth of an edge length.
 
 ## Notes
 
-- **2**: All explicit bodies take time steps of the same length, which the stiffest of them limits. To avoid short
-  steps, make stiff bodies [implicit](methods/implicit_bodies.md).
-- **6**: If all nodes of a body lie exactly on a line, all elastic forces point along the line, so the nodes stay
-  on the line until a disturbance.
-- **9**: The push-out moves overlapping nodes apart at up to 0.5 m/s. The rest of the body follows like a mass on a
-  spring whose end moves at this speed. The elastic rebound lets the body leave at up to twice this speed.
-- **20**: By default the relative error of contact impulses is at most 1e-3. So in each step a heap can creep by 1e-3
-  of the distance that it would fall without contacts. To keep a heap still for an hour, leave the setting `sleep` on,
-  or set `tolerance` to 1e-8.
+- **6**: Nodes that lie exactly on a line stay on it until a disturbance.
+- **9**: The push-out moves overlapping nodes apart at up to 0.5 m/s. By elastic rebound the body leaves at up to twice
+  this speed.
+- **20**: With the default tolerance of 1e-3, a heap can creep in each step by 1e-3 of the distance that it would fall
+  without contacts. To keep it still for an hour, leave `sleep` on, or set `tolerance` to 1e-8.
 """
 
 

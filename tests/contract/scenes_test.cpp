@@ -12,7 +12,8 @@ namespace {
 std::vector<std::filesystem::path> scene_files() {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(SKERRY_SOURCE_DIR "/scenes"))
-        if (entry.path().extension() == ".json" && entry.path().string().find("schema") == std::string::npos)
+        // The test program_fill runs filled.json, because it needs an optional mesher.
+        if (entry.path().extension() == ".json" && entry.path().filename() != "filled.json")
             files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     return files;
@@ -22,7 +23,7 @@ std::vector<std::filesystem::path> scene_files() {
 
 TEST_CASE("every scene that is shipped runs", "[contract][scene]") {
     const std::vector<std::filesystem::path> files = scene_files();
-    CHECK(files.size() >= 9);
+    CHECK(files.size() >= 26);
     for (const std::filesystem::path& file : files) {
         INFO(file);
         skerry::Scene scene = skerry::load_scene(file);

@@ -7,6 +7,8 @@ import re
 import shutil
 import subprocess
 import tempfile
+import urllib.parse
+import webbrowser
 from pathlib import Path
 
 import pytest
@@ -120,3 +122,18 @@ def test_a_film_records_only_in_its_block() -> None:
     assert len(film) > 1
     with pytest.raises(RuntimeError, match="film: found a film that was already recorded"), film:
         pass
+
+
+def test_a_program_opens_a_page_in_the_browser(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(webbrowser, "open", lambda address: not opened.append(address))
+    page = ball_world()[0].show(title="a ball")
+    page.open()
+    page.open(tmp_path / "a page.html")
+    files = [Path(urllib.parse.unquote(urllib.parse.urlparse(address).path)) for address in opened]
+    assert files[0].parent == tmp_path and files[1] == tmp_path / "a page.html"
+    assert [file.read_text(encoding="utf-8") for file in files] == [page.html] * 2
+    monkeypatch.setattr(webbrowser, "open", lambda address: False)
+    with pytest.raises(RuntimeError, match=r"found no browser to open it, expected one; the page is in .*b\.html"):
+        page.open(tmp_path / "b.html")

@@ -106,6 +106,12 @@ film: sk.Film = world.record()
 with recorder, film, world.contact_problems() as steps:
     report: sk.StepReport = world.advance(0.02)
 page: sk.Page = world.show()
+try:
+    with sk.view(world, open=False) as view:
+        opened: sk.View = view
+        opened.sync()
+except sk.SceneError as without_server:
+    assert "live view" in str(without_server)
 color: sk.FilmColor = "speed"
 world.gltf(folder / "end.glb", color=color)
 step: sk.StepProblem = steps[-1]

@@ -1,4 +1,4 @@
-// A live view: a page in the browser that shows a world while it is simulated, and that controls it (docs/control.md).
+// A live view: a page in the browser that shows a world while it is simulated, and that controls it (docs/view.md).
 #pragma once
 
 #include <cstdint>
@@ -39,8 +39,18 @@ public:
     LiveView(LiveView&&) noexcept;
     LiveView& operator=(LiveView&&) noexcept;
 
+    // The following functions may be called by any thread.
+
     /// Address of the page, for example http://127.0.0.1:40123/#token=...
     std::string address() const;
+    /// Ends all connections and stops the server. After it sync(), fail() and run() do nothing, and due() returns 0.
+    void close();
+    bool is_open() const;
+    bool playing() const;  // false if the view is paused
+    int clients() const;   // number of connected browsers
+    std::uint64_t frames_sent() const;
+    std::uint64_t frames_dropped() const;  // frames that a browser missed because it was still busy with earlier ones
+    std::uint64_t resets() const;          // number of resets of the world
 
     // The following functions must be called between two calls of advance of the world of the constructor, which may
     // have been moved to another variable meanwhile.
@@ -62,15 +72,6 @@ public:
     /// before each step. A step that cannot be committed pauses the view; `failed` then gets its message.
     void run(World& world, const std::function<bool()>& go_on,
              const std::function<void(const std::string&)>& failed = {});
-
-    /// Ends all connections and stops the server. The functions above then do nothing, and due() returns 0.
-    void close();
-    bool is_open() const;
-    bool playing() const;  // false if the view is paused
-    int clients() const;   // number of connected browsers
-    std::uint64_t frames_sent() const;
-    std::uint64_t frames_dropped() const;  // frames that a browser missed because it was still busy with earlier ones
-    std::uint64_t resets() const;          // number of resets of the world
 
 private:
     struct Impl;

@@ -208,7 +208,7 @@ struct Settings {
     // others take several (docs/methods/implicit_bodies.md 9). Values above 0 require symplectic_euler. Change it when
     // implicit bodies take most of the computing time beside explicit ones.
     Real implicit_step = 0;
-    // Time integrator (docs/integration.md). Change it to leapfrog when smooth motion must be exact to second order.
+    // Time integrator (docs/step_length.md). Change it to leapfrog when smooth motion must be exact to second order.
     Integrator integrator = Integrator::symplectic_euler;
     // If true, the few elements that would make all steps several times shorter are integrated implicitly, in clusters
     // of the nodes around them (docs/methods/clusters.md). Change it when all elements of explicit bodies must be

@@ -1,4 +1,4 @@
-// Sliders: values of a scene that a user changes while the scene runs (docs/control.md).
+// Sliders: values of a scene that a user changes while the scene runs (docs/view.md).
 #pragma once
 
 #include <string>

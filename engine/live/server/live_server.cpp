@@ -1,14 +1,20 @@
 #include "engine/live/server/live_server.h"
 
+#include <arpa/inet.h>
 #include <civetweb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
+#include <cstdint>
 #include <exception>
 #include <memory>
 #include <string_view>
-#include <vector>
+#include <thread>
 
 #include "engine/live/server/admission.h"
 #include "engine/output/page/page_document.h"
@@ -69,6 +75,18 @@ LiveRequest request_of(const mg_request_info& info) {
         request.upgrade |= is_named(header.name, "upgrade");
     }
     return request;
+}
+
+/// Connects to a port of this machine, and closes the connection.
+void connect_once(int port) {
+    const int own = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (own < 0) return;
+    sockaddr_in place{};
+    place.sin_family = AF_INET;
+    place.sin_port = htons(static_cast<std::uint16_t>(port));
+    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    static_cast<void>(connect(own, reinterpret_cast<const sockaddr*>(&place), sizeof place));
+    ::close(own);
 }
 
 }  // namespace
@@ -197,7 +215,18 @@ LiveServer::LiveServer(int port, LiveHub& hub)
 
 LiveServer::~LiveServer() {
     impl_->hub.close();
-    mg_stop(impl_->context);
+    // The thread of the library that accepts connections looks every 2 s whether it has to stop, and at each
+    // connection.
+    std::atomic<bool> stopped = false;
+    std::thread stopping([&] {
+        mg_stop(impl_->context);
+        stopped = true;
+    });
+    while (!stopped) {
+        connect_once(impl_->port);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    stopping.join();
 }
 
 std::string LiveServer::address() const {

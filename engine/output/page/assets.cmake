@@ -11,11 +11,14 @@ set(page_scripts
     data/page_decode.js
     data/page_colors.js
     data/page_fields.js
+    data/page_scales.js
     data/page_measure.js
+    view/page_pace.js
     view/page_view.js
     view/page_pointers.js
     view/page_drawing.js
     view/page_bodies.js
+    view/page_instances.js
     view/page_contacts.js
     view/page_lines.js
     view/page_colliders.js
@@ -26,8 +29,15 @@ set(page_scripts
     panel/page_legend.js
     panel/page_tip.js
     panel/page_picture.js
+    panel/page_video.js
     panel/page_keys.js
+    live/page_link.js
+    live/page_sliders.js
+    live/page_pull.js
+    live/page_live.js
     page_scene.js
+    page_controls.js
+    page_recorded.js
     page_main.js
 )
 set(page_assets ${CMAKE_CURRENT_BINARY_DIR}/page_assets.cpp)

@@ -2,6 +2,7 @@
 
 from ._core import version as __version__
 from ._errors import BusyError, Doubt, SceneError, StepError
+from ._live import View, view
 from ._materials import KnownFriction, NamedMaterials, materials, mooney_rivlin, ogden, orthotropic
 from ._mesh import Mesh, read_surface
 from ._mesh_report import MeshReport
@@ -242,6 +243,7 @@ __all__ = [
     "TieState",
     "VelocityProbe",
     "VisualMaterial",
+    "View",
     "VisualSurface",
     "VolumeProbe",
     "World",
@@ -262,4 +264,5 @@ __all__ = [
     "scene_schema",
     "solve",
     "sweep",
+    "view",
 ]

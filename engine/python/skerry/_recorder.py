@@ -5,9 +5,11 @@ from __future__ import annotations
 import html
 import math
 import os
+import pathlib
 import shutil
 import tempfile
 import weakref
+import webbrowser
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
@@ -196,7 +198,8 @@ class _Frames:
 
 
 class Page:
-    """A page that plays a run in a browser, without a network. Notebooks show it."""
+    """A page that plays a run in a browser, without a network. Notebooks show it as the last line of a cell; a program
+    calls open()."""
 
     __slots__ = ("_height", "_html")
 
@@ -214,6 +217,16 @@ class Page:
         with open(path, "w", encoding="utf-8") as file:
             file.write(self._html)
 
+    def open(self, path: Path | None = None) -> None:
+        """Writes the page to a file and opens it in the default browser. path: default: a new file in the folder for
+        temporary files, which stays there. RuntimeError: the system has no browser."""
+        if path is None:
+            number, path = tempfile.mkstemp(prefix="skerry", suffix=".html")
+            os.close(number)
+        self.save(path)
+        if not webbrowser.open(pathlib.Path(path).absolute().as_uri()):
+            raise RuntimeError(f"page: found no browser to open it, expected one; the page is in {os.fspath(path)}")
+
     def _repr_html_(self) -> str:
         return (
             f'<iframe srcdoc="{html.escape(self._html)}" width="100%" height="{self._height}" '
@@ -221,7 +234,7 @@ class Page:
         )
 
     def __repr__(self) -> str:
-        return f"<skerry.Page, {len(self._html) / 1e6:.1f} MB; save(path) writes it, and notebooks show it>"
+        return f"<skerry.Page, {len(self._html) / 1e6:.1f} MB; open() shows it, save(path) writes it>"
 
 
 class Film:
@@ -286,7 +299,7 @@ class Film:
             self._writer = None
 
     def show(self, *, height: int = 560) -> Page:
-        """The page, for notebooks; `height` in pixels. Ends the film."""
+        """The page, which a notebook shows and Page.open() opens. height: in a notebook [pixels]. Ends the film."""
         self.close()
         return Page(self._page or "", height)
 
@@ -332,7 +345,8 @@ class WorldOutput:
         return Film(self, title, every)  # type: ignore[arg-type]
 
     def show(self, *, title: str = "skerry", height: int = 560) -> Page:
-        """The present state as a page, for notebooks; `height` in pixels."""
+        """The present state as a page: a notebook shows it, and `world.show().open()` opens it in a browser. See view()
+        for a page that follows the world. title: heading. height: in a notebook [pixels]."""
         with self.record(title=title) as film:
             pass
         return film.show(height=height)

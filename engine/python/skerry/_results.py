@@ -233,9 +233,9 @@ class WorldResults:
     def contact_problems(self, *, every: int = 1) -> AbstractContextManager[list[StepProblem]]:
         """Collects the contact problems of steps whose number is a multiple of `every`:
 
-        with world.contact_problems() as problems:
-            world.advance(0.1)
-        solution = skerry.solve(problems[0].problem)
+            with world.contact_problems() as problems:
+                world.advance(0.1)
+            solution = skerry.solve(problems[0].problem)
 
         Only one such block may be active at a time."""
         return contact_problems(self, whole(every, "every"))

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/mesh/visual/bound_visual.h"
+#include "engine/output/page/stream/pack.h"
 #include "engine/output/vtk/vtk_series.h"
 #include "output_sample.h"
 
@@ -129,4 +130,32 @@ int main(int argc, char** argv) {
     }
     write_page(folder / "visual.html", with_visual, drawn.summary());
     write_page(folder / "empty.html", PageData{}, {.title = "Nothing", .report = {}, .state_hash = 0});
+
+    // A live page, and by frame the new objects and the bytes that a server sends to it. Expected values: position of
+    // node 1 of the first body, sums of the points and forces of all contacts.
+    std::ofstream(folder / "live.html") << live_page();
+    OutputSample live(3, 2, 60);
+    PageStream stream;
+    PageCounts known;
+    Json sent = Json::array();
+    for (int i = 0; i < live.frame_count(); ++i) {
+        const Frame& frame = live.frame(i);
+        const std::string bytes(stream.pack(frame));
+        Vec3 points = Vec3::Zero(), forces = Vec3::Zero();
+        for (const Contact& contact : frame.contacts) {
+            points += contact.point;
+            forces += contact.force();
+        }
+        Json objects = Json::parse(text_of(json_of_objects(stream, known)));
+        sent.push_back({{"objects", std::move(objects)},
+                        {"bytes", base64(bytes)},
+                        {"node", json_of(frame.bodies.front().position[1])},
+                        {"points", json_of(points)},
+                        {"forces", json_of(forces)}});
+        known = {.bodies = stream.body_names().size(),
+                 .visuals = stream.visuals().materials().size(),
+                 .colliders = stream.colliders().size(),
+                 .lines = stream.lines().size()};
+    }
+    std::ofstream(folder / "live.json") << sent;
 }

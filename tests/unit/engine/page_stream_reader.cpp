@@ -315,7 +315,10 @@ std::string inflate_all(const std::string& packed) {
 }
 
 ReadRun read_run(const std::string& packed) {
-    const std::string bytes = inflate_all(packed);
+    return read_frames(inflate_all(packed));
+}
+
+ReadRun read_frames(const std::string& bytes) {
     Bytes in(bytes);
     ReadRun run;
     std::vector<Track> tracks;

@@ -79,5 +79,7 @@ std::vector<ReadVisual> read_visuals(const std::string& packed);
 
 /// All frames of packed_frames(). Throws std::runtime_error if bytes are missing.
 ReadRun read_run(const std::string& packed);
+/// All frames of uncompressed bytes. Throws std::runtime_error if bytes are missing.
+ReadRun read_frames(const std::string& bytes);
 
 }  // namespace skerry

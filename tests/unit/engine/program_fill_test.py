@@ -2,10 +2,11 @@
 import json
 import os
 import pathlib
+import shutil
 import sys
 import unittest
 
-from program_case import PROGRAM, SCENE, ProgramCase
+from program_case import PROGRAM, ROOT, SCENE, ProgramCase
 
 CUBE = """v 0 0 0
 v 1 0 0
@@ -58,6 +59,13 @@ class FillTest(ProgramCase):
         said = self.skerry("fill", self.cube, out).stdout
         for part in ("Netgen", "volume", "the surface is unchanged", "quality", "stable with", "written"):
             self.assertIn(part, said)
+
+    def test_the_example_of_a_filled_surface_runs(self):
+        self.need_netgen()
+        for name in ("keys/filled.json", "meshes/pebble.obj"):
+            (self.folder / name).parent.mkdir()
+            shutil.copy(ROOT / "scenes" / name, self.folder / name)
+        self.skerry("run", self.folder / "keys/filled.json", "--seconds", 0.05)
 
     def test_a_surface_that_cannot_be_filled_leaves_no_file(self):
         surface, out = self.write("open.obj", OPEN_CUBE), self.folder / "out.msh"

@@ -219,6 +219,20 @@ class ProgramTest(ProgramCase):
         self.assertIn("stopped by a signal", stderr)
         self.assertIn("stopped by a signal", json.loads(stats.read_text())["status"])
 
+    def test_a_live_view_ends_by_its_time_or_an_interrupt_and_refuses_a_port_in_use(self):
+        done = self.skerry("view", self.scene, "--no-open", "--rate", 0, "--seconds", 0.05)
+        self.assertRegex(done.stdout, r"drop: open http://127\.0\.0\.1:\d+/#token=[0-9a-f]{32} in a browser")
+        self.assertRegex(done.stdout, r"simulated in .* times real time; frames: 0 sent, 0 dropped")
+        view = subprocess.Popen([PROGRAM, "view", self.scene, "--no-open", "--paused"], stdout=subprocess.PIPE,
+                                text=True)
+        with view:
+            port = re.search(r":(\d+)/", view.stdout.readline())[1]
+            self.assert_refused("view", self.scene, "--no-open", "--port", port,
+                                said=[f"live view: port: found {port}, which cannot be opened", "expected a free port"])
+            view.send_signal(signal.SIGINT)
+            self.assertIn("drop: 0 s simulated", view.stdout.read())
+        self.assertEqual(view.returncode, 0)
+
     def test_materials_are_listed_with_their_sources(self):
         found = json.loads(self.skerry("materials", "--json").stdout)
         text = self.skerry("materials").stdout

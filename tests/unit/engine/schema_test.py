@@ -1,5 +1,5 @@
-"""Every scene that ships is valid by the published schema, and the schema refuses what the reader refuses. Skipped
-without python3-jsonschema."""
+"""Every scene that ships is valid by the published schema, which refuses what the reader refuses, and every key has an
+example in a scene. Skipped without python3-jsonschema."""
 import copy
 import json
 import pathlib
@@ -12,6 +12,9 @@ except ImportError:
     sys.exit(77)
 
 ROOT = pathlib.Path(sys.argv[1])
+sys.path.insert(0, str(ROOT / "scripts/lib"))
+import scene_keys  # noqa: E402
+
 schema = json.loads((ROOT / "docs/scene.schema.json").read_text())
 jsonschema.Draft202012Validator.check_schema(schema)
 validator = jsonschema.Draft202012Validator(schema)
@@ -50,4 +53,6 @@ for name, change in MISTAKES.items():
     assert not validator.is_valid(spoiled(change)), name + " passed the schema"
 assert validator.is_valid(spoiled(lambda s: set_in(s["bodies"][1], "rotation", {"axis": [0, 0, 1], "degrees": 5})))
 assert validator.is_valid(spoiled(lambda s: set_in(s["bodies"][1], "rotation", [[1, 0, 0], [0, 1, 0], [0, 0, 1]])))
+without_example = [f"{of}.{key}" for of, key in set(scene_keys.keys_of(schema)) - set(scene_keys.examples_of(schema))]
+assert not without_example, f"add an example to a scene in scenes/keys: {sorted(without_example)}"
 print(f"{len(scenes)} scenes are valid, {len(MISTAKES)} mistakes are not")

@@ -1,19 +1,16 @@
 // The scene with what lies over it: names, the values under the pointer, and pictures of both.
 "use strict";
 
-// `state` is that of the page, read at each call. changed(follow): somebody moved the camera. Throws without WebGL.
-function make_scene(find, run, { bodies: shapes, visuals, frames }, state, legend_top, changed) {
+// box: measure_scene. changed(follow): somebody moved the camera. pull: see page_pointers.js. Throws without WebGL.
+function make_scene({ find, run, state, scales }, box, changed, pull) {
   const root = document.documentElement;
   const gravity = new THREE.Vector3(...run.gravity);
   const up = gravity.length() > 0 ? gravity.clone().negate().normalize() : new THREE.Vector3(0, 0, 1);
-  const box = measure_scene(run, shapes, frames);
   const view = make_view(find("view"), up, box);
-  const largest = Object.fromEntries(field_names.map((field) => [field, run[field].max]));
-  const bodies = make_bodies(view.scene, shapes, run.visual_of_body.map((row) => visuals[row]), frames, legend_top,
-    largest, view.touch);
-  const contacts = make_contacts(view.scene, Math.max(0, ...run.rows.contacts), box, run.force.usual || 1);
-  const lines = make_lines(view.scene, run.lines, frames, box, run.line_force.usual || 1);
-  const colliders = make_colliders(view.scene, run.colliders, box);
+  const bodies = make_bodies(view.scene, scales, view.touch);
+  const contacts = make_contacts(view.scene, box, scales);
+  const lines = make_lines(view.scene, run, box, scales);
+  const colliders = make_colliders(view.scene, state, box);
 
   const ink = () => {
     const style = getComputedStyle(root);
@@ -25,27 +22,39 @@ function make_scene(find, run, { bodies: shapes, visuals, frames }, state, legen
     draw_caption(pen, width, height, ratio, {
       title: run.title || "Run", clock: state.time.toFixed(3) + " s", color: state.color, style: ink(),
       name: by_value ? fields[state.color].name : "",
-      ticks: by_value ? legend_ticks(state.color, run, legend_top) : null,
+      ticks: by_value ? legend_ticks(state.color, scales) : null,
     });
   });
 
-  // Names are on a canvas of their own.
+  // Names are on a canvas of their own, as is what `draw_over` draws.
   const overlay = find("overlay"), overlay_pen = overlay.getContext("2d");
-  function draw_names(pen, width, height, ratio) {
-    const named = bodies.list.filter((body) => body.group.visible)
-      .map((body) => ({ name: body.name, box: box_of_body(body) }));
+  let draw_over = null;
+  function draw_names(pen, width, height, ratio, covered = []) {
+    const named = [];
+    bodies.list.forEach((body) => {
+      if (body.group.visible) named.push({ name: body.name, box: box_of_body(body) });
+    });
     colliders.list.forEach((object, number) => {
       const { name, kind } = run.colliders[number];
       if (object.visible && name && kind !== "plane") named.push({ name, box: new THREE.Box3().setFromObject(object) });
     });
-    return draw_labels(pen, named, view.camera, { width: width / ratio, height: height / ratio }, ratio, ink());
+    const size = { width: width / ratio, height: height / ratio, covered };
+    return draw_labels(pen, named, view.camera, size, ratio, ink());
   }
-  function show_names() {
-    overlay.hidden = !state.labels;
-    if (!state.labels) return;
-    const ratio = view.canvas.width / view.canvas.clientWidth;
-    Object.assign(overlay, { width: view.canvas.width, height: view.canvas.height });
-    root.dataset.labels = draw_names(overlay_pen, overlay.width, overlay.height, ratio);
+  function cards() {
+    const frame = view.canvas.getBoundingClientRect();
+    return [...find("view").querySelectorAll("header, .choice, #legends > .card")].map((card) => {
+      const { left, right, top, bottom } = card.getBoundingClientRect();
+      return { left: left - frame.left, right: right - frame.left, top: top - frame.top, bottom: bottom - frame.top };
+    }).filter(({ left, right }) => right > left);
+  }
+  function show_overlay() {
+    overlay.hidden = !state.labels && !draw_over;
+    if (overlay.hidden) return;
+    const ratio = window.devicePixelRatio || 1, { clientWidth: width, clientHeight: height } = view.canvas;
+    Object.assign(overlay, { width: Math.round(ratio * width), height: Math.round(ratio * height) });
+    if (state.labels) root.dataset.labels = draw_names(overlay_pen, overlay.width, overlay.height, ratio, cards());
+    if (draw_over) draw_over(overlay_pen, ratio, ink());
   }
 
   // What is under the pointer; looked up again when the picture has changed.
@@ -63,7 +72,8 @@ function make_scene(find, run, { bodies: shapes, visuals, frames }, state, legen
     const row = pick_contact(contacts.shown, view.camera, size, pointer, 8);
     const row_of_line = pick_line(lines.shown, view.camera, size, pointer, 8);
     show_tip(find("tip"), find("view"), pointer, {
-      hit, values: hit && bodies.values_at(hit), body: hit && bodies.list[hit.body], color: state.color,
+      hit, fields: state.fields, values: hit && bodies.values_at(hit), body: hit && bodies.list[hit.body],
+      color: state.color,
       contact: row < 0 ? null : contacts.at(row), joining: row_of_line < 0 ? null : lines.at(row_of_line),
       name_of: {
         body: (number) => bodies.list[number].name,
@@ -76,27 +86,41 @@ function make_scene(find, run, { bodies: shapes, visuals, frames }, state, legen
     point();
   };
   view.attach((origin, direction) => pick_body(bodies.list, origin, direction), (x, y) => set_pointer({ x, y }),
-    () => set_pointer(null));
+    () => set_pointer(null), pull);
   view.watch((follow) => {
     changed(follow);
-    show_names();
+    show_overlay();
     point_again();
   });
 
+  function clear() {
+    bodies.list.forEach((body, number) => bodies.remove(number));
+    colliders.clear();
+  }
+
   return {
-    view, picture, set_light: colliders.set_light,
-    // What is `blend` of the way from frame `number` to the next.
-    show: (number, blend) => {
-      const frame = frames[number], then = frames[Math.min(number + 1, frames.length - 1)];
+    view, picture, bodies, colliders, clear,
+    // draw(pen, ratio, ink) draws over the picture from now on; null: nothing.
+    set_over: (draw) => {
+      draw_over = draw;
+      show_overlay();
+    },
+    // What is `blend` of the way from a frame to `then`, the next. place: of the view, in frames.
+    show: (frame, then, blend, place) => {
       root.dataset.bodies = bodies.show(frame, then, blend, state.color, state.visual);
       contacts.show(frame.contacts, then.contacts, blend, state.contacts);
       root.dataset.lines = lines.show(frame.lines, then.lines, blend, state.lines);
       colliders.show(frame, then, blend, state.colliders);
       bodies.style(state);
-      view.go_to(number + blend);
+      view.go_to(place);
       view.touch();
-      show_names();
+      show_overlay();
       point_again();
+    },
+    // Composes the picture with all pixels and shadows.
+    compose: () => {
+      view.render_fine();
+      picture.compose();
     },
     render: () => {
       view.render();

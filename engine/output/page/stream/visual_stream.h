@@ -14,7 +14,8 @@ class VisualStream {
 public:
     /// Returns the number of a surface, which is appended if no earlier surface equals it.
     Index number_of(const BoundVisual& visual);
-    /// The surfaces from number `first` on, compressed. Counts and changes are encoded as in pack.h. A surface consists of
+    /// The surfaces from number `first` on, compressed. Counts and changes are encoded as in pack.h. A surface consists
+    /// of
     ///   numbers of nodes, triangles, texture points and materials, as counts; f64 step of the offsets [m]
     ///   nodes of the body that each node follows: four times all nodes, each as change from the previous one
     ///   weights of the first three of these nodes in units of 2^-16, in the same way

@@ -342,10 +342,14 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
         for follower in self._followers:
             follower.require_no_jump()
         self._core.reset_to(saved._core)
-        self._mesh_arrays.clear()
-        self._materials.clear()
+        self._forget_objects()
 
     # Helpers.
+
+    def _forget_objects(self) -> None:
+        """Empties the caches after the world went back to an earlier state, in which other objects may exist."""
+        self._mesh_arrays.clear()
+        self._materials.clear()
 
     def _body_first(self, first: WorldObject, second: WorldObject) -> tuple[Any, Any]:
         """Handles of a body and of a body or a collider, in this order."""

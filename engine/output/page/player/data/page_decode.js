@@ -23,6 +23,7 @@ const decode = (() => {
     const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
     let at = 0;
     const count = () => {
+      if (data[at] < 128) return data[at++];
       let value = 0, scale = 1;
       for (;;) {
         const byte = data[at++];
@@ -42,6 +43,7 @@ const decode = (() => {
   const times = (number, take) => Array.from({ length: number }, take);
   // Codes of an earlier scale as they are on a later one.
   const shifted = (code, exponent_prev, exponent) => code >> Math.min(exponent - exponent_prev, 31);
+  const no_lattice = { origin: [0, 0, 0], step: 1e-6, now: [] };  // of contacts without a body
   const value_of = (code, top) => Math.sign(code) * top * (code / last_code) * (code / last_code);
 
   function shape(take, name, fields) {
@@ -54,7 +56,7 @@ const decode = (() => {
     const triangles = Uint32Array.from(times(corners, next));
     return {
       name, vertices, node, triangles, origin, step, frames: 0, now: new Float64Array(3 * vertices),
-      before: new Float64Array(3 * vertices),
+      before: new Float64Array(3 * vertices), stress_change: new Int32Array(vertices),
       values: times(fields, () => ({ exponent: lowest_exponent, code: new Int32Array(vertices), sum: 0 })),
     };
   }
@@ -101,44 +103,48 @@ const decode = (() => {
     return out;
   }
 
-  // Codes of the positions, from the least of each axis on: base[3] and what is added to it.
-  function positions(take, body) {
-    const { vertices, now, before } = body, base = [0, 0, 0], top = [0, 0, 0];
+  // An array of an earlier frame if it can be used again, otherwise a new one.
+  const room = (Type, length, old) => (old instanceof Type && old.length === length ? old : new Type(length));
+
+  // Codes of the positions, from the least of each axis on: base[3] and what is added to it. `old`: to be overwritten.
+  function positions(take, body, old) {
+    const { vertices, now, before } = body, base = [0, 0, 0], top = [0, 0, 0], continues = body.frames > 1;
     for (let axis = 0; axis < 3; ++axis) {
       let rest = 0, low = Infinity, high = -Infinity;
       for (let i = axis; i < 3 * vertices; i += 3) {
         rest += take.change();
-        const last = now[i];
-        now[i] = last + rest + (body.frames > 1 ? last - before[i] : 0);
+        const last = now[i], code = last + rest + (continues ? last - before[i] : 0);
+        now[i] = code;
         before[i] = last;
-        low = Math.min(low, now[i]);
-        high = Math.max(high, now[i]);
+        if (code < low) low = code;
+        if (code > high) high = code;
       }
       base[axis] = vertices ? low : 0;
       top[axis] = vertices ? high - low : 0;
     }
     ++body.frames;
-    const Type = Math.max(...top) < 65536 ? Uint16Array : Float64Array;
-    const offset = new Type(3 * vertices);
-    for (let i = 0; i < 3 * vertices; ++i) offset[i] = now[i] - base[i % 3];
+    const offset = room(Math.max(...top) < 65536 ? Uint16Array : Float64Array, 3 * vertices, old.offset);
+    for (let axis = 0; axis < 3; ++axis)
+      for (let i = axis; i < 3 * vertices; i += 3) offset[i] = now[i] - base[axis];
     const lower = base.map((code, axis) => body.origin[axis] + body.step * code);
     return { lower, extent: top.map((code) => code * body.step), offset };
   }
 
-  function values(take, body, exponents) {
-    const stress_change = new Int32Array(body.vertices), stress_sum = body.values[1].sum;
+  function values(take, body, exponents, old) {
+    const stress_change = body.stress_change, stress_sum = body.values[1].sum;
     return body.values.map((last, field) => {
       const follows = field === 2 && stress_sum > 0, share = follows ? last.sum / stress_sum : 0;
-      const code = new Uint16Array(body.vertices);
-      let rest = 0;
-      last.sum = 0;
+      const code = room(Uint16Array, body.vertices, old[field]), older = last.code;
+      const shift = Math.min(exponents[field] - last.exponent, 31);
+      let rest = 0, sum = 0;
       for (let i = 0; i < code.length; ++i) {
         rest += take.change();
         const change = rest + (follows ? Math.floor(stress_change[i] * share + 0.5) : 0);
         if (field === 1) stress_change[i] = change;
-        last.code[i] = code[i] = shifted(last.code[i], last.exponent, exponents[field]) + change;
-        last.sum += code[i];
+        older[i] = code[i] = (older[i] >> shift) + change;
+        sum += code[i];
       }
+      last.sum = sum;
       last.exponent = exponents[field];
       return code;
     });
@@ -146,23 +152,28 @@ const decode = (() => {
 
   const numbers = 7;  // of a contact: point, force, normal part
 
-  function contacts(take, count, bodies, last, exponent) {
-    const prev = new Int32Array(count).fill(-1), first = new Int32Array(count), second = new Int32Array(count),
-      collider = new Int32Array(count);
+  const contact_rows = (size) => ({
+    size, prev: new Int32Array(size), next: new Int32Array(size), first: new Int32Array(size),
+    second: new Int32Array(size), collider: new Int32Array(size), point: new Float32Array(3 * size),
+    force: new Float32Array(3 * size), normal: new Float32Array(size), region: new Int32Array(size),
+    state: new Uint8Array(size), code: new Float64Array(numbers * size),
+  });
+
+  // Reads `count` contacts into `rows`. last: rows of the previous frame.
+  function contacts(take, count, bodies, last, exponent, rows) {
+    const { prev, next, first, second, collider, point, force, normal, region, state, code } = rows;
     let expected = 0;
     for (let i = 0; i < count; ++i) {
       const mark = take.count();
-      if (mark === 0) continue;
-      prev[i] = expected + take.signed(mark - 1);
-      expected = prev[i] + 1;
+      prev[i] = mark === 0 ? -1 : expected + take.signed(mark - 1);
+      if (mark !== 0) expected = prev[i] + 1;
     }
-    for (let i = 0; i < count; ++i)
-      for (const side of [first, second, collider])
-        side[i] = prev[i] >= 0 ? last[side === first ? "first" : side === second ? "second" : "collider"][prev[i]]
-          : take.count() - 1;
-
-    const lattice = (i) => bodies[first[i] >= 0 ? first[i] : second[i]] || { origin: [0, 0, 0], step: 1e-6, now: [] };
-    const code = new Float64Array(numbers * count);
+    for (let i = 0; i < count; ++i) {
+      first[i] = prev[i] >= 0 ? last.first[prev[i]] : take.count() - 1;
+      second[i] = prev[i] >= 0 ? last.second[prev[i]] : take.count() - 1;
+      collider[i] = prev[i] >= 0 ? last.collider[prev[i]] : take.count() - 1;
+    }
+    const lattice = (i) => bodies[first[i] >= 0 ? first[i] : second[i]] || no_lattice;
     for (let k = 0; k < numbers; ++k)
       for (let i = 0; i < count; ++i) {
         let base = k < 3 ? lattice(i).now[k] || 0 : 0;
@@ -175,8 +186,7 @@ const decode = (() => {
         code[numbers * i + k] = base + take.change();
       }
     const top = Math.pow(4, exponent);
-    const point = new Float32Array(3 * count), force = new Float32Array(3 * count), normal = new Float32Array(count);
-    const region = new Int32Array(count), state = new Uint8Array(count), next = new Int32Array(count).fill(-1);
+    let number = 0;
     for (let i = 0; i < count; ++i) {
       const { origin, step } = lattice(i);
       for (let axis = 0; axis < 3; ++axis) {
@@ -184,13 +194,15 @@ const decode = (() => {
         force[3 * i + axis] = value_of(code[numbers * i + 3 + axis], top);
       }
       normal[i] = value_of(code[numbers * i + 6], top);
+      region[i] = number += take.change();
     }
-    let number = 0;
-    for (let i = 0; i < count; ++i) region[i] = number += take.change();
-    for (let i = 0; i < count; ++i) state[i] = take.u8();
-    // Which row of the next frame is the same contact, for what is between them.
-    for (let i = 0; i < count; ++i) if (prev[i] >= 0) last.next[prev[i]] = i;
-    return { count, first, second, collider, point, force, normal, region, state, next, code, exponent, top };
+    for (let i = 0; i < count; ++i) {
+      state[i] = take.u8();
+      // The row of the next frame with the same contact, for pictures between the frames.
+      next[i] = -1;
+      if (prev[i] >= 0) last.next[prev[i]] = i;
+    }
+    return Object.assign(rows, { count, exponent, top });
   }
 
   // Lines of a frame by number: points and forces. `prev`: lines of the previous frame, with all codes.
@@ -221,35 +233,50 @@ const decode = (() => {
     return out;
   }
 
-  // {bodies, frames}. A frame: bodies, colliders and lines by number, contacts, scale by field: value = scale * code^2.
-  function frames(data, names, fields) {
-    const take = reader(data), bodies = [], out = [], lattice_of_lines = {};
-    let last = null, last_lines = { list: new Map(), exponent: lowest_exponent };
-    while (!take.ended()) {
+  // Decodes frame after frame: add(data) returns the frames in `data`, the bytes of one or more whole frames. A frame:
+  // bodies, colliders and lines by number, contacts, scale by field: value = scale * code^2. `names` of the bodies may
+  // grow from frame to frame. recycle: arrays of a frame are overwritten by the next, its contacts by the next but one.
+  function decoder(names, fields, recycle) {
+    const bodies = [], lattice_of_lines = {};
+    let last = null, spare = null, last_lines = { list: new Map(), exponent: lowest_exponent };
+
+    function read_body(take, frame, exponents) {
+      const number = take.count();
+      if (number === bodies.length) bodies.push(shape(take, names[number], fields.length));
+      const body = bodies[number], old = body.place || {}, place = positions(take, body, old);
+      const codes = values(take, body, exponents, fields.map((field) => old[field]));
+      fields.forEach((field, k) => { place[field] = codes[k]; });
+      if (recycle) body.place = place;
+      frame.bodies.set(number, place);
+    }
+    function read_contacts(take, count, exponent) {
+      const rows = recycle && spare && spare.size >= count ? spare : contact_rows(recycle ? 2 * count : count);
+      const out = contacts(take, count, bodies, last, exponent, rows);
+      spare = last;
+      if (last && !recycle) last.code = last.prev = null;  // needed by the next frame only
+      return (last = out);
+    }
+    function read_frame(take) {
       const [body_count, collider_count, contact_count] = times(3, take.count);
       const exponents = times(fields.length, take.change), force_exponent = take.change();
       const frame = { bodies: new Map(), colliders: new Map(), scale: {} };
       fields.forEach((field, i) => {
         frame.scale[field] = Math.pow(4, exponents[i]) / (last_code * last_code);
       });
-      for (let i = 0; i < body_count; ++i) {
-        const number = take.count();
-        if (number === bodies.length) bodies.push(shape(take, names[number], fields.length));
-        const body = bodies[number], place = positions(take, body);
-        const codes = values(take, body, exponents);
-        fields.forEach((field, k) => { place[field] = codes[k]; });
-        frame.bodies.set(number, place);
-      }
+      for (let i = 0; i < body_count; ++i) read_body(take, frame, exponents);
       for (let i = 0; i < collider_count; ++i)
         frame.colliders.set(take.count(), { position: times(3, take.f32), rotation: times(3, take.f32) });
-      frame.contacts = contacts(take, contact_count, bodies, last, force_exponent);
-      if (last) last.code = null;  // needed by the next frame only
-      last = frame.contacts;
+      frame.contacts = read_contacts(take, contact_count, force_exponent);
       frame.lines = last_lines = lines(take, lattice_of_lines, last_lines);
-      out.push(frame);
+      return frame;
     }
-    return { bodies, frames: out };
+    function add(data) {
+      const take = reader(data), out = [];
+      while (!take.ended()) out.push(read_frame(take));
+      return out;
+    }
+    return { bodies, add };
   }
 
-  return { words, floats, inflate, frames, visuals };
+  return { words, floats, inflate, decoder, visuals };
 })();

@@ -33,6 +33,20 @@ function measure_scene(run, bodies, frames) {
   };
 }
 
+// The box that the camera shows of a run that goes on, by frame: all of where bodies have been, or, when that is much
+// more than at first, where they are. It moves smoothly. first: box of the first frame.
+function make_aim(first, share = 0.05) {
+  const whole = first.clone(), shown = first.clone();
+  return (frame) => {
+    const now = box_of_frame(frame) || whole;
+    whole.union(now);
+    const wanted = radius_of(whole) < 1.5 * radius_of(first) ? whole : now;
+    shown.min.lerp(wanted.min, share);
+    shown.max.lerp(wanted.max, share);
+    return shown;
+  };
+}
+
 const share_of = (list, share) => list.sort((a, b) => a - b)[Math.round(share * (list.length - 1))];
 const radius_of = (box) => box.min.distanceTo(box.max) / 2;
 

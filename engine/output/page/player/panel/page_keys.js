@@ -27,9 +27,13 @@ function listen_to_keys(find, keys) {
   bound.set("?", () => show_help(help.hidden));
   bound.set("Escape", () => show_help(false));
 
+  // Keys that an element needs for itself; the timeline leaves its arrows to the page.
+  const own = { range: /^(Arrow|Page|Home$|End$|Delete$)/, checkbox: /^ $/ };
+  const needs = ({ id, type }, key) => id !== "scrub" && own[type] && own[type].test(key);
   window.addEventListener("keydown", (event) => {
     const { target } = event;
     if (event.ctrlKey || event.metaKey || event.altKey || target.tagName === "SELECT") return;
+    if (needs(target, event.key)) return;
     if (target.tagName === "BUTTON" && (event.key === " " || event.key === "Enter")) return;  // presses the button
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key, action = bound.get(key);
     if (!action) return;

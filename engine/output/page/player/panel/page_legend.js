@@ -2,9 +2,9 @@
 "use strict";
 
 // The ends and the middle of a field's colours, as text.
-function legend_ticks(field, run, legend_top) {
-  const { format } = fields[field], top = legend_top[field];
-  return ["0", format(top / 2), (run[field].max > top ? "\u2265\u202f" : "") + format(top)];
+function legend_ticks(field, scales) {
+  const { format } = fields[field], { top, max } = scales[field];
+  return ["0", format(top / 2), (max > top ? "\u2265\u202f" : "") + format(top)];
 }
 
 // A line of text after a spot of the colour, if there is one.
@@ -21,14 +21,18 @@ function legend_line(content, swatch) {
   return line;
 }
 
-function show_color_legend(card, color, run, bodies, legend_top) {
-  const [name, bar, ticks, list] = card.children, by_value = color !== "body";
+// bodies: {name} by number.
+function show_color_legend(card, color, bodies, scales) {
+  const [name, bar, ticks, list] = card.children, by_value = color !== "body", names = [];
+  if (!by_value) bodies.forEach((body, i) => names.push([i, body.name || "body " + i]));
+  const content = JSON.stringify(by_value ? [color, legend_ticks(color, scales)] : names);
+  if (card.dataset.content === content) return;  // it is called often, and the list of bodies may be scrolled
+  card.dataset.content = content;
   bar.hidden = ticks.hidden = !by_value;
   list.hidden = by_value;
   if (!by_value) {
-    name.textContent = count_of(bodies.length, "body", "bodies");
-    if (list.childElementCount === 0)
-      list.append(...bodies.map((body, i) => legend_line(body.name || "body " + i, colors.css(colors.of_body(i)))));
+    name.textContent = count_of(names.length, "body", "bodies");
+    list.replaceChildren(...names.map(([i, shown]) => legend_line(shown, colors.css(colors.of_body(i)))));
     return;
   }
   name.textContent = fields[color].name;
@@ -37,28 +41,28 @@ function show_color_legend(card, color, run, bodies, legend_top) {
     pen.fillStyle = colors.css(colors.at(color, i / 255));
     pen.fillRect(i, 0, 1, 1);
   }
-  ticks.replaceChildren(...legend_ticks(color, run, legend_top).map((tick) => {
+  ticks.replaceChildren(...legend_ticks(color, scales).map((tick) => {
     const label = document.createElement("span");
     label.textContent = tick;
     return label;
   }));
 }
 
-function show_line_legend(card, on, run) {
+function show_line_legend(card, on, run, scales) {
   const kinds = Object.keys(colors.line).filter((kind) => run.lines.some((line) => line.kind === kind));
   card.hidden = !on || kinds.length === 0;
   card.replaceChildren(...kinds.map((kind) => legend_line(kind, colors.line[kind])),
     legend_line("thickness: square root of the force"),
-    legend_line("largest force " + text.si(run.line_force.max, "N")));
+    legend_line(scales.line_force.about + " " + text.si(scales.line_force.max, "N")));
 }
 
-function show_contact_legend(card, mode, run) {
-  card.hidden = mode === "off" || run.force.max === 0;
+function show_contact_legend(card, mode, scales) {
+  card.hidden = mode === "off" || scales.force.peak === 0;
   card.replaceChildren();
   if (mode === "motion")
     card.append(...["stick", "slide", "open"].map((name) => legend_line(name, colors.motion[name])));
   else
     card.append(legend_line("one colour per contact region"));
   card.append(legend_line("arrow length: square root of the force"),
-    legend_line("largest force " + text.si(run.force.max, "N")));
+    legend_line(scales.force.about + " " + text.si(scales.force.max, "N")));
 }

@@ -1,8 +1,8 @@
 // Curves over time with a cursor, and the bars of the stages.
 "use strict";
 
-// series: [{name, color, values}], one value by time. format(value) is text. pick(frame) is called when somebody points
-// at a time.
+// series: [{name, color, values}], one value by time; times and values may change before update(). format(value) is
+// text. pick(frame), if there is one, is called when somebody points at a time.
 function make_plot(host, times, series, format, pick) {
   const keys = document.createElement("div");
   keys.className = "keys";
@@ -21,11 +21,13 @@ function make_plot(host, times, series, format, pick) {
   // Colours by name follow the light.
   const style = getComputedStyle(document.documentElement);
   const resolved = (color) => (color.startsWith("var(") ? style.getPropertyValue(color.slice(4, -1)).trim() : color);
-  const ends = range_of(series);
   const margin = { left: 52, right: 6, top: 6, bottom: 20 };
-  let frame = 0;
-
-  const first = times[0] || 0, span = Math.max((times[times.length - 1] || 0) - first, 1e-12);
+  let frame = 0, ends, first, span;
+  function measure() {
+    ends = range_of(series);
+    first = times[0] || 0;
+    span = Math.max((times[times.length - 1] || 0) - first, 1e-12);
+  }
   const width = () => canvas.clientWidth - margin.left - margin.right;
   const x_of = (time) => margin.left + (time - first) / span * width();
   const y_of = (value) => canvas.clientHeight - margin.bottom
@@ -96,16 +98,56 @@ function make_plot(host, times, series, format, pick) {
     labels.forEach((label, i) => { label.textContent = times.length ? format(series[i].values[frame]) : ""; });
     draw();
   }
+  function update() {
+    measure();
+    show(Math.max(times.length - 1, 0));
+  }
   const point_at = (event) => {
     const time = first + (event.offsetX - margin.left) / width() * span;
     let best = 0;
     times.forEach((t, i) => { if (Math.abs(t - time) < Math.abs(times[best] - time)) best = i; });
     pick(best);
   };
-  canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); point_at(event); });
-  canvas.addEventListener("pointermove", (event) => { if (event.buttons) point_at(event); });
+  if (pick) {
+    canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); point_at(event); });
+    canvas.addEventListener("pointermove", (event) => { if (event.buttons) point_at(event); });
+  }
+  measure();
   new ResizeObserver(draw).observe(canvas);
-  return { show, draw };
+  return { show, draw, update };
+}
+
+// The plots of all runs. rows: columns by name.
+function make_run_plots(find, rows, pick) {
+  const potential = [], total = [];
+  // Potential energy counts from its least value.
+  function add_up() {
+    const floor = rows.potential.reduce((least, value) => (value === null ? least : Math.min(least, value)), Infinity);
+    potential.length = total.length = 0;
+    rows.potential.forEach((value, i) => {
+      potential.push(value === null ? null : value - floor);
+      total.push(rows.kinetic[i] + rows.elastic[i] + potential[i]);
+    });
+  }
+  add_up();
+  const energy = make_plot(find("energy_plot"), rows.time, [
+    { name: "total", color: "var(--text)", values: total },
+    { name: "kinetic", color: "var(--kinetic)", values: rows.kinetic },
+    { name: "potential", color: "var(--potential)", values: potential },
+    { name: "elastic", color: "var(--elastic)", values: rows.elastic },
+    { name: "dissipated", color: "var(--dissipated)", values: rows.dissipated },
+  ], (value) => text.si(value, "J"), pick);
+  const contact = make_plot(find("contact_plot"), rows.time, [
+    { name: "contacts", color: "var(--text)", values: rows.contacts },
+    { name: "stick", color: "var(--stick)", values: rows.stick },
+    { name: "slide", color: "var(--slide)", values: rows.slide },
+    { name: "regions", color: "var(--potential)", values: rows.regions },
+  ], (value) => String(+value.toFixed(2)), pick);
+  const update = () => {
+    add_up();
+    energy.update();
+  };
+  return [{ ...energy, update }, contact];
 }
 
 // Ends at ticks around all finite values and zero.
@@ -122,7 +164,8 @@ function range_of(series) {
   return { low: Math.floor(low / step + 1e-9) * step, high: Math.ceil(high / step - 1e-9) * step, step };
 }
 
-// Mean milliseconds of each stage by step, with its share of all stages. Stages side by side count both.
+// Mean time of each stage by step, with its share of all stages. Stages side by side count both. Those with less than
+// half a percent are added up.
 function show_stages(host, report) {
   const element = (name, content) => {
     const made = document.createElement("div");
@@ -132,11 +175,16 @@ function show_stages(host, report) {
   };
   const steps = Math.max(report.steps, 1);
   const total = report.stages.reduce((sum, stage) => sum + stage.seconds, 0);
-  const longest = Math.max(...report.stages.map((stage) => stage.seconds), 1e-300);
-  for (const stage of report.stages) {
+  const smallest = 0.005 * total, minor = report.stages.filter((stage) => stage.seconds < smallest);
+  const shown = report.stages.filter((stage) => stage.seconds >= smallest);
+  if (minor.length > 0)
+    shown.push({ name: "others (" + minor.length + ")", seconds: minor.reduce((sum, stage) => sum + stage.seconds, 0),
+      title: minor.map((stage) => stage.name + " " + text.si(stage.seconds / steps, "s")).join("\n") });
+  const longest = Math.max(...shown.map((stage) => stage.seconds), 1e-300);
+  for (const stage of shown) {
     const row = element("stage"), value = element("value"), time = document.createElement("b"), bar = element("bar");
     const fill = document.createElement("i");
-    row.title = text.count(stage.runs) + " runs, skipped " + text.count(stage.skipped) + " times";
+    row.title = stage.title || text.count(stage.runs) + " runs, skipped " + text.count(stage.skipped) + " times";
     time.textContent = text.si(stage.seconds / steps, "s");
     value.append(time, "  " + (total > 0 ? (100 * stage.seconds / total).toFixed(1) : "0") + "\u202f%");
     fill.style.width = 100 * stage.seconds / longest + "%";

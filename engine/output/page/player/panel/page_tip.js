@@ -2,8 +2,8 @@
 "use strict";
 
 // hit: of pick_body or null; contact: of make_contacts.at() or null; joining: of make_lines.at() or null. `place` in
-// pixels of the host.
-function show_tip(tip, host, place, { hit, values, body, color, contact, joining, name_of }) {
+// pixels of the host; fields: those with values.
+function show_tip(tip, host, place, { hit, fields: known, values, body, color, contact, joining, name_of }) {
   tip.hidden = !hit && !contact && !joining;
   if (tip.hidden) return;
   tip.replaceChildren();
@@ -30,7 +30,7 @@ function show_tip(tip, host, place, { hit, values, body, color, contact, joining
   if (hit) {
     const nearest = hit.weights.indexOf(Math.max(...hit.weights));
     line(body.name, true);
-    const shown = [...field_names].sort((a, b) => (b === color) - (a === color));
+    const shown = [...known].sort((a, b) => (b === color) - (a === color));
     for (const field of shown)
       line(fields[field].lower + " " + fields[field].format(values[field].value, values[field].error));
     line((body.drawn.is_visual ? "visual triangle " : "triangle ") + hit.triangle + ", node "

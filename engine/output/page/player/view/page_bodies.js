@@ -1,10 +1,20 @@
 // The bodies: moved and coloured by frame.
 "use strict";
 
-// visuals: the visual surface of each body, or undefined. legend_top, largest: by field. redraw(): an image was loaded.
-function make_bodies(scene, list, visuals, frames, legend_top, largest, redraw) {
-  const first_of = (number) => frames.find((frame) => frame.bodies.has(number)).bodies.get(number);
-  const bodies = list.map((body, number) => make_body(scene, body, visuals[number], number, first_of(number), redraw));
+// scales: page_scales.js. redraw(): an image was loaded.
+function make_bodies(scene, scales, redraw) {
+  const bodies = [];  // by number, without those that were removed
+  // `visual`: visual surface or undefined; `first`: the body in the first frame that has it.
+  function add(number, shape, visual, first) {
+    bodies[number] = make_body(scene, shape, visual, number, first, redraw);
+  }
+  function remove(number) {
+    const { group, boundary, visual } = bodies[number];
+    scene.remove(group);
+    boundary.dispose();
+    if (visual) visual.dispose();
+    delete bodies[number];
+  }
 
   // Shows `frame`, moved towards the next frame by `blend` in [0, 1). `visual`: draw visual surfaces.
   function show(frame, next, blend, color, visual) {
@@ -20,14 +30,16 @@ function make_bodies(scene, list, visuals, frames, legend_top, largest, redraw) 
       body.parts = parts;
       body.drawn = visual && body.visual ? body.visual : body.boundary;
       for (const drawing of [body.boundary, body.visual])
-        if (drawing) drawing.mesh.visible = drawing.edges.visible = drawing === body.drawn;
-      body.drawn.place(positions_at(body.shape, parts));
-      body.drawn.paint(color, body.own_color, (field) => values_by_vertex(body.shape, parts, field), legend_top[color]);
+        if (drawing) drawing.mesh.visible = drawing === body.drawn;
+      body.drawn.place(positions_at(body.shape, parts, body.points));
+      if (color === "body") body.drawn.paint_plain(body.own_color);
+      else body.drawn.paint(color, values_by_vertex(parts, color, body.values), scales[color].top);
     });
     return count;
   }
   function style({ flat, wire, xray }) {
-    for (const { drawn: { mesh, materials, edges } } of bodies) {
+    bodies.forEach(({ drawn, boundary, visual }) => {
+      const { mesh, materials } = drawn;
       for (const { material, opacity } of materials) {
         const transparent = xray || opacity < 1;
         if (material.flatShading !== flat || material.transparent !== transparent) material.needsUpdate = true;
@@ -37,8 +49,9 @@ function make_bodies(scene, list, visuals, frames, legend_top, largest, redraw) 
         material.depthWrite = !transparent;
       }
       mesh.castShadow = !xray;
-      edges.visible = wire;
-    }
+      boundary.show_edges(wire && drawn === boundary);
+      if (visual) visual.show_edges(wire && drawn === visual);
+    });
   }
   // What is at a point of a triangle: {field: {value, error}}.
   function values_at({ body, vertices, weights }) {
@@ -51,21 +64,21 @@ function make_bodies(scene, list, visuals, frames, legend_top, largest, redraw) 
           value += share * weights[k] * one;
           error = Math.max(error, half_code(one, frame.scale[field]));
         });
-      out[field] = { value: value < 1e-9 * largest[field] ? 0 : value, error };  // below it is rounding of the run
+      out[field] = { value: value < 1e-9 * scales[field].max ? 0 : value, error };  // below it is rounding of the run
     }
     return out;
   }
-  return { show, style, values_at, list: bodies };
+  return { add, remove, show, style, values_at, list: bodies };
 }
 
 // `first` is the body in the first frame that has it.
 function make_body(scene, shape, visual, number, first, redraw) {
   const group = new THREE.Group();
   scene.add(group);
-  const points = positions_at(shape, [{ body: first, share: 1 }]);
+  const points = positions_at(shape, [{ body: first, share: 1 }], new Float64Array(3 * shape.vertices));
   const boundary = make_drawing(group, shape, points, plain_nodes, redraw);
-  const body = { group, shape, parts: [], name: shape.name || "body " + number, boundary, drawn: boundary,
-    own_color: colors.linear(colors.of_body(number)) };
+  const body = { group, shape, points, values: new Float32Array(shape.vertices), parts: [], boundary,
+    drawn: boundary, name: shape.name || "body " + number, own_color: colors.linear(colors.of_body(number)) };
   if (visual) {
     const nodes = make_followers(visual, shape);
     body.visual = make_drawing(group, visual, nodes.positions(points), nodes, redraw);
@@ -73,21 +86,21 @@ function make_body(scene, shape, visual, number, first, redraw) {
   return body;
 }
 
-// Positions of the vertices. parts: states of the body in one frame or two, with shares that add up to one.
-function positions_at({ vertices, step }, parts) {
-  const out = new Float64Array(3 * vertices);
-  for (const { body, share } of parts)
+// Positions of the vertices, in `out`. parts: states of the body in one frame or two, with shares that add up to one.
+function positions_at({ step }, parts, out) {
+  out.fill(0);
+  for (const { body: { lower, offset }, share } of parts)
     for (let axis = 0; axis < 3; ++axis) {
-      const start = share * body.lower[axis], scale = share * step;
-      for (let i = axis; i < out.length; i += 3) out[i] += start + scale * body.offset[i];
+      const start = share * lower[axis], scale = share * step;
+      for (let i = axis; i < out.length; i += 3) out[i] += start + scale * offset[i];
     }
   return out;
 }
-function values_by_vertex({ vertices }, parts, field) {
-  const out = new Float32Array(vertices);
+function values_by_vertex(parts, field, out) {
+  out.fill(0);
   for (const { frame, body, share } of parts) {
     const scale = share * frame.scale[field], codes = body[field];
-    for (let i = 0; i < vertices; ++i) out[i] += scale * codes[i] * codes[i];
+    for (let i = 0; i < out.length; ++i) out[i] += scale * codes[i] * codes[i];
   }
   return out;
 }

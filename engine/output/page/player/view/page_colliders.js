@@ -1,13 +1,23 @@
 // The colliders: planes as a grid that fades out, containers transparent, the rest solid.
 "use strict";
 
-function make_colliders(scene, list, box) {
-  const cell = text.tick(2 * box.radius, 8);
-  const colliders = list.map((collider) => {
+function make_colliders(scene, state, box) {
+  const cell = text.tick(2 * box.radius, 8), colliders = [];
+  function add(collider) {
     const object = collider.kind === "plane" ? plane_object(box.radius, cell) : solid_object(collider);
+    object.userData.set_light(state.light);
     scene.add(object);
-    return object;
-  });
+    colliders.push(object);
+  }
+  function clear() {
+    for (const object of colliders.splice(0)) {
+      scene.remove(object);
+      object.traverse(({ geometry, material }) => {
+        if (geometry) geometry.dispose();
+        if (material) material.dispose();
+      });
+    }
+  }
 
   const other = new THREE.Vector3(), other_turn = new THREE.Quaternion();
   function show(frame, next, blend, on) {
@@ -30,7 +40,7 @@ function make_colliders(scene, list, box) {
     });
   }
   const set_light = (light) => colliders.forEach((object) => object.userData.set_light(light));
-  return { show, set_light, list: colliders };
+  return { add, clear, show, set_light, list: colliders };
 }
 
 function plane_object(radius, cell) {

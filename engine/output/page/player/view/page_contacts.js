@@ -1,23 +1,27 @@
 // The contacts: a dot each, and an arrow that grows with the root of the force, because impacts are a hundred times
-// stronger than what lies at rest. Drawn twice: plainly where they are in sight, faintly where a body hides them,
-// because contacts lie between bodies.
+// stronger than what lies at rest.
 "use strict";
 
-// A force of `full_force` (N) gets an arrow about as long as half a body is thick; dots leave room between vertices.
-function make_contacts(scene, capacity, { size, spacing }, full_force) {
+// A force of scales.force.top gets an arrow about as long as half a body is thick; dots leave room between vertices.
+function make_contacts(scene, { size, spacing }, scales) {
   const dot_radius = 0.2 * spacing, arrow_length = 0.75 * size, arrow_width = Math.min(1.1 * spacing, 0.2 * size);
-  const color = new THREE.InstancedBufferAttribute(new Float32Array(3 * Math.max(capacity, 1)), 3);
-  const dots = make_instances(scene, new THREE.IcosahedronBufferGeometry(1, 1), color);
-  const arrows = make_instances(scene, arrow_geometry(), color);
+  const copies = make_instances(scene, new THREE.IcosahedronBufferGeometry(1, 1), arrow_geometry());
   const fixed = { open: 0, stick: 1, slide: 2 };
-  const motion_colors = [];
+  const motion_colors = [], region_colors = [];
   for (const name in fixed) motion_colors[fixed[name]] = colors.linear(colors.parse(colors.motion[name]));
+  const color_of_region = (number) =>
+    (region_colors[number] = region_colors[number] || colors.linear(colors.of_number(number)));
 
   const matrix = new THREE.Matrix4(), turn = new THREE.Quaternion(), scale = new THREE.Vector3();
   const point = new THREE.Vector3(), force = new THREE.Vector3(), along = new THREE.Vector3(0, 1, 0);
 
-  const shown = { list: null, count: 0, point: new Float32Array(3 * capacity), force: new Float32Array(3 * capacity),
-    normal: new Float32Array(capacity) };
+  const shown = { list: null, count: 0, point: new Float32Array(0), force: new Float32Array(0),
+    normal: new Float32Array(0) };
+  function reserve(count) {
+    if (count <= shown.normal.length) return;
+    for (const [name, width] of [["point", 3], ["force", 3], ["normal", 1]])
+      shown[name] = new Float32Array(2 * width * count);
+  }
 
   // What is between a frame and the next: contacts that both have move from one to the other, others stay until they
   // are gone.
@@ -35,25 +39,25 @@ function make_contacts(scene, capacity, { size, spacing }, full_force) {
   }
   function show(contacts, next, blend, mode) {
     const count = mode === "off" ? 0 : contacts.count;
-    show_instances([...dots, ...arrows], count);
+    copies.show(count);
     shown.count = 0;
     if (count === 0) return;
+    reserve(count);
     blend_rows(contacts, next, blend);
     for (let i = 0; i < count; ++i) {
       point.fromArray(shown.point, 3 * i);
       force.fromArray(shown.force, 3 * i);
       const strength = force.length();
       const by_region = mode === "region" && contacts.region[i] >= 0;
-      const rgb = by_region ? colors.linear(colors.of_number(contacts.region[i])) : motion_colors[contacts.state[i]];
-      color.array.set(rgb, 3 * i);
+      const rgb = by_region ? color_of_region(contacts.region[i]) : motion_colors[contacts.state[i]];
+      copies.set_color(i, rgb);
       const radius = strength > 0 ? dot_radius : 0.7 * dot_radius;
-      dots[0].setMatrixAt(i, matrix.compose(point, turn.set(0, 0, 0, 1), scale.setScalar(radius)));
+      copies.set_place(0, i, matrix.compose(point, turn.set(0, 0, 0, 1), scale.setScalar(radius)));
       if (strength > 0) turn.setFromUnitVectors(along, force.multiplyScalar(1 / strength));
-      const length = Math.sqrt(strength / full_force) * arrow_length, width = Math.min(arrow_width, length / 3);
-      arrows[0].setMatrixAt(i, matrix.compose(point, turn, scale.set(width, length, width)));
+      const length = Math.sqrt(strength / scales.force.top) * arrow_length, width = Math.min(arrow_width, length / 3);
+      copies.set_place(1, i, matrix.compose(point, turn, scale.set(width, length, width)));
     }
-    color.needsUpdate = true;
-    dots[0].instanceMatrix.needsUpdate = arrows[0].instanceMatrix.needsUpdate = true;
+    copies.upload(count);
   }
   // The contact at row i as it is shown.
   function at(i) {
@@ -65,31 +69,6 @@ function make_contacts(scene, capacity, { size, spacing }, full_force) {
       collider: list.collider[i] };
   }
   return { show, shown, at, dot_radius };
-}
-
-// Two meshes of many copies of a shape: one where they are in sight, and a faint one where a body hides them. `color`
-// has a row for each copy.
-function make_instances(scene, geometry, color) {
-  geometry.setAttribute("color", color);
-  const make = (settings) => {
-    const material = new THREE.MeshBasicMaterial({ vertexColors: THREE.VertexColors, ...settings });
-    const mesh = new THREE.InstancedMesh(geometry, material, color.count);
-    mesh.frustumCulled = false;
-    scene.add(mesh);
-    return mesh;
-  };
-  const plain = make({});
-  const faint = make({ transparent: true, opacity: 0.5, depthFunc: THREE.GreaterDepth, depthWrite: false });
-  faint.renderOrder = 5;
-  faint.instanceMatrix = plain.instanceMatrix;
-  return [plain, faint];
-}
-
-function show_instances(meshes, count) {
-  for (const mesh of meshes) {
-    mesh.count = count;
-    mesh.visible = count > 0;  // an instance count of zero would mean "not instanced"
-  }
 }
 
 // An arrow along y from 0 to 1: a shaft and a head, without caps that nobody sees.

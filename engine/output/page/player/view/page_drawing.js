@@ -16,18 +16,21 @@ function make_followers(visual, shape) {
   const terms = visual.gradients.map((row) =>
     row.terms.map((term) => ({ vertex: vertex_of.get(term.node), gradient: term.gradient })));
 
+  // Results are in memory that the next call overwrites.
+  const F = new Float64Array(9 * terms.length), out = new Float64Array(3 * nodes), value = new Float32Array(nodes);
+
   // Deformation gradients by row of visual.gradients, row-major.
-  function gradients(points) {
-    const out = new Float64Array(9 * terms.length);
+  function find_gradients(points) {
+    F.fill(0);
     terms.forEach((list, row) => {
       for (const { vertex: from, gradient: g } of list)
         for (let i = 0; i < 3; ++i)
-          for (let j = 0; j < 3; ++j) out[9 * row + 3 * i + j] += points[3 * from + i] * g[j];
+          for (let j = 0; j < 3; ++j) F[9 * row + 3 * i + j] += points[3 * from + i] * g[j];
     });
-    return out;
   }
   function positions(points) {
-    const out = new Float64Array(3 * nodes), F = gradients(points);
+    find_gradients(points);
+    out.fill(0);
     for (let n = 0; n < nodes; ++n) {
       const x = offset[3 * n], y = offset[3 * n + 1], z = offset[3 * n + 2], is_outside = x || y || z;
       for (let k = 4 * n; k < 4 * n + 4; ++k) {
@@ -42,9 +45,9 @@ function make_followers(visual, shape) {
     return out;
   }
   function values(of_vertices) {
-    const out = new Float32Array(nodes);
-    for (let k = 0; k < weight.length; ++k) out[k >> 2] += weight[k] * of_vertices[vertex[k]];
-    return out;
+    value.fill(0);
+    for (let k = 0; k < weight.length; ++k) value[k >> 2] += weight[k] * of_vertices[vertex[k]];
+    return value;
   }
   const support = (node) => [0, 1, 2, 3].map((k) => ({ vertex: vertex[4 * node + k], weight: weight[4 * node + k] }));
   return { positions, values, support };
@@ -57,7 +60,7 @@ function make_drawing(group, surface, points, nodes, redraw) {
     surface.texture_corners && order(surface.texture_corners));
   geometry.setIndex(new THREE.BufferAttribute(index, 1));
   for (const name of ["position", "normal", "color"])
-    geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * source.length), 3));
+    geometry.setAttribute(name, dynamic(new THREE.BufferAttribute(new Float32Array(3 * source.length), 3)));
   if (surface.texture_corners) geometry.setAttribute("uv", new THREE.BufferAttribute(texture_at(surface, texture), 2));
   const look = { roughness: 0.62, metalness: 0, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     side: surface.gradients ? THREE.DoubleSide : THREE.FrontSide };
@@ -69,46 +72,93 @@ function make_drawing(group, surface, points, nodes, redraw) {
   mesh.castShadow = mesh.receiveShadow = true;
   mesh.frustumCulled = false;  // its bounds change with every frame
 
-  const lines = new THREE.BufferGeometry();
-  lines.setIndex(new THREE.BufferAttribute(edges_of(index, source, points.length / 3), 1));
-  lines.setAttribute("position", geometry.getAttribute("position"));
-  const edges = new THREE.LineSegments(lines,
-    new THREE.LineBasicMaterial({ color: 0x05080b, transparent: true, opacity: 0.38 }));
-  edges.frustumCulled = false;
-  group.add(mesh, edges);
+  group.add(mesh);
 
-  const drawing = { mesh, geometry, edges, materials, source, support: (row) => nodes.support(source[row]),
+  let edges = null;
+  function make_edges() {
+    const lines = new THREE.BufferGeometry();
+    lines.setIndex(new THREE.BufferAttribute(edges_of(index, source, points.length / 3), 1));
+    lines.setAttribute("position", geometry.getAttribute("position"));
+    edges = new THREE.LineSegments(lines,
+      new THREE.LineBasicMaterial({ color: 0x05080b, transparent: true, opacity: 0.38 }));
+    edges.frustumCulled = false;
+    group.add(edges);
+  }
+
+  const drawing = { mesh, geometry, materials, source, support: (row) => nodes.support(source[row]),
     is_visual: nodes !== plain_nodes, box: null };  // box: page_pick.js
-  let painted = "";
+  drawing.show_edges = (on) => {
+    if (on && !edges) make_edges();
+    if (edges) edges.visible = on;
+  };
+  drawing.dispose = () => {
+    geometry.dispose();
+    if (edges) edges.geometry.dispose();
+    for (const { material } of materials) {
+      if (material.map) material.map.dispose();
+      material.dispose();
+    }
+  };
+  let is_plain = false;  // in the colour of the body, or its materials
   drawing.place = (of_vertices) => {
     const attribute = geometry.getAttribute("position"), out = attribute.array, at = nodes.positions(of_vertices);
-    for (let row = 0; row < source.length; ++row)
-      for (let axis = 0; axis < 3; ++axis) out[3 * row + axis] = at[3 * source[row] + axis];
+    for (let row = 0; row < source.length; ++row) {
+      const from = 3 * source[row];
+      out[3 * row] = at[from];
+      out[3 * row + 1] = at[from + 1];
+      out[3 * row + 2] = at[from + 2];
+    }
     attribute.needsUpdate = true;
     drawing.box = null;
-    geometry.computeVertexNormals();
+    set_normals(geometry.getAttribute("normal"), out, index);
   };
-  // values_of(field): by vertex. `top`: value at the upper end of the colours.
-  drawing.paint = (color, own_color, values_of, top) => {
-    const attribute = geometry.getAttribute("color"), out = attribute.array;
-    if (color === "body") {
-      if (painted === "body") return;
-      if (own.length > 0) mesh.material = own.map(({ material }) => material);
-      for (let i = 0; i < out.length; i += 3) out.set(own_color, i);
-    } else {
-      mesh.material = plain;
-      const table = colors.tables[color], values = nodes.values(values_of(color));
-      for (let row = 0; row < source.length; ++row) {
-        const entry = 3 * Math.min(255, Math.max(0, Math.round(255 / top * values[source[row]])));
-        out[3 * row] = table[entry];
-        out[3 * row + 1] = table[entry + 1];
-        out[3 * row + 2] = table[entry + 2];
-      }
+  // values: by vertex. `top`: value at the upper end of the colours.
+  drawing.paint = (color, of_vertices, top) => {
+    const attribute = geometry.getAttribute("color"), out = attribute.array, table = colors.tables[color];
+    const values = nodes.values(of_vertices), scale = 255 / top;
+    mesh.material = plain;
+    for (let row = 0; row < source.length; ++row) {
+      const entry = 3 * Math.min(255, Math.max(0, Math.round(scale * values[source[row]])));
+      out[3 * row] = table[entry];
+      out[3 * row + 1] = table[entry + 1];
+      out[3 * row + 2] = table[entry + 2];
     }
-    painted = color;
+    is_plain = false;
     attribute.needsUpdate = true;
   };
+  drawing.paint_plain = (own_color) => {
+    if (is_plain) return;
+    const attribute = geometry.getAttribute("color"), out = attribute.array;
+    if (own.length > 0) mesh.material = own.map(({ material }) => material);
+    for (let i = 0; i < out.length; i += 3) out.set(own_color, i);
+    is_plain = attribute.needsUpdate = true;
+  };
   return drawing;
+}
+
+// Normals of the rows: means over their triangles, weighted by area.
+function set_normals(attribute, place, index) {
+  const normal = attribute.array;
+  normal.fill(0);
+  for (let t = 0; t < index.length; t += 3) {
+    const a = 3 * index[t], b = 3 * index[t + 1], c = 3 * index[t + 2];
+    const ux = place[b] - place[a], uy = place[b + 1] - place[a + 1], uz = place[b + 2] - place[a + 2];
+    const vx = place[c] - place[a], vy = place[c + 1] - place[a + 1], vz = place[c + 2] - place[a + 2];
+    const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+    for (let k = t; k < t + 3; ++k) {
+      const row = 3 * index[k];
+      normal[row] += x;
+      normal[row + 1] += y;
+      normal[row + 2] += z;
+    }
+  }
+  for (let i = 0; i < normal.length; i += 3) {
+    const x = normal[i], y = normal[i + 1], z = normal[i + 2], share = 1 / (Math.sqrt(x * x + y * y + z * z) || 1);
+    normal[i] = x * share;
+    normal[i + 1] = y * share;
+    normal[i + 2] = z * share;
+  }
+  attribute.needsUpdate = true;
 }
 
 // Makes the triangles of each material consecutive, as a group of the geometry. Returns a function that puts a list

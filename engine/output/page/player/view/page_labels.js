@@ -1,9 +1,10 @@
 // Names of bodies and colliders over the picture.
 "use strict";
 
-// Draws each name above its body, the nearest first; one that would cover another is left out. Sizes in pixels of the
-// page, `ratio` of the pen's own to one of them.
-function draw_labels(pen, named, camera, { width, height }, ratio, style) {
+// Draws each name above its body, the nearest first; one that would cover another is left out, and one that would be
+// below a card of the page is moved under it. covered: rectangles of these cards. Sizes in pixels of the page, `ratio`
+// of the pen's own to one of them.
+function draw_labels(pen, named, camera, { width, height, covered }, ratio, style) {
   const point = new THREE.Vector3(), places = [];
   for (const { name, box } of named) {
     point.set((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, (box.min.z + box.max.z) / 2);
@@ -27,12 +28,15 @@ function draw_labels(pen, named, camera, { width, height }, ratio, style) {
   pen.textBaseline = "bottom";
   pen.lineJoin = "round";
   const taken = [];
-  for (const { name, x, y } of places) {
+  const overlap = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+  for (const { name, x, y: wanted } of places) {
     const half = pen.measureText(name).width / 2 + 3;
-    const place = { left: x - half, right: x + half, top: y - 15, bottom: y };
-    if (place.right < 0 || place.left > width || y < 0 || y > height + 15) continue;
-    if (taken.some((other) => place.left < other.right && other.left < place.right && place.top < other.bottom
-      && other.top < place.bottom)) continue;
+    const place = { left: x - half, right: x + half, top: wanted - 15, bottom: wanted };
+    if (place.right < 0 || place.left > width || wanted < 0 || wanted > height + 15) continue;
+    for (const card of covered)
+      if (overlap(place, card)) Object.assign(place, { top: card.bottom + 3, bottom: card.bottom + 18 });
+    if ([...taken, ...covered].some((other) => overlap(place, other))) continue;
+    const y = place.bottom;
     taken.push(place);
     pen.lineWidth = 3;
     pen.strokeStyle = style.halo;

@@ -2,29 +2,34 @@
 // root of the force.
 "use strict";
 
-// list: {name, kind} by number. A force of `full_force` [N] gets a tube of the full radius.
-function make_lines(scene, list, frames, { size, spacing }, full_force) {
-  const count_points = (frame) => [...frame.lines.list.values()].reduce((sum, line) => sum + line.force.length, 0);
-  const capacity = Math.max(1, ...frames.map(count_points)), full_radius = Math.min(0.14 * spacing, 0.06 * size);
-  const color = new THREE.InstancedBufferAttribute(new Float32Array(3 * capacity), 3);
-  const dots = make_instances(scene, new THREE.IcosahedronBufferGeometry(1, 1), color);
+// run.lines: {name, kind} by number. A force of scales.line_force.top gets a tube of the full radius.
+function make_lines(scene, run, { size, spacing }, scales) {
+  const full_radius = Math.min(0.14 * spacing, 0.06 * size);
   const tube = new THREE.CylinderBufferGeometry(1, 1, 1, 10, 1, true);
   tube.translate(0, 0.5, 0);
-  const tubes = make_instances(scene, tube, color);
+  const copies = make_instances(scene, new THREE.IcosahedronBufferGeometry(1, 1), tube);
   const kind_colors = Object.fromEntries(Object.entries(colors.line).map(([kind, hex]) =>
     [kind, colors.linear(colors.parse(hex))]));
 
   const matrix = new THREE.Matrix4(), turn = new THREE.Quaternion(), scale = new THREE.Vector3();
   const point = new THREE.Vector3(), along = new THREE.Vector3(), y_axis = new THREE.Vector3(0, 1, 0);
   // One row for each point: its place, that of the next point of its line (its own if there is none), force, line.
-  const shown = { count: 0, top: 0, point: new Float32Array(3 * capacity), next: new Float32Array(3 * capacity),
-    force: new Float32Array(capacity), line: new Int32Array(capacity) };
+  const shown = { count: 0, top: 0, point: new Float32Array(0), next: new Float32Array(0),
+    force: new Float32Array(0), line: new Int32Array(0) };
+  function reserve(count) {
+    if (count <= shown.force.length) return;
+    Object.assign(shown, { point: new Float32Array(6 * count), next: new Float32Array(6 * count),
+      force: new Float32Array(2 * count), line: new Int32Array(2 * count) });
+  }
 
   // Lines that both frames have with equally many points move from one to the other.
   function blend_rows({ list: now, top }, next, blend) {
     let row = 0;
+    for (const line of now.values()) row += line.force.length;
+    reserve(row);
+    row = 0;
     for (const [number, line] of now) {
-      const points = line.force.length, then = next && next.list.get(number), joined = list[number].kind !== "tie";
+      const points = line.force.length, then = next && next.list.get(number), joined = run.lines[number].kind !== "tie";
       const share = then && then.force.length === points ? blend : 0;
       const mix = (values, others, k) => (share > 0 ? (1 - share) * values[k] + share * others[k] : values[k]);
       for (let p = 0; p < points; ++p) {
@@ -42,23 +47,22 @@ function make_lines(scene, list, frames, { size, spacing }, full_force) {
   function show(lines, next, blend, visible) {
     shown.count = 0;
     if (visible) blend_rows(lines, next, blend);
-    show_instances([...dots, ...tubes], shown.count);
+    copies.show(shown.count);
     for (let i = 0; i < shown.count; ++i) {
       point.fromArray(shown.point, 3 * i);
       along.fromArray(shown.next, 3 * i).sub(point);
-      const length = along.length(), strength = Math.sqrt(Math.min(Math.abs(shown.force[i]) / full_force, 1));
-      const radius = (0.35 + 0.65 * strength) * full_radius;
-      color.array.set(kind_colors[list[shown.line[i]].kind], 3 * i);
-      dots[0].setMatrixAt(i, matrix.compose(point, turn.set(0, 0, 0, 1), scale.setScalar(1.7 * radius)));
+      const length = along.length(), share = Math.abs(shown.force[i]) / scales.line_force.top;
+      const radius = (0.35 + 0.65 * Math.sqrt(Math.min(share, 1))) * full_radius;
+      copies.set_color(i, kind_colors[run.lines[shown.line[i]].kind]);
+      copies.set_place(0, i, matrix.compose(point, turn.set(0, 0, 0, 1), scale.setScalar(1.7 * radius)));
       if (length > 0) turn.setFromUnitVectors(y_axis, along.multiplyScalar(1 / length));
-      tubes[0].setMatrixAt(i, matrix.compose(point, turn, scale.set(length > 0 ? radius : 0, length, radius)));
+      copies.set_place(1, i, matrix.compose(point, turn, scale.set(length > 0 ? radius : 0, length, radius)));
     }
-    color.needsUpdate = true;
-    dots[0].instanceMatrix.needsUpdate = tubes[0].instanceMatrix.needsUpdate = true;
+    if (shown.count > 0) copies.upload(shown.count);
     return shown.count;
   }
   // The object of row i, and its force as it is shown.
-  const at = (i) => ({ ...list[shown.line[i]], force: shown.force[i],
+  const at = (i) => ({ ...run.lines[shown.line[i]], force: shown.force[i],
     error: half_code(Math.abs(shown.force[i]), shown.top / (2047 * 2047)) });
   return { show, shown, at };
 }

@@ -1,11 +1,16 @@
 // Mouse: left turns, right or with Shift moves, wheel zooms to what is under the pointer. Touch: one finger turns, two
-// move and zoom, a tap shows values.
+// move and zoom, a tap shows values. Live, the left button and one finger pull bodies.
 "use strict";
 
 // Places are in pixels of the canvas. hover(x, y) is called when the pointer rests on the picture, leave() when not.
-function listen_to_pointers(canvas, { turn, pan, zoom, reset, hover, leave }) {
+// pull: null, or {grab(x, y), which returns whether it took hold of a body, drag(x, y), drop()}.
+function listen_to_pointers(canvas, { turn, pan, zoom, reset, hover, leave, pull }) {
   const down = new Map();
-  let moved = 0;
+  let moved = 0, pulling = null;  // pulling: number of the pointer
+  const drop = () => {
+    if (pulling !== null) pull.drop();
+    pulling = null;
+  };
   const at = (event) => {
     const frame = canvas.getBoundingClientRect();
     return { x: event.clientX - frame.left, y: event.clientY - frame.top };
@@ -17,7 +22,10 @@ function listen_to_pointers(canvas, { turn, pan, zoom, reset, hover, leave }) {
   canvas.addEventListener("pointerdown", (event) => {
     try { canvas.setPointerCapture(event.pointerId); } catch (error) { /* a pointer that has gone already */ }
     if (down.size === 0) moved = 0;
-    down.set(event.pointerId, at(event));
+    else drop();  // with a second finger
+    const place = at(event), is_plain = event.button === 0 && !event.shiftKey && !event.ctrlKey && !event.altKey;
+    if (pull && down.size === 0 && is_plain && pull.grab(place.x, place.y)) pulling = event.pointerId;
+    down.set(event.pointerId, place);
   });
   canvas.addEventListener("pointermove", (event) => {
     const last = down.get(event.pointerId), now = at(event);
@@ -28,6 +36,11 @@ function listen_to_pointers(canvas, { turn, pan, zoom, reset, hover, leave }) {
     const dx = now.x - last.x, dy = now.y - last.y;
     moved += Math.abs(dx) + Math.abs(dy);
     if (moved > 4) leave();
+    if (event.pointerId === pulling) {
+      down.set(event.pointerId, now);
+      pull.drag(now.x, now.y);
+      return;
+    }
     if (down.size === 2) {
       const before = pair();
       down.set(event.pointerId, now);
@@ -44,9 +57,11 @@ function listen_to_pointers(canvas, { turn, pan, zoom, reset, hover, leave }) {
     canvas.addEventListener(name, (event) => {
       const place = down.get(event.pointerId);
       down.delete(event.pointerId);
+      if (event.pointerId === pulling) drop();
       if (place && name === "pointerup" && moved <= 4) hover(place.x, place.y);
     });
   canvas.addEventListener("pointerleave", (event) => { if (event.pointerType !== "touch") leave(); });
+  window.addEventListener("blur", drop);
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener("dblclick", reset);
   canvas.addEventListener("wheel", (event) => {

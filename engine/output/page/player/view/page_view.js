@@ -30,8 +30,11 @@ function make_view(host, up, box) {
   const sky = new THREE.HemisphereLight(0xffffff, 0x7b7672, 0.66);
   sky.position.copy(up);
   const key = new THREE.DirectionalLight(0xfffaf2, 0.62);
-  key.position.copy(box.center).addScaledVector(direction(0.55, -0.65, 1.25).normalize(), 4 * box.radius);
-  key.target.position.copy(box.center);
+  function light_up(center) {
+    key.position.copy(center).addScaledVector(direction(0.55, -0.65, 1.25).normalize(), 4 * box.radius);
+    key.target.position.copy(center);
+  }
+  light_up(box.center);
   key.castShadow = true;
   key.shadow.mapSize.set(2048, 2048);
   key.shadow.radius = 3;
@@ -48,6 +51,8 @@ function make_view(host, up, box) {
   const home = { turn: -1.05, lift: 0.38, distance: 1, place: 0, follow: true };
   const orbit = { ...home, offset: new THREE.Vector3() };
   const course = box.course.map(fitted);
+  const pace = make_pace();
+  let share = 1;  // of the pixels of a row that are drawn
   let dirty = true, shown_place = 0, pick = null, on_change = () => {};
 
   function outward(turned, lifted) {
@@ -135,30 +140,44 @@ function make_view(host, up, box) {
     moved();
   }
 
-  function render() {
-    if (!dirty) return;
+  const render = () => draw_at(pace.next(dirty));
+  const render_fine = () => draw_at(pace_levels[0]);
+  function draw_at(level) {
+    key.castShadow = level.shadows;
+    if (level.share !== share) {
+      share = level.share;
+      size_up();
+      dirty = true;
+    }
+    if (dirty) draw();
+  }
+  function draw() {
     dirty = false;
     renderer.render(scene, camera);
   }
+  // Sets the number of pixels, and returns width by height.
+  function size_up() {
+    const width = Math.max(host.clientWidth, 1), height = Math.max(host.clientHeight, 1);
+    renderer.setPixelRatio(share * Math.min(window.devicePixelRatio || 1, 2));
+    renderer.setSize(width, height);
+    return width / height;
+  }
   // A new size clears the canvas, so it is drawn at once: a blank picture would flash until the next turn of the loop.
   function resize() {
-    const width = Math.max(host.clientWidth, 1), height = Math.max(host.clientHeight, 1);
-    renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
-    renderer.setSize(width, height);
-    camera.aspect = width / height;
+    camera.aspect = size_up();
     place_camera();
-    render();
+    draw();
     on_change(orbit.follow);
   }
   new ResizeObserver(resize).observe(host);
   resize();
 
   return {
-    scene, camera, canvas: renderer.domElement, ray, turn, zoom, reset, render,
+    scene, camera, canvas: renderer.domElement, ray, turn, zoom, reset, render, render_fine,
     // What turns and zooms with pointers asks: pick(origin, direction) gives {distance} or null.
-    attach: (picker, hover, leave) => {
+    attach: (picker, hover, leave, pull) => {
       pick = picker;
-      listen_to_pointers(renderer.domElement, { turn, pan, zoom, reset, hover, leave });
+      listen_to_pointers(renderer.domElement, { turn, pan, zoom, reset, hover, leave, pull });
     },
     // changed(follow) is called after each movement that somebody made.
     watch: (changed) => { on_change = changed; },
@@ -172,6 +191,13 @@ function make_view(host, up, box) {
       if (!orbit.follow || orbit.place === place) return;
       orbit.place = place;
       if (course.length > 1) place_camera();
+    },
+    // The box that is shown while following, of a run that goes on.
+    aim: (shown) => {
+      course[0] = fitted(shown);
+      box.center.copy(course[0].center);
+      light_up(box.center);
+      if (orbit.follow) place_camera();
     },
     follow: (on) => {
       if (on) return reset();

@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+"""Prints a header with its `//` comments as docstrings, as doxygen expects them.
+
+- The comment at the top describes the file.
+- A comment behind a member describes this member.
+- A comment above a member, without an empty line before it, describes this member too.
+- A comment after an empty line or `public:` in a class is the title of the members that follow.
+"""
+
+import re
+import sys
+
+COMMENT = re.compile(r"( *)//(?!/) ?(.*)")
+BEHIND = re.compile(r"(.*[^\s/].*?)\s+//(?!/) (.*)")
+
+
+def docstrings_of(lines: list[str]) -> list[str]:
+    """The lines of a header after the conversion."""
+    result: list[str] = []
+    in_group = False
+    at = 0
+    while at < len(lines):
+        comment = COMMENT.fullmatch(lines[at])
+        if comment is None:
+            if in_group and re.match(r"\};|private:|protected:", lines[at].strip()):
+                result.append("///@}")
+                in_group = False
+            result.append(BEHIND.sub(r"\1  ///< \2", lines[at]))
+            at += 1
+            continue
+        end = at
+        while end < len(lines) and (more := COMMENT.fullmatch(lines[end])) and more[1] == comment[1]:
+            end += 1
+        text = [COMMENT.fullmatch(line)[2] for line in lines[at:end]]
+        before = lines[at - 1].strip() if at else ""
+        if at == 0:
+            result += ["/// @file", *("/// " + line for line in text)]
+        elif before and before != "public:":
+            behind = re.search(r"///<", result[-1])
+            result += [("///< " if behind and len(comment[1]) > 20 else "/// ") + line for line in text]
+        elif comment[1]:
+            title, _, rest = " ".join(text).partition(". ")
+            result += ["///@}"] if in_group else []
+            result += [f"/// @name {title.rstrip('.')}", f"/// {rest}", "///@{"]
+            in_group = True
+        at = end
+    return result
+
+
+if __name__ == "__main__":
+    with open(sys.argv[1], encoding="utf-8") as header:
+        print("\n".join(docstrings_of(header.read().splitlines())))

@@ -1,0 +1,418 @@
+"""The live view as programs see it: what the server refuses, what it sends, and what clients may do."""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import itertools
+import math
+import os
+import random
+import re
+import resource
+import socket
+import struct
+import time
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import skerry as sk
+from live_client import Client, answer_to, connect, place_of, upgrade
+from worlds import RUBBER, ball_world
+
+
+@pytest.fixture
+def view() -> Any:
+    with sk.view(ball_world()[0], open=False) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def shared() -> Any:
+    """A view for tests that leave it as it is."""
+    with sk.view(ball_world()[0], open=False) as opened:
+        yield opened
+
+
+def status_of(answer: bytes) -> int:
+    found = re.match(rb"HTTP/1\.[01] (\d+) ", answer)
+    assert found, answer[:200]
+    return int(found[1])
+
+
+# Who is let in.
+
+
+def test_the_page_is_served_without_secrets(shared: sk.View) -> None:
+    port, token = place_of(shared)
+    answer = answer_to(port, "GET / HTTP/1.1", f"Host: 127.0.0.1:{port}", "Connection: close")
+    head = answer.split(b"\r\n\r\n")[0].lower()
+    assert status_of(answer) == 200 and b"<!doctype html" in answer[: len(head) + 400].lower()
+    assert b"content-security-policy:" in head and b"nosniff" in head and b"no-store" in head
+    assert token.encode() not in answer
+
+
+def test_the_server_listens_on_the_loopback_address_only(shared: sk.View) -> None:
+    port, _ = place_of(shared)
+    listening = [
+        line.split()[1]
+        for table in ("/proc/net/tcp", "/proc/net/tcp6")
+        for line in Path(table).read_text().splitlines()[1:]
+        if line.split()[3] == "0A" and int(line.split()[1].rsplit(":")[1], 16) == port
+    ]
+    assert listening == [f"0100007F:{port:04X}"]
+
+
+def test_the_right_token_connects(shared: sk.View) -> None:
+    port, token = place_of(shared)
+    assert len(token) >= 32
+    assert status_of(answer_to(port, *upgrade(port, token), seconds=0.3)) == 101
+    local = {"Host": f"localhost:{port}", "Origin": f"http://localhost:{port}"}
+    assert status_of(answer_to(port, *upgrade(port, token, **local), seconds=0.3)) == 101
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"Origin": "http://evil.example"},
+        {"Origin": "null"},
+        {"Origin": None},
+        {"Origin": "https://127.0.0.1:PORT"},
+        {"Origin": "http://127.0.0.1:1"},
+        {"Origin": "http://127.0.0.1:PORT.evil.example"},
+        {"Host": "evil.example"},
+        {"Host": "evil.example:PORT"},
+        {"Host": "127.0.0.1"},
+        {"Host": None},
+    ],
+    ids=str,
+)
+def test_a_foreign_origin_or_host_is_refused(shared: sk.View, changes: dict[str, str | None]) -> None:
+    port, token = place_of(shared)
+    given = {name: value and value.replace("PORT", str(port)) for name, value in changes.items()}
+    answer = answer_to(port, *upgrade(port, token, **given))
+    assert status_of(answer) in (400, 403) and b"ball" not in answer
+
+
+@pytest.mark.parametrize("host", ["evil.example", "evil.example:PORT", "127.0.0.1:1", "[::1]:PORT"])
+def test_the_page_is_refused_to_a_foreign_host(shared: sk.View, host: str) -> None:
+    port, _ = place_of(shared)
+    answer = answer_to(port, "GET / HTTP/1.1", f"Host: {host.replace('PORT', str(port))}", "Connection: close")
+    assert status_of(answer) == 403 and len(answer) < 2000
+
+
+def test_a_wrong_token_is_refused(shared: sk.View) -> None:
+    port, token = place_of(shared)
+    wrong = ("0" if token[-1] != "0" else "1") + token[1:]
+    for given in (None, "", wrong, token[:-1], token + "0", token.swapcase() + "!", "%00" + token):
+        answer = answer_to(port, *upgrade(port, given))
+        assert status_of(answer) == 403, given
+
+
+def test_nothing_but_the_page_is_served(shared: sk.View) -> None:
+    port, token = place_of(shared)
+    for target in ("/etc/passwd", "/../../etc/passwd", "/%2e%2e/", "/live", "/index.html", f"/?token={token}x" * 500):
+        answer = answer_to(port, f"GET {target} HTTP/1.1", f"Host: 127.0.0.1:{port}", "Connection: close")
+        assert status_of(answer) >= 400, target
+    for method in ("POST", "PUT", "DELETE", "OPTIONS", "PROPFIND"):
+        lines = [f"{method} / HTTP/1.1", f"Host: 127.0.0.1:{port}", "Content-Length: 0", "Connection: close"]
+        assert status_of(answer_to(port, *lines)) >= 400, method
+
+
+# What clients get.
+
+
+def advance(client: Client, dt: float = 0.01) -> None:
+    """Advances by dt and waits until the client has the frame."""
+    world, count = client.view.world, len(client.frames)
+    world.advance(dt)
+    client.wait(lambda: len(client.frames) > count)
+
+
+def test_a_client_gets_the_run_and_then_rows_with_frames(view: sk.View) -> None:
+    with connect(view) as client:
+        client.wait(lambda: client.frames)
+        for _ in range(5):
+            advance(client)
+        assert client.messages[0]["type"] == "begin"
+        assert [body for more in client.of_type("add") for body in more["bodies"]] == ["ball"]
+        assert client.state == {"playing": True, "rate": 1, "gravity": True}
+        assert [row["number"] for row in client.rows] == sorted({row["number"] for row in client.rows})
+        last = client.rows[-1]
+        assert last["time"] == pytest.approx(view.world.time, abs=1e-12)
+        assert last["kinetic"] == pytest.approx(view.world.energy.kinetic, rel=1e-6)
+
+
+def inflated_frames(page: str) -> bytes:
+    """The stream of all frames of a page."""
+    packed = re.search(r'id="frames"[^>]*>([^<]*)<', page)
+    assert packed
+    return zlib.decompress(base64.b64decode(packed[1]))
+
+
+def test_frames_have_the_bytes_of_a_recorded_page() -> None:
+    world, _, _ = ball_world()
+    with sk.view(world, open=False) as view, connect(view) as client:
+        client.send("fields", names=["stress", "strain"])
+        client.settle()
+        client.wait(lambda: client.frames)
+        for _ in range(10):
+            advance(client)
+        live, times = client.frames, [row["time"] for row in client.rows]
+    again, _, _ = ball_world()
+    with again.record(every=0) as film:
+        for before, after in itertools.pairwise(times):
+            again.advance(0.01 if after > before else 0)  # View.sync() may show a state twice
+    assert b"".join(live) == inflated_frames(film.show().html)
+    assert again.state_hash == world.state_hash
+
+
+def test_two_clients_are_served_and_a_fifth_is_refused(view: sk.View) -> None:
+    with connect(view) as first, connect(view) as second, connect(view), connect(view):
+        view.world.advance(0.01)
+        for client in (first, second):
+            client.wait(lambda: client.rows and client.rows[-1]["time"] > 0)  # noqa: B023
+        with connect(view) as fifth:
+            fifth.wait(lambda: fifth.of_type("problem"))
+            assert "found 4 browsers" in fifth.of_type("problem")[0]["text"] and not fifth.frames
+        assert view.client_count == 4
+
+
+def test_a_looking_client_does_not_change_the_bits(view: sk.View) -> None:
+    alone, _, _ = ball_world()
+    with connect(view) as client:
+        for _ in range(10):
+            advance(client)
+            alone.advance(0.01)
+    assert view.world.state_hash == alone.state_hash
+
+
+# Commands.
+
+
+def test_commands_change_the_world_and_all_clients_see_it(view: sk.View) -> None:
+    world = view.world
+    with connect(view) as client, connect(view) as other:
+        client.send("gravity", on=False)
+        other.wait(lambda: other.state.get("gravity") is False)
+        assert tuple(world.settings.gravity) == (0, 0, 0)
+        client.send("gravity", on=True)
+        client.send("rate", value=0.25)
+        client.send("pause")
+        other.wait(lambda: other.state["playing"] is False)
+        assert tuple(world.settings.gravity) == (0, 0, -9.81)
+        assert other.state["rate"] == 0.25 and not view.playing
+
+
+def test_reset_goes_back_to_the_start(view: sk.View) -> None:
+    world = view.world
+    ball, start = world.bodies["ball"], world.state_hash
+    with connect(view) as client:
+        advance(client, 0.05)
+        client.send("reset")
+        client.wait(lambda: len(client.of_type("begin")) == 2)
+        assert world.time == 0 and world.state_hash == start and ball.alive
+        advance(client)
+
+
+def test_a_pulled_ball_follows_a_critically_damped_spring(view: sk.View) -> None:
+    """The surface point is pulled along the line through the centre, without gravity: 1 - (1 + w t) exp(-w t)."""
+    world = view.world
+    world.set_gravity((0, 0, 0))
+    ball = world.bodies["ball"]
+    top = ball.positions[np.argmax(ball.positions[:, 2])]
+    start, way, w = ball.center_of_mass[2], 0.1, 2 * math.pi * 2
+    with connect(view) as client:
+        client.wait(lambda: client.frames)
+        client.send("pull", body=0, point=list(top), to=[top[0], top[1], top[2] + way])
+        client.wait(lambda: client.rows and client.rows[-1]["pull"])
+        begun = world.time
+        for _ in range(20):
+            advance(client, 0.02)
+            t = world.time - begun
+            expected = way * (1 - (1 + w * t) * math.exp(-w * t))
+            assert ball.center_of_mass[2] - start == pytest.approx(expected, abs=0.03 * way)
+        pull = client.rows[-1]["pull"]
+        stiffness = ball.mass * w**2
+        assert pull["force"] == pytest.approx(stiffness * pull["length"], rel=0.02)
+        client.send("release")
+        client.wait(lambda: client.rows[-1]["pull"] is None)
+    assert len(world.springs) == 0
+
+
+MALFORMED = [
+    "",
+    "{",
+    "[]",
+    "null",
+    "7",
+    '{"do":7}',
+    '{"do":"fly"}',
+    '{"do":"rate"}',
+    '{"do":"rate","value":"x"}',
+    '{"do":"rate","value":-1}',
+    '{"do":"rate","value":1e999}',
+    '{"do":"slider","number":0,"value":1}',
+    '{"do":"slider","number":-1,"value":1}',
+    '{"do":"pull","body":5,"point":[0,0,0],"to":[0,0,0]}',
+    '{"do":"pull","body":0,"point":[0,0],"to":[0,0,0]}',
+    '{"do":"pull","body":0,"point":[0,0,0],"to":[0,0,null]}',
+    '{"do":"fields","names":["colour"]}',
+    '{"do":"seen","number":-5}',
+    '{"do":"seen","number":"x"}',
+    '{"do":"gravity","on":1}',
+    "[" * 500,
+    '{"do":"pause","do":"fly","x":' + "[" * 500,
+]
+
+
+def test_a_malformed_command_is_a_problem_and_changes_nothing(view: sk.View) -> None:
+    with connect(view) as client:
+        client.wait(lambda: client.frames)
+        for count, text in enumerate(MALFORMED):
+            client.connection.send(text)
+            client.wait(lambda: len(client.of_type("problem")) > count)  # noqa: B023
+        advance(client)
+        assert view.playing and client.state["rate"] == 1
+        assert all(problem["text"] for problem in client.of_type("problem"))
+    world, _, _ = ball_world()
+    world.advance(0.01)
+    assert world.state_hash == view.world.state_hash
+
+
+def test_a_thousand_quick_commands_are_applied_in_order(view: sk.View) -> None:
+    with connect(view) as client:
+        for number in range(1000):
+            client.send("rate", value=(number + 1) / 100)
+        client.settle()
+        client.wait(lambda: client.of_type("state") and client.state["rate"] == 10)
+        advance(client)
+
+
+def frame_of(payload: bytes, opcode: int, *, length: int | None = None) -> bytes:
+    """A frame of a client as bytes (RFC 6455, 5.2). length: the length that it claims."""
+    count = len(payload) if length is None else length
+    size = bytes([0x80 | count]) if count < 126 else struct.pack(">BQ", 0x80 | 127, count)
+    return bytes([0x80 | opcode]) + size + b"\0\0\0\0" + payload
+
+
+def connection_of(view: sk.View) -> socket.socket:
+    """A socket after a good handshake."""
+    port, token = place_of(view)
+    connection = socket.create_connection(("127.0.0.1", port), timeout=10)
+    connection.sendall("".join(line + "\r\n" for line in [*upgrade(port, token), ""]).encode())
+    head = b""
+    while b"\r\n\r\n" not in head:
+        head += connection.recv(1)
+    assert status_of(head) == 101
+    return connection
+
+
+def wait_for_clients(view: sk.View, count: int) -> None:
+    end = time.monotonic() + 20
+    while view.client_count != count:
+        assert time.monotonic() < end, f"{view.client_count} clients, expected {count}"
+        view.sync()
+        time.sleep(0.005)
+
+
+BREACHES = [
+    frame_of(b"x" * (1 << 20), 1),
+    frame_of(b"x", 1, length=1 << 40),
+    frame_of(b"x", 1, length=(1 << 64) - 1),
+    frame_of(b"\xff\xfe", 1),
+    frame_of(b"", 2),
+    bytes([0x81, 0x05]) + b"hello",
+    bytes(range(256)) * 40,
+]
+
+
+def test_a_client_that_breaks_the_protocol_hurts_only_itself(view: sk.View) -> None:
+    with connect(view) as client:
+        client.wait(lambda: client.frames)
+        for data in BREACHES:
+            with connection_of(view) as bad, contextlib.suppress(BrokenPipeError, ConnectionResetError):
+                bad.sendall(data)
+                advance(client)
+        wait_for_clients(view, 1)
+        advance(client)
+
+
+def test_a_client_that_leaves_in_the_middle_of_a_frame_is_forgotten(view: sk.View) -> None:
+    with connect(view) as client:
+        client.wait(lambda: client.frames)
+        for cut in (1, 3, 7, 12):
+            bad = connection_of(view)
+            bad.sendall(frame_of(b'{"do":"pause"}', 1)[:cut])
+            bad.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # ends by a reset
+            bad.close()
+        wait_for_clients(view, 1)
+        advance(client)
+        assert view.playing
+
+
+def test_a_client_that_hangs_slows_nothing_and_keeps_no_memory() -> None:
+    world = sk.World(threads=1, gravity=(0, 0, 0))
+    world.add_body(sk.Mesh.ball(0.1, 12), RUBBER, dynamics="rigid", angular_velocity=(0, 0, 3))
+    with sk.view(world, open=False) as view, connection_of(view):  # does not read
+        wait_for_clients(view, 1)
+        with connect(view) as client:
+            for _ in range(20):
+                advance(client)
+            before, count = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, len(client.frames)
+            while len(client.frames) < count + 30:
+                world.advance(0.001)
+                view.sync()
+                client.take(0)
+            grown = 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+            assert view.frames_dropped > 0 and view.client_count == 2
+            assert grown < sum(map(len, client.frames)), f"{grown} bytes more"
+
+
+def test_a_slow_handshake_blocks_nobody(view: sk.View) -> None:
+    port, _ = place_of(view)
+    with socket.create_connection(("127.0.0.1", port)) as slow, socket.create_connection(("127.0.0.1", port)):
+        slow.sendall(b"GET / HT")
+        with connect(view) as client:
+            client.wait(lambda: client.frames)
+
+
+def test_a_port_in_use_is_an_error() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(sk.SceneError, match=rf"port: found {port}, which cannot be opened"):
+            sk.view(ball_world()[0], port=port, open=False)
+
+
+def test_a_view_that_is_closed_frees_its_port(view: sk.View) -> None:
+    port, _ = place_of(view)
+    view.close()
+    assert not view.is_open
+    view.close()
+    with sk.view(view.world, port=port, open=False) as again:
+        assert place_of(again)[0] == port and again.address != view.address
+
+
+@pytest.mark.skipif("SKERRY_FULL" not in os.environ, reason="SKERRY_FULL is not set")
+def test_random_bytes_do_no_harm(view: sk.View) -> None:
+    seed = random.randrange(1 << 32)
+    draw, port = random.Random(seed), place_of(view)[0]
+    print(f"seed {seed}")
+    with connect(view) as client:
+        end = time.monotonic() + 10
+        while time.monotonic() < end:
+            start: Any = draw.choice([connection_of, lambda _: socket.create_connection(("127.0.0.1", port))])
+            with start(view) as bad:
+                try:
+                    for _ in range(draw.randrange(1, 20)):
+                        noise = draw.randbytes(draw.randrange(1, 400))
+                        bad.sendall(draw.choice([noise, frame_of(noise[:100], draw.randrange(16))]))
+                except (BrokenPipeError, ConnectionResetError):
+                    pass
+            view.sync()
+            client.take(0)
+        advance(client)
