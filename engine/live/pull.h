@@ -19,8 +19,8 @@ struct PullState {
 /// Drags a body by a spring without rest length from a point of its surface to a target. The stiffness is m (2 pi f)^2
 /// with the mass m of the body and f = 2 Hz. The force is at most 50 times m 9.81 m/s^2. For a body that deforms, up to
 /// 12 parallel springs around the point share stiffness and force. A drag field damps the body critically: a stiff free
-/// body approaches the target as (1 + w t) exp(-w t) with w = 2 pi f. Unlike a damper at the point, the drag does not
-/// shorten the step of a fine mesh.
+/// body approaches the target as (1 + w t) exp(-w t) with w = 2 pi f. A damper at the point would shorten the
+/// step of a fine mesh; the drag and the springs make it about 3 % shorter, and 25 % for an implicit body.
 ///
 /// The springs and the field are objects of the world until end(). They are removed with the body. After World::reset
 /// to a clone without them, the pull is over.
