@@ -6,9 +6,13 @@ live_view.py [TRIANGLES]...    numbers of surface triangles; default: 20000 and 
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 import json
 import multiprocessing
+import os
 import pathlib
+import statistics
 import sys
 import time
 from multiprocessing.synchronize import Event
@@ -20,7 +24,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests/pyth
 
 from browser import open_browser  # noqa: E402
 
-SECONDS = 10.0  # duration of each measurement [s]
+WARM_UP, SECONDS = 5.0, 10.0  # durations before and of a measurement [s]
 
 # Notes the times at which the page acknowledges frames, and the sizes of the frames.
 WATCH = """
@@ -65,31 +69,40 @@ def swinging_sheet(triangles: int) -> sk.World:
     return world
 
 
+def cpu_of_session(session: int) -> float:
+    """CPU time of all processes of a session so far [s]."""
+    ticks = 0
+    for file in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            fields = file.read_text().rpartition(")")[2].split()
+            ticks += int(fields[11]) + int(fields[12]) if int(fields[3]) == session else 0
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
 def measure_browser(triangles: int) -> None:
-    """Prints frames per second, the longest time between two frames, and the bytes of a frame."""
+    """Prints frames per second, the longest time between two frames, and CPU time of the browser and bytes per
+    frame."""
     world = spinning_balls(triangles)
     with sk.view(world, open=False) as view, open_browser((1280, 800)) as tab:
         tab.call("Page.enable")
         tab.call("Page.addScriptToEvaluateOnNewDocument", source=WATCH)
         tab.open(view.address)
-        begun, warm = time.monotonic(), 3.0
-        while time.monotonic() < begun + warm + SECONDS:
-            if time.monotonic() < begun + warm:
-                start = None
-            elif start is None:
-                start = world.time, view.frames_sent, view.frames_dropped
+        begun, start = time.monotonic(), 0.0
+        while time.monotonic() < begun + WARM_UP + SECONDS:
+            if not start and time.monotonic() > begun + WARM_UP:
+                start, cpu = tab.evaluate("performance.now()"), cpu_of_session(tab.session)
             world.advance(1 / 60)
             view.sync()
             time.sleep(max(0, begun + world.time - time.monotonic()))
+        cpu = cpu_of_session(tab.session) - cpu
         watched = json.loads(tab.evaluate("JSON.stringify(window.watched)"))
-    drawn = [at for at in watched["drawn"] if at > watched["drawn"][-1] - 1000 * SECONDS]
-    gaps = [after - before for before, after in zip(drawn, drawn[1:], strict=False)]
+    drawn = [at for at in watched["drawn"] if at > start]
+    gaps = [after - before for before, after in itertools.pairwise(drawn)]
     count = sum(len(body.surface) for body in world.bodies.values())
-    rate = 1000 * len(gaps) / (drawn[-1] - drawn[0])
-    sizes = sorted(watched["bytes"])
+    rate, size = 1000 * len(gaps) / (drawn[-1] - drawn[0]), statistics.median(watched["bytes"])
     print(
-        f"{count:7,} triangles: {rate:5.1f} frames/s, longest gap {max(gaps):4.0f} ms, "
-        f"{sizes[len(sizes) // 2] / 1000:.0f} kB per frame",
+        f"{count:7,} triangles: {rate:.1f} frames/s, longest gap {max(gaps):.0f} ms, {1000 * cpu / len(drawn):.0f} ms "
+        f"of CPU time and {size / 1000:.0f} kB per frame",
         flush=True,
     )
 
@@ -97,10 +110,14 @@ def measure_browser(triangles: int) -> None:
 def read_frames(address: str, fields: list[str], ready: Event, done: Event) -> None:
     """A client that reads and acknowledges frames until `done`."""
     from websockets.sync.client import connect
+    from websockets.typing import Origin
 
     parts = urlsplit(address)
     with connect(
-        f"ws://{parts.netloc}/live?{parts.fragment}", origin=f"http://{parts.netloc}", max_size=None, compression=None
+        f"ws://{parts.netloc}/live?{parts.fragment}",
+        origin=Origin(f"http://{parts.netloc}"),
+        max_size=None,
+        compression=None,
     ) as socket:
         socket.send(json.dumps({"do": "fields", "names": fields}))
         number = 0
@@ -116,47 +133,40 @@ def read_frames(address: str, fields: list[str], ready: Event, done: Event) -> N
                 number = row["number"]
 
 
-def cpu_seconds(world: sk.World, view: sk.View | None, calls: int) -> float:
-    """CPU time of the thread that advances the world [s]."""
-    begun = time.thread_time()
+def sync_seconds(world: sk.World, view: sk.View, calls: int) -> float:
+    """CPU time of calls of View.sync() on the thread that advances the world [s]."""
+    total = 0.0
     for _ in range(calls):
         world.advance(1 / 480)
-        if view:
-            view.sync()
-    return time.thread_time() - begun
+        begun = time.thread_time()
+        view.sync()
+        total += time.thread_time() - begun
+    return total
 
 
 def measure_cost(triangles: int, fields: list[str]) -> None:
-    """Prints the CPU time that the view adds to the simulation: without a client, and with one. Runs with and without
-    the view alternate, and the least time of each counts."""
+    """Prints the CPU time that the view takes from the simulation, without a client and with one that takes each
+    frame. The encoding of frames runs on another thread and is not counted."""
     world = swinging_sheet(triangles)
-    calls = 1
-    while (one := cpu_seconds(world, None, calls)) < SECONDS / 10:
-        calls *= 2
-    times: dict[str, list[float]] = {"alone": [one], "view": [], "client": []}
     context = multiprocessing.get_context("spawn")
     with sk.view(world, open=False) as view:
-        for _ in range(5):
-            times["alone"].append(cpu_seconds(world, None, calls))
-            times["view"].append(cpu_seconds(world, view, calls))
-            ready, done = context.Event(), context.Event()
-            client = context.Process(target=read_frames, args=(view.address, fields, ready, done))
-            client.start()
-            while not ready.is_set():
-                view.sync()
-                time.sleep(0.01)
-            sent, begun = view.frames_sent, time.monotonic()
-            times["client"].append(cpu_seconds(world, view, calls))
-            rate = (view.frames_sent - sent) / (time.monotonic() - begun)
-            done.set()
-            client.join()
-            while view.client_count:
-                view.sync()
-                time.sleep(0.01)
-    added = {name: min(times[name]) / min(times["alone"]) - 1 for name in times}
+        alone = sync_seconds(world, view, 100) / 100
+        ready, done = context.Event(), context.Event()
+        client = context.Process(target=read_frames, args=(view.address, fields, ready, done))
+        client.start()
+        while not ready.is_set():
+            view.sync()
+            time.sleep(0.01)
+        sent, cost, begun, end = view.frames_sent, 0.0, time.thread_time(), time.monotonic() + SECONDS
+        while time.monotonic() < end:
+            cost += sync_seconds(world, view, 10)
+        frame, share = cost / (view.frames_sent - sent), cost / (time.thread_time() - begun)
+        done.set()
+        client.join()
     print(
-        f"{len(world.bodies['sheet'].surface):7,} triangles, {' and '.join(fields) or 'speed'}: cost of the view "
-        f"without a client {added['view']:+.2%}, with a client {added['client']:+.2%} at {rate:.0f} frames/s",
+        f"{len(world.bodies['sheet'].surface):7,} triangles, colours by {' and '.join(fields) or 'speed'}: a call of "
+        f"sync() takes {1e6 * alone:.1f} us without a client; a frame takes {1000 * frame:.2f} ms, and the view "
+        f"{share:.1%} of the simulation",
         flush=True,
     )
 

@@ -34,8 +34,9 @@ ARGUMENTS = [
 class Tab:
     """A tab of the browser."""
 
-    def __init__(self, socket: Any) -> None:
+    def __init__(self, socket: Any, session: int) -> None:
         self._socket = socket
+        self.session = session  # number of the session of all processes of the browser
         self._numbers = itertools.count(1)
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:
@@ -127,7 +128,7 @@ def open_browser(size: tuple[int, int] = (900, 700)) -> Iterator[Tab]:
             with urllib.request.urlopen(f"http://127.0.0.1:{port.read_text().split()[0]}/json/list") as answer:
                 pages = [target for target in json.load(answer) if target["type"] == "page"]
             with client.connect(pages[0]["webSocketDebuggerUrl"], max_size=None) as socket:
-                yield Tab(socket)
+                yield Tab(socket, process.pid)
         finally:
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()

@@ -206,7 +206,7 @@ def test_a_body_pulled_with_the_mouse_moves_as_a_critically_damped_spring(tab: T
     expected = 1 - (1 + w * t) * np.exp(-w * t)
     held = (t > 0) & (table["time"] < released)
     assert held.sum() > 20
-    assert moved[held] == pytest.approx(expected[held, None] * way, abs=0.01 * np.linalg.norm(way))
+    assert moved[held] == pytest.approx(expected[held, None] * way, abs=0.01 * float(np.linalg.norm(way)))
 
 
 def test_a_page_with_a_wrong_token_says_so(tab: Tab, tmp_path: Path) -> None:

@@ -162,8 +162,8 @@ def view(
     World.recorder(); default: those of the scene. title: heading; default: the name of the scene.
 
     SceneError: the port is in use, a probe is wrong, or this build has no server."""
-    scene = world if isinstance(world, Scene) else None
-    shown = scene.world if scene else checked(world, "view: world", World)  # type: ignore[union-attr]
+    checked(world, "view: world", World, Scene)
+    scene, shown = (world, world.world) if isinstance(world, Scene) else (None, world)
     given = (scene.probes if scene else {}) if probes is None else probes
     core = _core.LiveView(
         shown._core,
