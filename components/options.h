@@ -20,8 +20,12 @@ enum class ElementKind { linear, smoothed, edge_smoothed, edge_node_smoothed };
 /// Friction laws. cone: Coulomb's friction cone. pyramid: the approximation of the cone with four sides of Lazarevych
 /// et al. (2010) (docs/methods/friction.md 1.3).
 enum class Friction { cone, pyramid };
+/// Division of contacts into regions. separate: contacts that do not influence each other are solved separately.
+/// global: all contacts form one region.
 enum class ContactRegions { separate, global };
+/// Contact solvers (docs/solvers.md).
 enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr };
+/// Libraries that run the tasks of a step on several threads.
 enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first backend of this build
 enum class WarmStart { off, on };
 /// Treatment of new bodies that overlap other bodies or colliders, before the next step. resolve: the bodies are moved

@@ -25,6 +25,7 @@ PAGE_OF = {
     "docs/decisions": "reference/decisions.md",
     "examples/notebooks": "tutorials.md",
     "examples/python": "examples.md",
+    "scenes/keys": "reference/scene.md",
     "docs/scene.schema.json": "reference/scene.md",
 }
 LINK = re.compile(r"\]\(([^()\s#:]+)(#[^()\s]*)?\)")

@@ -17,7 +17,12 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
+/// Result of a call of World::advance. ok: all steps were taken. stopped: the caller ended the call between two steps.
+/// With the other values a step was refused. not_finite: a velocity would not be finite. too_fast: a body would deform
+/// too far in one step. too_far: a body is so far from the origin that its positions have too few digits. too_stiff:
+/// the stable step is too short to advance the time. unsolved: Newton's method for large strain did not converge.
 enum class StepStatus { ok, not_finite, too_fast, too_far, too_stiff, unsolved, stopped };
+/// Motion of a contact in the last step. open: the objects do not press on each other.
 enum class ContactMotion { open, stick, slide };
 /// The condition that limits the length of a step (docs/step_length.md). The speed limit is computed before a step.
 /// Inversions, crossings and sudden impacts are found during an attempt at a step, which is then discarded. After such
@@ -89,6 +94,7 @@ struct StageReport {
     std::uint64_t skipped = 0;
 };
 
+/// Energies of a world.
 struct Energy {
     Real kinetic = 0;     // [J]
     Real elastic = 0;     // [J]

@@ -38,6 +38,7 @@ struct Plasticity {
     bool operator==(const Plasticity&) const = default;
 };
 
+/// Elasticity, losses, friction and plasticity of a material.
 struct MaterialSettings {
     Real young_modulus = 1e5;  // > 0 [Pa]
     Real poisson_ratio = 0.4;  // Poisson's ratio, > -1 and < 0.5
@@ -123,20 +124,25 @@ struct BodySettings {
     std::string name{};  // name of the body in messages and output
 };
 
+/// A half-space. The side that the normal points to is free.
 struct Plane {
     Vec3 normal = {0, 0, 1};    // normal vector, of any length except zero
     Vec3 point = Vec3::Zero();  // [m]
 };
+/// A sphere around the origin of its frame.
 struct Sphere {
     Real radius = 1;  // [m]
 };
+/// A box around the origin of its frame.
 struct Box {
     Vec3 size = {1, 1, 1};  // edge lengths [m]
 };
+/// A cylinder with hemispheres at its ends, around the origin of its frame. The axis is z.
 struct Capsule {
     Real radius = 0.5;  // [m]
     Real length = 1;    // length of the straight part, along z [m]
 };
+/// A cylinder with flat ends, around the origin of its frame. The axis is z.
 struct Cylinder {
     Real radius = 0.5;  // [m]
     Real height = 1;    // height along z, from -height / 2 to height / 2 [m]
@@ -172,6 +178,7 @@ struct Motion {
     }
 };
 
+/// Pose, motion and surface properties of a collider.
 struct ColliderSettings {
     Vec3 position = Vec3::Zero();  // [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
