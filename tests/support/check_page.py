@@ -329,7 +329,7 @@ LIVE = """
     check(root.dataset.bodies === "3", "a new body appears");
     while (server.at < 44) server.push(1);
     await server.frame(1);
-    check(Number(root.dataset.drawn) < 10, "of many frames that wait the newest is drawn, not " + root.dataset.drawn);
+    check(Number(root.dataset.drawn) < 10, "only the newest of waiting frames is drawn, not " + root.dataset.drawn);
     check(root.dataset.bodies === "2", "a removed body disappears");
     while (!/x 44\u202fm/.test(find("probe_plots").textContent)) await wait(20);
 
@@ -352,7 +352,8 @@ LIVE = """
         for (let row = 0; row < contacts.count; ++row) total += list[3 * row + axis];
         return total;
       });
-      check(distance(sum(contacts.point), points) <= contacts.count * 2 * shape.step, "frame " + i + ": contact points");
+      check(distance(sum(contacts.point), points) <= contacts.count * 2 * shape.step,
+        "frame " + i + ": contact points");
       check(distance(sum(contacts.force), forces) <= 2e-3 * distance(forces, [0, 0, 0]), "frame " + i + ": forces "
         + sum(contacts.force) + ", expected " + forces);
     });

@@ -1,6 +1,11 @@
 // Puts the page together.
 "use strict";
 
+function is_without_gpu(gl) {
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  return names !== null && /swiftshader|llvmpipe|softpipe/i.test(gl.getParameter(names.UNMASKED_RENDERER_WEBGL));
+}
+
 (async () => {
   const find = (id) => document.getElementById(id);
   const root = document.documentElement;
@@ -46,6 +51,7 @@
     notice("");
   }
   const has_view = can_unpack && document.createElement("canvas").getContext("webgl");
+  page.is_coarse = Boolean(run.live && has_view && is_without_gpu(has_view));
   if (can_unpack && !has_view)
     fail("no WebGL", "The three-dimensional view needs WebGL, which is not available in this browser. Enable hardware "
       + "acceleration or use another browser. The plots work without WebGL.");

@@ -2,10 +2,10 @@
 "use strict";
 
 // `up` is a unit vector, `box` is what measure_scene gives. The camera shows the box of the frame, until somebody moves
-// it or zooms.
-function make_view(host, up, box) {
+// it or zooms. is_coarse: drawn without smooth edges, and without shadows at first.
+function make_view(host, up, box, is_coarse) {
   const renderer = new THREE.WebGLRenderer({
-    antialias: true,
+    antialias: !is_coarse,
     alpha: true,                  // the style sheet paints what is behind
     preserveDrawingBuffer: true,  // only what changed is drawn again, and a screenshot may come any time
   });
@@ -51,7 +51,7 @@ function make_view(host, up, box) {
   const home = { turn: -1.05, lift: 0.38, distance: 1, place: 0, follow: true };
   const orbit = { ...home, offset: new THREE.Vector3() };
   const course = box.course.map(fitted);
-  const pace = make_pace();
+  const pace = make_pace(is_coarse);
   let share = 1;  // of the pixels of a row that are drawn
   let dirty = true, shown_place = 0, pick = null, on_change = () => {};
 
