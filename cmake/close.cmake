@@ -1,9 +1,9 @@
-# Closing objects: many become one that shows only what it should. Inline functions and templates, Eigen's before all,
-# are compiled into every object that uses them under one name, and a linker takes whichever comes first: one that was
-# compiled for other instructions, or with other alignments. In a closed object they are its own.
+# Joins object files into a closed object, which exports only chosen names. Each object file contains its own copies of
+# the inline functions and templates that it uses, for example those of Eigen. A linker keeps the first copy of a name,
+# even if it was compiled for another instruction set or alignment. The copies in a closed object are local to it.
 #
-# GNU ld joins the objects (without groups, by whose names sections of others would be taken for the same), objcopy
-# takes the names away.
+# GNU ld joins the object files, and objcopy makes the names local. Section groups are dissolved, because a linker
+# would merge groups of equal names.
 set(skerry_can_close OFF)
 set(skerry_cannot_close "no objcopy was found")
 if(CMAKE_OBJCOPY AND CMAKE_LINKER)
@@ -19,8 +19,8 @@ if(SKERRY_SANITIZE)
     set(skerry_cannot_close "sanitizers want to see every name")
 endif()
 
-# skerry_close(OUT OBJECTS object... KEEP option...): a rule that makes the object file OUT of others.
-# KEEP are options of objcopy that say which names stay.
+# skerry_close(OUT OBJECTS object... KEEP option...): adds a rule that joins object files into the closed object OUT.
+# KEEP: options of objcopy that select the exported names.
 function(skerry_close out)
     cmake_parse_arguments(CLOSE "" "" "OBJECTS;KEEP" ${ARGN})
     cmake_path(GET out FILENAME name)

@@ -1,25 +1,24 @@
 include(CheckCXXCompilerFlag)
 
-# The one place for flags that change layout or rounding. Everything links skerry_flags.
+# All flags that change memory layout or rounding. All targets link skerry_flags.
 add_library(skerry_flags INTERFACE)
 target_compile_features(skerry_flags INTERFACE cxx_std_20)
-# No contraction: the same source gives the same bits in a kernel and in its scalar twin.
+# Without contraction, a kernel and its scalar version give the same bits.
 target_compile_options(skerry_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off -fno-math-errno -fno-trapping-math -fopenmp-simd>
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    # gcc 12 warns of its own AVX-512 headers, of Eigen's moves and of std::string's concatenation (GCC bug 105651);
-    # later versions do not.
+    # gcc 12 has false warnings about its own AVX-512 headers, Eigen and std::string (GCC bug 105651).
     target_compile_options(skerry_flags INTERFACE
         $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict>)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Real8 is wider than a register of older machines: how it would be passed does not matter, what passes it is
-    # inlined.
+    # Functions with arguments of type Real8, which is wider than a register of older machines, are inlined. So the
+    # warning about their calling convention does not matter.
     target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # The compiler collects garbage only above 600 MB: a sixth less CPU time, 200 MB more memory for the largest units.
+    # The compiler collects garbage only above 600 MB, which saves a sixth of its CPU time.
     target_compile_options(skerry_flags INTERFACE
         "$<$<COMPILE_LANGUAGE:CXX>:SHELL:--param ggc-min-heapsize=600000>")
 endif()
@@ -28,17 +27,17 @@ if(SKERRY_ARCH)
     target_compile_options(skerry_flags INTERFACE ${skerry_arch_flags})
 endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
-    # Eigen adds up in packets as wide as registers are, and multiplies and adds in one rounding where it can. Hidden
-    # from it that there is more than SSE, packets are two doubles and sums the same bits on every instruction set.
-    # Kernels use vector types of the compiler, whose lanes do not care.
+    # The order of Eigen's sums, and its use of fused multiply-add, depend on the instruction set. Without these macros
+    # Eigen uses SSE only, so its sums have the same bits on every instruction set. Kernels use vector types of the
+    # compiler instead.
     target_compile_options(skerry_flags INTERFACE
         $<$<COMPILE_LANGUAGE:CXX>:-U__AVX__ -U__AVX2__ -U__FMA__ -U__AVX512F__>)
 endif()
-# Only what public headers declare leaves the library.
+# The library exports only the names that public headers declare.
 target_compile_options(skerry_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-fvisibility=hidden -fvisibility-inlines-hidden>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Else variables of inline functions stay one for a whole process, whoever has them.
+    # Static variables of inline functions must not be shared with other libraries of the process.
     target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fno-gnu-unique>)
 endif()
 if(SKERRY_WARNINGS_AS_ERRORS)
@@ -52,11 +51,11 @@ if(SKERRY_CHECK_ACCESS)
     target_compile_definitions(skerry_flags INTERFACE SKERRY_CHECK_ACCESS)
 endif()
 if(SKERRY_SANITIZE)
-    # Without the checks of every pointer for null and alignment, which are two fifths of the time to compile: a null
-    # pointer ends a program anyhow, and x86 reads what is not aligned.
+    # Checks of pointers for null and alignment take two fifths of the compile time. They are off, because a null
+    # pointer ends the program anyhow, and x86 allows unaligned reads.
     set(unchecked vptr,null,alignment)
     if(SKERRY_FUZZERS)
-        set(unchecked vptr)  # fuzzers run for hours, and compile once
+        set(unchecked vptr)  # fuzzers run for hours
     endif()
     target_compile_options(skerry_flags INTERFACE
         -fsanitize=${SKERRY_SANITIZE} -fno-sanitize=${unchecked} -fno-omit-frame-pointer)
@@ -65,7 +64,7 @@ if(SKERRY_SANITIZE)
         target_compile_options(skerry_flags INTERFACE -fno-sanitize-recover=all)
     endif()
     if(SKERRY_TEST_OBJECTS)
-        # Eigen allocates in another way for an address sanitizer, and matrices of tests are freed in the library.
+        # With an address sanitizer Eigen would allocate in another way than in the test objects of `dev`.
         target_compile_definitions(skerry_flags INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
     endif()
 endif()

@@ -1,5 +1,5 @@
-# Code that takes no part in a step (files, reports, the program) is compiled for size: two thirds of the time, and half
-# of the size. Sanitizers have one level of optimisation for everything.
+# Code outside of steps (files, reports, the program) is compiled for size, which takes a third less time and halves the
+# size. Builds with sanitizers have one optimisation level.
 set(skerry_cold_options "")
 if(CMAKE_BUILD_TYPE MATCHES "^Rel" AND NOT SKERRY_SANITIZE AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
     set(skerry_cold_options -Os)
@@ -16,7 +16,7 @@ if(SKERRY_PRECOMPILE)
     set_target_properties(skerry_precompiled skerry_precompiled_cold PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endif()
 
-# skerry_share_headers(target precompiled): the target reads package headers from a target of skerry_precompile.
+# skerry_share_headers(target precompiled): `target` uses the precompiled headers of a target of skerry_precompile.
 function(skerry_share_headers target precompiled)
     if(SKERRY_PRECOMPILE)
         target_precompile_headers(${target} REUSE_FROM ${precompiled})
@@ -24,26 +24,26 @@ function(skerry_share_headers target precompiled)
     endif()
 endfunction()
 
-# skerry_objects(target source...): sources as the objects that the library is put together from.
+# skerry_objects(target source...): an object library, which becomes part of the library.
 function(skerry_objects target)
     add_library(${target} OBJECT ${ARGN})
     target_link_libraries(${target} PUBLIC skerry_flags Eigen3::Eigen Threads::Threads)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     if(SKERRY_UNITY GREATER 12)
-        # In larger units gcc inlines less: steps take 3 to 8 % longer. Cold code, below, has units of SKERRY_UNITY.
+        # In larger units gcc inlines less, and steps take 3 to 8 % longer. Cold code, below, has units of SKERRY_UNITY.
         set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 12)
     endif()
     get_target_property(unity ${target} UNITY_BUILD)
     if(unity AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-        # No source is the main file then, whose anonymous names a type may hold.
+        # In a unity build, gcc would warn about each type with members from anonymous namespaces.
         target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
     endif()
 endfunction()
 
 # skerry_folder(name source... [COLD source...] [KERNELS source...]): the sources of one folder as object libraries.
-# COLD: sources that take no part in a step, as skerry_<name>_cold. KERNELS: sources that take most of a step's time,
-# compiled once more for each instruction set of skerry_kernel_sets, whose objects the global property
-# skerry_objects_<set> lists.
+# COLD: sources that steps do not use; they form the object library skerry_<name>_cold. KERNELS: sources that take most
+# of a step's time. They are compiled once more for each instruction set of skerry_kernel_sets. The global property
+# skerry_objects_<set> lists these objects.
 function(skerry_folder name)
     cmake_parse_arguments(FOLDER "" "" "COLD;KERNELS" ${ARGN})
     set(sources ${FOLDER_UNPARSED_ARGUMENTS} ${FOLDER_KERNELS})
@@ -59,7 +59,7 @@ function(skerry_folder name)
         return()
     endif()
     skerry_objects(skerry_${name} ${sources})
-    if(NOT name STREQUAL "jobs")  # which has flags of its own, those of OpenMP
+    if(NOT name STREQUAL "jobs")  # jobs has its own flags, those of OpenMP
         skerry_share_headers(skerry_${name} skerry_precompiled)
     endif()
     set_property(GLOBAL APPEND PROPERTY skerry_objects $<TARGET_OBJECTS:skerry_${name}>)
@@ -68,7 +68,7 @@ function(skerry_folder name)
         if(FOLDER_KERNELS)
             string(MAKE_C_IDENTIFIER ${set} id)
             skerry_arch_options(options ${set})
-            set(CMAKE_UNITY_BUILD ON)  # headers are half of what there is to compile
+            set(CMAKE_UNITY_BUILD ON)  # headers are half of the code
             skerry_objects(skerry_${name}_${id} ${FOLDER_KERNELS})
             target_compile_options(skerry_${name}_${id} PRIVATE ${options})
             set_property(GLOBAL APPEND PROPERTY skerry_objects_${id} $<TARGET_OBJECTS:skerry_${name}_${id}>)
@@ -76,7 +76,7 @@ function(skerry_folder name)
     endforeach()
 endfunction()
 
-# skerry_uses(library...): what the library and everything that it is linked into link.
+# skerry_uses(library...): libraries that Skerry and all programs with Skerry link.
 function(skerry_uses)
     set_property(GLOBAL APPEND PROPERTY skerry_uses ${ARGN})
 endfunction()

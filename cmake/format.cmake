@@ -1,12 +1,12 @@
 # Targets that check sources:
-#     format, format_check      layout; needs clang-format, whose layout differs between versions: 14 counts; with
-#                               SKERRY_PYTHON=ON also layout and lint of the Python package (ruff)
-#     lint, lint_changed        clang-tidy over all sources, or over those that changed lately
+#     format, format_check      layout by clang-format 14; with SKERRY_PYTHON=ON also layout and lint of the Python
+#                               package (ruff)
+#     lint, lint_changed        clang-tidy on all sources, or on recently changed ones
 #     check_includes, check_includes_changed    each file compiles alone, so that a missing include is found
-#     check_profiling           the profiling programs compile, for syntax only
+#     check_profiling           syntax of the profiling programs
 #     check_kernels             machine code of hot kernels and peak loops: calls, accesses to the stack (GCC, x86-64)
-# This file is also the script that the targets run: it looks for the files then, so that a new one does not configure
-# the build anew.
+# The targets run this file as a script, which lists the sources each time. So a new source does not require a new
+# configuration of the build.
 set(code_folders components jobs systems engine examples profiling tests)
 if(CMAKE_SCRIPT_MODE_FILE)
     set(files)

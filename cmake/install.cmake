@@ -1,10 +1,9 @@
-# Installs the library, its public headers, the program and the scenes, so that find_package(skerry) works from
-# elsewhere.
+# Installs the library, its public headers, the program and the scenes. Other projects then use find_package(skerry).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(skerry_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/skerry)
-# What public headers include of components/.
+# Headers of components/ that public headers include.
 set(skerry_public_components
     types.h options.h handle.h joint_kind.h tie_kind.h spring_side.h cable_control.h cavity_law.h load_kind.h time_key.h
     orthotropic_moduli.h column.h row_memory.h range.h access_check.h)
@@ -18,8 +17,7 @@ endforeach()
 install(DIRECTORY engine/include/skerry DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.h)
 list(TRANSFORM skerry_public_components PREPEND components/ OUTPUT_VARIABLE skerry_component_headers)
 install(FILES ${skerry_component_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/skerry/components)
-# "components/x.h" would be found by the wrong name in a project that has a components folder of its own: installed
-# headers say "skerry/components/x.h".
+# Installed headers include "skerry/components/x.h", because a host project may have its own folder `components`.
 install(CODE "
     set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/skerry\")
     file(GLOB headers \"\${folder}/*.h\" \"\${folder}/components/*.h\")
@@ -29,7 +27,7 @@ install(CODE "
         file(WRITE \"\${header}\" \"\${text}\")
     endforeach()")
 
-# A static library leaves its packages to whoever links it; a shared one has them inside.
+# Programs that link the static library also link its packages; the shared library links them itself.
 set(SKERRY_LINK_PACKAGES Threads)
 foreach(package IN ITEMS HDF5 ZLIB TBB OpenMP)
     if("${skerry_used}" MATCHES "(^|;)${package}::")
@@ -51,7 +49,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/skerryConfig.cmake ${CMAKE_CURRENT_BIN
         DESTINATION ${skerry_package_dir})
 
 
-# For pkg-config. A static link wants the packages' own libraries, by their files where a package has no name of -l.
+# For pkg-config. A static link needs the libraries of the packages, by file name if there is no option -l for them.
 set(SKERRY_PC_PRIVATE "-lstdc++ -lm ${CMAKE_THREAD_LIBS_INIT}")
 foreach(library IN LISTS skerry_used)
     if(library STREQUAL "HDF5::HDF5")
@@ -68,7 +66,7 @@ foreach(library IN LISTS skerry_used)
         string(APPEND SKERRY_PC_PRIVATE " ${files}")
     endif()
 endforeach()
-# From where it lies, so that an installation can be moved.
+# Paths relative to this file allow an installation to be moved.
 file(RELATIVE_PATH skerry_prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/skerry.pc.in skerry.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/skerry.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

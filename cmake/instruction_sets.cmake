@@ -1,6 +1,6 @@
-# The instruction sets that kernels are compiled for besides the one of all other code: skerry_kernel_sets, of those
-# that SKERRY_INSTRUCTION_SETS asks for (docs/decisions/0018-instruction-sets.md). skerry_base_set: what the others'
-# is called.
+# Sets skerry_base_set, the instruction set of all code, and skerry_kernel_sets, further instruction sets for which
+# kernels are compiled. These are the sets of SKERRY_INSTRUCTION_SETS that the compiler supports
+# (docs/decisions/0018-instruction-sets.md).
 include(CheckCXXSourceCompiles)
 include(CMakePushCheckState)
 
@@ -39,7 +39,7 @@ else()
     message(STATUS "Kernels for one instruction set, ${skerry_base_set}: ${skerry_one_set}")
 endif()
 
-# skerry_arch_options(out set): flags that compile for an instruction set, and use its registers in full.
+# skerry_arch_options(out set): flags that compile for an instruction set and use the full width of its registers.
 function(skerry_arch_options out arch)
     string(MAKE_C_IDENTIFIER "${arch}" id)
     set(options -march=${arch})
@@ -47,8 +47,8 @@ function(skerry_arch_options out arch)
     if(SKERRY_WIDE_VECTORS_${id})
         list(APPEND options -mprefer-vector-width=512)
     endif()
-    # Copies in full registers: a load of 32 bytes waits for stores of 16 bytes, as GCC copies by default. With copies
-    # of 16 bytes, finding candidates for contacts takes 1.4 times as long where registers have 256 bits.
+    # Copies use full registers. By default GCC stores 16 bytes at a time, and a later load of 32 bytes waits for both
+    # stores. With registers of 256 bits, the search for candidates then takes 1.4 times as long.
     check_cxx_compiler_flag("-march=${arch} -mmove-max=512 -mstore-max=512" SKERRY_WIDE_MOVES_${id})
     if(SKERRY_WIDE_MOVES_${id})
         list(APPEND options -mmove-max=512 -mstore-max=512)

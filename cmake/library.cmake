@@ -1,11 +1,11 @@
-# The libraries: skerry_parts for what is built here and looks inside, tests before all; for hosts skerry::static and
-# skerry::shared, which show nothing but what public headers declare. skerry::skerry is the one that BUILD_SHARED_LIBS
-# asks for.
+# The libraries. Tests and other programs of this project link skerry_parts, which exports all names. Hosts link
+# skerry::static or skerry::shared, which export only the names of public headers. skerry::skerry is one of these two,
+# chosen by BUILD_SHARED_LIBS.
 get_property(skerry_all_objects GLOBAL PROPERTY skerry_objects)
 get_property(skerry_used GLOBAL PROPERTY skerry_uses)
 list(REMOVE_DUPLICATES skerry_used)
 
-# The kernels of a set keep one name, that of their table.
+# The kernels of an instruction set export only the name of their table.
 foreach(set IN LISTS skerry_kernel_sets)
     string(MAKE_C_IDENTIFIER ${set} id)
     get_property(objects GLOBAL PROPERTY skerry_objects_${id})
@@ -28,7 +28,7 @@ skerry_library(skerry_parts STATIC ${skerry_all_objects})
 set(skerry_public_objects ${skerry_all_objects})
 if(skerry_can_close)
     set(skerry_public_objects ${CMAKE_CURRENT_BINARY_DIR}/skerry.o)
-    # What is hidden goes, and of the rest what is not ours: std's templates, those of other packages' headers.
+    # Hidden names become local, and so do names of other libraries, such as templates of std.
     skerry_close(${skerry_public_objects} OBJECTS ${skerry_all_objects} KEEP --localize-hidden --wildcard
         --keep-global-symbol=_ZN6skerry* --keep-global-symbol=_ZNK6skerry* --keep-global-symbol=_ZT[ISV]N6skerry*)
 else()
@@ -36,7 +36,7 @@ else()
 endif()
 skerry_library(skerry_static STATIC ${skerry_public_objects})
 skerry_library(skerry_shared SHARED ${skerry_public_objects})
-# Before 1.0 a minor version may change what hosts see.
+# Before version 1.0, a minor version may change the interface.
 set_target_properties(skerry_shared PROPERTIES
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 foreach(type IN ITEMS static shared)

@@ -1,6 +1,6 @@
-# Netgen's library for skerry-fill, which `skerry fill` and `skerry inspect --repair` call. Without it they name the
-# missing package.
-# Debian keeps the libraries in a folder of their own, and libnglib.so has names that only libinterface.so knows.
+# The library of Netgen for the program skerry-fill, which `skerry fill` and `skerry inspect --repair` start. Without it
+# these commands name the missing package.
+# Debian installs the libraries in a separate folder. libnglib.so also needs libinterface.so.
 find_path(NGLIB_INCLUDE nglib.h PATH_SUFFIXES netgen DOC "Folder of nglib.h (Debian: libnglib-dev)")
 find_library(NGLIB_LIBRARY nglib PATH_SUFFIXES netgen DOC "Netgen's library with the C interface")
 find_library(NGLIB_INTERFACE_LIBRARY interface PATH_SUFFIXES netgen DOC "Part of Netgen that Debian builds apart")

@@ -1,4 +1,4 @@
-# All options of the project. Defaults are those of a user who builds it on its own.
+# All options of the project. The defaults suit users who build Skerry alone.
 option(SKERRY_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(SKERRY_EXAMPLES "Build the examples, which are tests as well" ${PROJECT_IS_TOP_LEVEL})
 option(SKERRY_PROFILING "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
@@ -28,7 +28,7 @@ if(PROJECT_IS_TOP_LEVEL)
     set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 endif()
 
-# Columns ask who touches them wherever assertions are on: builds without NDEBUG, those of the sanitizers among them.
+# By default, accesses to columns are checked in all builds with assertions (without NDEBUG).
 string(TOUPPER "${CMAKE_BUILD_TYPE}" skerry_build_type)
 set(skerry_check_access OFF)
 if(skerry_build_type AND NOT "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${skerry_build_type}}" MATCHES "-DNDEBUG")

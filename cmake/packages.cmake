@@ -1,7 +1,7 @@
-# Missing packages are collected, so that one message names all of them.
+# One message names all missing packages.
 set(skerry_missing "")
 
-# skerry_need(PACKAGE VERSION DEBIAN [option of find_package...]): DEBIAN is the name of the package of Debian.
+# skerry_need(PACKAGE VERSION DEBIAN [option of find_package...]): DEBIAN is the name of the Debian package.
 macro(skerry_need package version debian)
     find_package(${package} ${version} QUIET ${ARGN})
     if(NOT ${package}_FOUND)
@@ -37,7 +37,7 @@ if(SKERRY_LIVE)
         string(APPEND skerry_missing "\n    civetweb 1.15 (Debian: libcivetweb-dev)")
     endif()
 endif()
-set(skerry_whole "")  # what is built beside the library and wants all of it
+set(skerry_whole "")  # parts of the build that need the complete library
 foreach(part IN ITEMS PROGRAM TESTS PROFILING)
     if(SKERRY_${part})
         list(APPEND skerry_whole SKERRY_${part})
@@ -52,18 +52,18 @@ if(skerry_whole)
         endif()
     endforeach()
 endif()
-# Compiled in: nothing of it is needed where the library is used.
+# xxHash is compiled into the library, so hosts do not need it.
 find_path(XXHASH_INCLUDE xxhash.h DOC "Folder of xxhash.h (0.8 or later; Debian: libxxhash-dev)")
 mark_as_advanced(XXHASH_INCLUDE)
 if(NOT XXHASH_INCLUDE)
     string(APPEND skerry_missing "\n    xxhash 0.8 (Debian: libxxhash-dev)")
 endif()
 
-# The library carries three.js, so an installed one needs no data files.
+# three.js is part of the library, so an installed library needs no data files.
 if(SKERRY_PAGES)
     find_file(SKERRY_THREE_JS three.min.js PATHS /usr/share/javascript/three /usr/share/nodejs/three/build
         NO_DEFAULT_PATH DOC "three.min.js (r111 or near; Debian: libjs-three) that PageWriter inlines")
-    if(NOT SKERRY_THREE_JS AND SKBUILD)  # a wheel has all parts that it was asked for
+    if(NOT SKERRY_THREE_JS AND SKBUILD)  # a wheel must be complete
         string(APPEND skerry_missing "\n    three.min.js r111 (Debian: libjs-three); set SKERRY_THREE_JS to its path")
     endif()
 endif()

@@ -1,5 +1,5 @@
-# Tools that make a build faster where they are installed: a cache of compiled files (ccache) and a linker (mold). Both
-# are found when Skerry is built on its own; a host project chooses for itself.
+# Optional tools that make builds faster: a cache of compiled files (ccache) and a linker (mold). They are used only if
+# Skerry is the top-level project.
 if(NOT PROJECT_IS_TOP_LEVEL)
     return()
 endif()
@@ -8,7 +8,7 @@ find_program(SKERRY_CCACHE ccache)
 find_program(SKERRY_MOLD mold)
 mark_as_advanced(SKERRY_CCACHE SKERRY_MOLD)
 if(SKERRY_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    # The two sloppiness flags are those that ccache needs for precompiled headers.
+    # ccache needs both sloppiness flags for precompiled headers.
     set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${SKERRY_CCACHE})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)

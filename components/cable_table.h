@@ -78,9 +78,10 @@ struct CableTable {
     }
 };
 
-/// A cable in a step.
+/// A cable in a step, or a tie of the kind `ball`: both have equations that many points share. All points of a tie get
+/// the same impulse, and their velocities sum to zero.
 struct CableBlock {
-    Index cable;   // row of CableTable
+    Index cable;   // row of CableTable or TieTable
     Range points;  // rows of the columns by point of CableBlockTable
     // True if the rows of the cable are solved with the contacts of a region. False if the cable acts by known forces.
     bool solved;
@@ -88,9 +89,19 @@ struct CableBlock {
     Real wanted;     // greatest rate of the length [m/s], or impulse of the tension of the first segment [N s]
     Real released;   // greatest length at the end of the step [m]
     Index mobility;  // row of the first entry of the cable in the mobility matrices of the region solver
+    bool is_tie = false;
+    // For a tie: place at which its impulse acts on the other object, which has the last point [m].
+    Vec3 acts_at = Vec3::Zero();
+
+    /// Number of the impulses of the block: of the segments of a cable, or the three components of that of a tie. They
+    /// are the first rows of CableBlockTable::impulse.
+    Index impulses() const { return is_tie ? 3 : points.size() - 1; }
+    /// Place at which the impulse of point `p` acts on rigid and implicit bodies. nullptr: the nodes of the point.
+    const Vec3* acting_point(Index p) const { return is_tie && p + 1 == points.end ? &acts_at : nullptr; }
 };
 
-/// The cables that act in a step. Cables whose bodies all sleep, or that cannot move anything, are left out.
+/// The cables that act in a step, then the ties of the kind `ball`. Those whose bodies all sleep, or that cannot move
+/// anything, are left out.
 struct CableBlockTable {
     Column<CableBlock> block;
     // The following columns have one row per point.

@@ -11,13 +11,14 @@ namespace skerry {
 using TieHandle = Handle<struct TieTag>;
 
 /// Motion of a tied node relative to its point on the other object. weld: none. slide: in the plane through the point,
-/// normal to the surface.
-enum class TieKind : std::uint8_t { weld, slide };
+/// normal to the surface. ball: any; only the mean point of all tied nodes, weighted by their masses, stays at a point.
+enum class TieKind : std::uint8_t { weld, slide, ball };
 template <>
 struct EnumNames<TieKind> {
-    static constexpr std::array<std::pair<TieKind, std::string_view>, 2> table{{
+    static constexpr std::array<std::pair<TieKind, std::string_view>, 3> table{{
         {TieKind::weld, "weld"},
         {TieKind::slide, "slide"},
+        {TieKind::ball, "ball"},
     }};
 };
 

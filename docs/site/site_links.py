@@ -66,8 +66,16 @@ class PagesInDocstrings(SphinxTransform):
             for name in PAGE.finditer(text):
                 page = name[0].removesuffix(".md")
                 if page in self.env.found_docs:
-                    link = pending_xref("", nodes.inline("", name[0]), reftype="doc", refdomain="std",
-                                        reftarget=f"/{page}", refexplicit=True, refdoc=self.env.docname, refwarn=True)
+                    link = pending_xref(
+                        "",
+                        nodes.inline("", name[0]),
+                        reftype="doc",
+                        refdomain="std",
+                        reftarget=f"/{page}",
+                        refexplicit=True,
+                        refdoc=self.env.docname,
+                        refwarn=True,
+                    )
                     parts += [nodes.Text(text[at : name.start()]), link]
                     at = name.end()
             if parts:
@@ -93,8 +101,9 @@ class Players(SphinxTransform):
                     command = [os.environ["SKERRY_PROGRAM"], "run", *run[1].split(), "--page", str(written), "--quiet"]
                     subprocess.run(command, cwd=self.app.srcdir, check=True, stdout=subprocess.DEVNULL)
                 shutil.copy(written, films)
-                address = relative_uri(self.app.builder.get_target_uri(self.env.docname), f"films/{run[2]}")
-                frame = f'<iframe class="run" loading="lazy" src="{address}{html.escape(run[3])}&amp;panel=0" title="{run[2]}"></iframe>'
+                film = relative_uri(self.app.builder.get_target_uri(self.env.docname), f"films/{run[2]}")
+                address = html.escape(f"{film}{run[3]}&panel=0")
+                frame = f'<iframe class="run" loading="lazy" src="{address}" title="{run[2]}"></iframe>'
                 players.append(nodes.raw("", frame, format="html"))
             if players:
                 block.parent.insert(block.parent.index(block) + 1, players)

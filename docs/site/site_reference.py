@@ -146,8 +146,8 @@ def lay_out_docstring(app: Sphinx, what: str, name: str, obj: Any, options: Any,
                 item = True
             else:
                 item = item and not after_blank
-                if line.startswith("- ") and result and not after_blank and not result[-1].lstrip().startswith(("- ", "  ")):
-                    result.append("")
+                if line.startswith("- ") and re.match(r" *[^- ]", result[-1] if result else ""):
+                    result.append("")  # between a paragraph and a list
                 line = f"  {line}" if item else line
         result.append(line)
     lines[:] = result

@@ -1,7 +1,6 @@
 #include "engine/live/hub.h"
 
 #include <algorithm>
-#include <exception>
 #include <utility>
 
 #include "skerry/error.h"

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Real frame_step = 1.0 / 60;   // longest call of advance, as the frames of a scene [s]
 constexpr Real frames_per_second = 30;  // most snapshots per wall time [1/s]
-constexpr int pause = 4;                // least time between two snapshots, in durations of a snapshot
+constexpr int snapshot_pause = 4;       // least time between two snapshots, in durations of a snapshot
 constexpr Real longest_wait = 0.02;     // of due() [s]
 constexpr Real longest_lag = 0.1;       // lag behind the wall clock that the simulation makes up for [s]
 constexpr Real fastest_rate = 1000;     // largest simulated time per wall time
@@ -60,7 +60,6 @@ std::vector<LivePlot> plots_of(const World& world, const std::vector<RecordedPro
 
 LiveRun::LiveRun(World& world, const LiveSettings& settings)
     : settings_(settings),
-      first_sliders_(settings.sliders),
       plots_(plots_of(world, settings.probes)),
       probes_(tracked_probes(world)),
       start_(world.clone({.threads = 1})),
@@ -192,7 +191,6 @@ void LiveRun::set_gravity(World& world, bool on) {
 void LiveRun::reset(World& world) {
     world.reset(start_);
     pulls_.clear();
-    settings_.sliders = first_sliders_;
     probes_ = tracked_probes(world);
     gravity_ = world.settings().gravity;
     state_.gravity = first_state_.gravity;
@@ -257,7 +255,7 @@ void LiveRun::show(const World& world, bool between_calls) {
     for (const auto& [client, pull] : pulls_)
         if (const auto state = pull.state(world)) snapshot->pulls.emplace_back(client, *state);
     hub_.publish(snapshot);
-    next_show_ = std::max(next_show_, now + pause * (Clock::now() - now));
+    next_show_ = std::max(next_show_, now + snapshot_pause * (Clock::now() - now));
 }
 
 std::vector<LiveRun::PlottedProbe> LiveRun::tracked_probes(World& world) const {

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,8 +48,7 @@ private:
     };
     std::vector<PlottedProbe> tracked_probes(World& world) const;
 
-    LiveSettings settings_;  // with the present courses of the sliders
-    std::vector<Slider> first_sliders_;
+    LiveSettings settings_;
     std::vector<LivePlot> plots_;
     std::vector<PlottedProbe> probes_;
     World start_;  // state for a reset

@@ -199,14 +199,27 @@ void list_ties(const StepEquations& equations, const Mobilities& mobilities, std
 }
 
 /// The row of a point of a cable has the direction of the impulse on the point, so that its impulse is 1.
-void list_cables(const CableBlockTable& cables, const Mobilities& mobilities, std::vector<EquationRow>& rows) {
-    for (const CableBlock& block : cables.solved()) {
-        Vec3 last = Vec3::Zero();
+void list_cable(const CableBlockTable& cables, const CableBlock& block, const Mobilities& mobilities,
+                std::vector<EquationRow>& rows) {
+    Vec3 last = Vec3::Zero();
+    for (Index p = block.points.begin; p < block.points.end; ++p) {
+        const Vec3 next = cables.impulse[p] * cables.direction[p];
+        rows.push_back({mobilities.of_stencil(cables.stencil[p], next - last, nullptr), Keeps::impulse, 1});
+        last = next;
+    }
+}
+
+/// A ball has three rows, each the sum of one component over all points.
+void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mobilities& mobilities,
+               std::vector<EquationRow>& rows) {
+    for (Index k = 0; k < 3; ++k) {
+        VelocityRow sum;
         for (Index p = block.points.begin; p < block.points.end; ++p) {
-            const Vec3 next = cables.impulse[p] * cables.direction[p];
-            rows.push_back({mobilities.of_stencil(cables.stencil[p], next - last, nullptr), Keeps::impulse, 1});
-            last = next;
+            const VelocityRow of = mobilities.of_stencil(cables.stencil[p], Vec3::Unit(k), block.acting_point(p));
+            sum.nodes.insert(sum.nodes.end(), of.nodes.begin(), of.nodes.end());
+            for (const auto& frame : of.frames) sum.add_frame(frame.frame, frame.along, frame.turn);
         }
+        rows.push_back({std::move(sum), Keeps::velocity, cables.impulse[block.points.begin + k]});
     }
 }
 
@@ -294,7 +307,8 @@ std::optional<std::vector<Index>> eliminate_equations(const StepEquations& equat
     std::vector<EquationRow> rows;
     list_joints(equations.joints, inputs, rows);
     list_ties(equations, mobilities, rows);
-    list_cables(equations.cables, mobilities, rows);
+    for (const CableBlock& block : equations.cables.solved())
+        (block.is_tie ? list_ball : list_cable)(equations.cables, block, mobilities, rows);
     for (const HeldDirection& held : equations.held)
         rows.push_back({mobilities.of_stencil({{held.node, held.node, held.node, held.node}, {1, 0, 0, 0}},
                                               held.direction, nullptr),

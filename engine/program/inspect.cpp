@@ -238,6 +238,13 @@ int inspect_scene(const InspectOptions& options) {
     const Real stable_step = scene.world.stable_step();
     Real overlap = 0;
     for (const StartOverlap& found : start.as_written.start_overlaps) overlap = std::max(overlap, found.depth);
+    Json sliders = Json::array();
+    for (const Slider& slider : scene.sliders)
+        sliders.push_back({{"name", slider.name},
+                           {"unit", slider.unit},
+                           {"value", slider_value(scene.world, slider)},
+                           {"low", slider.low},
+                           {"high", slider.high}});
     progress.begin("timing the first steps");
     const SceneCost cost = try_run(scene.world, plan_run(scene, run), overlap);
     const Problems problems = problems_of(plan, kinds, start, cost);
@@ -264,13 +271,6 @@ int inspect_scene(const InspectOptions& options) {
                              {"step_bound", bound_json(kind.bound)}});
             bodies.push_back(body);
         }
-        Json sliders = Json::array();
-        for (const Slider& slider : scene.sliders)
-            sliders.push_back({{"name", slider.name},
-                               {"unit", slider.unit},
-                               {"value", slider_value(scene.world, slider)},
-                               {"low", slider.low},
-                               {"high", slider.high}});
         const Json json = {{"schema", "skerry.scene_facts/1"},
                            {"scene", scene.name},
                            {"description", scene.description},
@@ -340,9 +340,8 @@ int inspect_scene(const InspectOptions& options) {
               << "  contacts      " << cost.contacts << " at the start\n";
     for (const std::string& choice : choice_texts(report)) std::cout << "  dynamics      " << choice << "\n";
     for (const Slider& slider : scene.sliders)
-        std::cout << "  slider        " << slider.name << ": " << short_number(slider_value(scene.world, slider))
-                  << " at the start, from " << short_number(slider.low) << " to " << short_number(slider.high) << " "
-                  << slider.unit << "\n";
+        std::cout << "  slider        " << slider.name << ": from " << short_number(slider.low) << " to "
+                  << short_number(slider.high) << (slider.unit == "1" ? "" : " " + slider.unit) << "\n";
     for (const BodyKindReport& kind : kinds) {
         std::cout << "  body          " << kind.first_name
                   << (kind.count > 1

@@ -77,9 +77,8 @@ void bind_scene(nb::module_& module) {
         .def_ro("high", &Slider::high)
         .def_ro("fastest", &Slider::fastest);
     module.def("slider_value", guarded([](World& world, const Slider& slider) { return slider_value(world, slider); }));
-    module.def("set_slider", guarded([](World& world, const Slider& slider, Real value) {
-                   set_slider(world, slider, value);
-               }));
+    module.def("set_slider",
+               guarded([](World& world, const Slider& slider, Real value) { set_slider(world, slider, value); }));
     module.def("load_scene", &load, nb::arg(), nb::arg(), nb::arg().none(), nb::arg());
     module.def("load_scene_text", &load_text, nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg());
     module.def("scene_schema", &scene_schema);

@@ -43,6 +43,14 @@ private:
     std::size_t row(auto handle) const { return static_cast<std::size_t>(model.row(handle, "slider")); }
 };
 
+/// Kind of the target of a motor. Refuses a joint without motor.
+JointDrive motor_drive(const Model& model, JointHandle joint) {
+    const JointDrive drive = model.joints.drive[static_cast<std::size_t>(model.row(joint, "slider"))];
+    if (drive == JointDrive::none)
+        refuse("joint '" + object_name(model, joint) + "'", "motor", "no motor", "a joint with a motor");
+    return drive;
+}
+
 /// Value of a control over time.
 struct CourseOfControl {
     const Model& model;
@@ -56,7 +64,10 @@ struct CourseOfControl {
         const auto row = static_cast<std::size_t>(model.row(object, "slider"));
         const std::span<const TimeKey> keys = ObjectsOf<HandleType>::table(model).keys_of(row);
         if (!keys.empty()) return time_table_of(keys);
-        if constexpr (std::is_same_v<HandleType, JointHandle>) return model.joints.motor[row].target;
+        if constexpr (std::is_same_v<HandleType, JointHandle>) {
+            (void)motor_drive(model, object);
+            return model.joints.motor[row].target;
+        }
         refuse("pipe '" + object_name(model, object) + "'", "pressure", "a pipe between two cavities",
                "a pipe between a cavity and a reservoir");
     }
@@ -67,6 +78,14 @@ Pose pose_at(const Slider& slider, const Pose& start, Real value) {
             slider.about.isZero(0)
                 ? start.rotation
                 : rotation_vector(rotation_matrix(value * slider.about) * rotation_matrix(start.rotation))};
+}
+
+Real value_of(const World& world, const Slider& slider, const SliderTarget& target) {
+    const auto* const control = std::get_if<PoseControl>(&target.control);
+    if (!control) return value_at(course_of(world, target.control).keys, world.time());
+    const MotionKey now = std::visit([&](auto object) { return world.pose(object); }, control->object);
+    const Mat3 turned = rotation_matrix(now.rotation) * rotation_matrix(target.start.rotation).transpose();
+    return slider.along.dot(now.position - target.start.position) + slider.about.dot(rotation_vector(turned));
 }
 
 /// Lets one target of a slider follow a course to its last key.
@@ -97,16 +116,8 @@ struct FollowCourse {
 }  // namespace
 
 SliderControl motor_control(const World& world, JointHandle joint) {
-    const Model& model = WorldAccess::state_of(world).model;
-    switch (model.joints.drive[static_cast<std::size_t>(model.row(joint, "slider"))]) {
-        case JointDrive::speed:
-            return MotorSpeedControl{joint};
-        case JointDrive::position:
-            return MotorPositionControl{joint};
-        case JointDrive::none:
-            break;
-    }
-    refuse("joint '" + object_name(model, joint) + "'", "motor", "no motor", "a joint with a motor");
+    if (motor_drive(WorldAccess::state_of(world).model, joint) == JointDrive::speed) return MotorSpeedControl{joint};
+    return MotorPositionControl{joint};
 }
 
 std::string unit_of(const World& world, const SliderControl& control) {
@@ -118,39 +129,30 @@ TimeTable course_of(const World& world, const SliderControl& control) {
 }
 
 Real slider_value(const World& world, const Slider& slider) {
-    const SliderTarget& first = slider.targets.front();
-    const auto* const control = std::get_if<PoseControl>(&first.control);
-    if (!control) return value_at(course_of(world, first.control).keys, world.time());
-    const MotionKey now = std::visit([&](auto object) { return world.pose(object); }, control->object);
-    const Mat3 turned = rotation_matrix(now.rotation) * rotation_matrix(first.start.rotation).transpose();
-    return slider.along.dot(now.position - first.start.position) + slider.about.dot(rotation_vector(turned));
+    return value_of(world, slider, slider.targets.front());
 }
 
 void set_slider(World& world, const Slider& slider, Real value) {
     if (!(slider.low <= value && value <= slider.high))
         refuse("slider '" + slider.name + "'", "value", short_text(value),
                "a value from " + short_text(slider.low) + " to " + short_text(slider.high) + " " + slider.unit);
+    Real duration = 1e-3;  // at least so long, also for changes of nothing but rounding errors [s]
+    for (const SliderTarget& target : slider.targets)  // refuses removed objects before any object is changed
+        duration = std::max(duration, std::abs(value - value_of(world, slider, target)) / slider.fastest);
+    const Real now = world.time();
     for (const SliderTarget& target : slider.targets) {
-        RolloutControl control;
-        std::visit([&](const auto& of) { control.what = of; }, target.control);
-        (void)number_count(world, control);  // refuses an object that was removed before any object is changed
-    }
-    constexpr Real shortest = 1e-3;  // also for changes of nothing but rounding errors [s]
-    const Real now = world.time(), from = slider_value(world, slider);
-    const Real duration = std::max(std::abs(value - from) / slider.fastest, shortest);
-    const TimeTable course({{now, from}, {now + duration, value}});
-    for (const SliderTarget& target : slider.targets)
+        const TimeTable course({{now, value_of(world, slider, target)}, {now + duration, value}});
         std::visit(FollowCourse{world, slider, target, course}, target.control);
+    }
 }
 
-void start_slider(World& world, const Slider& slider, Real value) {
-    for (const SliderTarget& target : slider.targets)
-        if (const auto* const control = std::get_if<PoseControl>(&target.control)) {
-            const Pose pose = pose_at(slider, target.start, value);
-            std::visit([&](auto object) { world.set_pose(object, pose); }, control->object);
-        } else {
-            std::visit(FollowCourse{world, slider, target, value}, target.control);
-        }
+void start_target(World& world, const Slider& slider, const SliderTarget& target, Real value) {
+    if (const auto* const control = std::get_if<PoseControl>(&target.control)) {
+        const Pose pose = pose_at(slider, target.start, value);
+        std::visit([&](auto object) { world.set_pose(object, pose); }, control->object);
+    } else {
+        std::visit(FollowCourse{world, slider, target, value}, target.control);
+    }
 }
 
 }  // namespace skerry

@@ -13,7 +13,7 @@ const Rule<TieEntry>& rule_of<TieEntry>() {
             .key("name", &Entry::name, {.meaning = "name in messages and for probes; default: tie_NUMBER"})
             .key("kind", &Entry::kind,
                  {.meaning = "motion of a node relative to its point. weld (default): none; slide: in the plane of the "
-                             "surface"})
+                             "surface; ball: any, but the mean point of all nodes, weighted by their masses, is tied"})
             .key("body", &Entry::body, {.meaning = "name of a deformable body", .required = true})
             .key("set", &Entry::set, part_set_doc)
             .key("box", &Entry::box, part_box_doc)

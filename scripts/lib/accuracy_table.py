@@ -18,7 +18,7 @@ absolute. `n` is a number of elements, `h` the time step or, in some items, a le
 |---:|---:|---|---|---:|---:|---:|---:|
 """
 COLUMNS = ["item", "quantity", "formula", "expected", "found", "error", "tolerance", "kind", "note"]
-SHOWN = 8  # rows of the page
+SHOWN = 8  # rows of the table in the page
 
 
 def number(value):

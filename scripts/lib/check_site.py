@@ -6,14 +6,13 @@
 """
 
 import html.parser
-import os
 import pathlib
 import re
-import shutil
-import subprocess
 import sys
-import tempfile
 import urllib.parse
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests/python"))
+from browser import open_browser
 
 # Words that users search for, and a page that the search must list.
 SEARCHES = {"friction": "docs/methods/friction.html", "pressure": "docs/methods/cavities.html",
@@ -62,19 +61,13 @@ def broken_links(folder):
 
 def failed_searches(folder):
     """Yields a message for each search that does not list its page."""
-    browser = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if browser is None:
-        yield "search: found no Chromium; Debian: apt-get install chromium"
-        return
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+    with open_browser() as tab:
         for word, page in SEARCHES.items():
-            found = subprocess.run(
-                [browser, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=20000",
-                 f"--user-data-dir={profile}", "--dump-dom", f"{(folder / 'search.html').as_uri()}?q={word}"],
-                capture_output=True, text=True, timeout=120, check=True, env={**os.environ, "HOME": profile}).stdout
-            results = re.findall(r'<li[^>]*><a href="([^"#?]*)', found.partition('id="search-results"')[2])
-            if page not in (os.path.normpath(result) for result in results):
-                yield f"search for {word}: found {len(results)} pages, expected {page} among them"
+            tab.open(f"{(folder / 'search.html').as_uri()}?q={word}")
+            tab.wait("/finished|not match/.test(document.querySelector('#search-results')?.innerText)")
+            found = tab.evaluate("[...document.querySelectorAll('#search-results li a')].map(link => link.pathname)")
+            if str(folder / page) not in found:
+                yield f"search for {word}: found {len(found)} pages, expected {page} among them"
 
 
 def main():

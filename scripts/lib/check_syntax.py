@@ -30,9 +30,9 @@ def precompiled(build, all_commands):
 def main():
     build, *chosen = sys.argv[1:]
     all_commands = sources.commands(build)
-    flags = [*sources.common_flags(all_commands), "-w", "-fsyntax-only"]  # warnings are the build's business
+    flags = [*sources.common_flags(all_commands), "-w", "-fsyntax-only"]  # the build reports warnings
     if chosen[:1] == ["--precompiled"]:
-        # A build without profiling programs does not have this definition of theirs.
+        # Builds without profiling programs lack this definition.
         command = [*precompiled(build, all_commands), *flags, '-DSKERRY_PROFILING_FOLDER="profiling"']
         names = sources.in_folders(chosen[1:])
     else:

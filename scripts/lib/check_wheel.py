@@ -8,8 +8,7 @@ import sys
 import zipfile
 
 WHEEL = pathlib.Path(sys.argv[1])
-# CivetWeb, which the wheel contains, and libraries that each system with glibc has. The policies of manylinux count
-# zlib among them.
+# CivetWeb, which the wheel contains, and libraries of every system with glibc. The policies of manylinux include zlib.
 EXPECTED = re.compile(r"libcivetweb-[0-9a-f]+\.so\.[0-9.]+|"
                       r"(linux-vdso|libc|libm|libpthread|libstdc\+\+|libgcc_s|libz|.*/ld-linux-x86-64)\.so\.\d+")
 

@@ -1,5 +1,5 @@
-# What demo, test and .ci/run share. Source it first: it goes to the root of the repository, whose path is then in
-# `root`.
+# Functions that demo, test and .ci/run share. Scripts source it first: it changes to the root of the repository, and
+# stores the path in `root`.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -22,7 +22,7 @@ phase() {
     show_progress "$name" "$log" &
     ticker=$!
     trap 'kill '"$ticker"' 2>/dev/null || true' EXIT
-    # A subshell, since `set -e` is off inside a function whose status is looked at.
+    # A subshell, because bash ignores `set -e` in a function whose status is tested.
     set +e
     {
         TIMEFORMAT='%U %S'
@@ -52,7 +52,7 @@ phase() {
     fi
 }
 
-# The lines of a log that matter: those about failed tests, or from the first failure of ninja on, or the end.
+# Prints the important lines of a log: those about failed tests, or from the first failure of ninja on, or the end.
 explain() {
     local found
     found=$(grep -n -m 1 '^FAILED: ' "$1" | cut -d: -f1 || true)
@@ -65,8 +65,8 @@ explain() {
     fi
 }
 
-# Name, time, and the counter of ninja or ctest: on a terminal one line that is renewed every second, else a new line
-# every ten seconds.
+# Prints the name, the time and the counter of ninja or ctest: on a terminal in one line that changes every second, else
+# in a new line every ten seconds.
 show_progress() {
     local start=$SECONDS count
     while true; do
@@ -88,8 +88,8 @@ build() {
     phase "$preset-build" cmake --build --preset "$preset" -j "$jobs" ${1:+--target "$@"}
 }
 
-# run_tests PRESET [CTEST-OPTION...]: the summary of ctest, or all that it says of failed tests; everything in
-# build/PRESET-test.log.
+# run_tests PRESET [CTEST-OPTION...]: prints the summary of ctest and its output about failed tests. The complete output
+# is in build/PRESET-test.log.
 run_tests() {
     local preset=$1
     shift

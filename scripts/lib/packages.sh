@@ -1,6 +1,6 @@
-# need_packages USE: installs what is missing of scripts/lib/packages.txt. Says nothing when nothing is missing.
+# need_packages USE: installs the missing packages of scripts/lib/packages.txt. Prints nothing if none is missing.
 
-# Lines "package reason" of everything that USE needs.
+# Prints lines "package reason" for all packages that USE needs.
 packages_for() {
     local wanted=" $1 " package use reason
     case $1 in
@@ -49,9 +49,9 @@ need_packages() {
     phase packages install_packages "${missing[@]}"
 }
 
-# Called by need_packages alone, which sets `as_root`.
+# Only need_packages calls this function, after it has set `as_root`.
 install_packages() {
-    # One source that is down is no reason to stop: what is needed may be in the others, or known already.
+    # If one source of packages is down, the others, or packages known already, may suffice.
     "${as_root[@]}" apt-get update || echo "apt-get update failed; going on with the lists that are there"
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "$@"
 }

@@ -2,7 +2,7 @@
 
 requirements=$root/scripts/lib/python_requirements.txt
 
-# make_venv FOLDER PYTHON: an empty virtual environment of that Python.
+# make_venv FOLDER PYTHON: makes an empty virtual environment.
 make_venv() {
     "$2" -c 'import sys; sys.exit(sys.version_info < (3, 11))' ||
         fail "$2: found $("$2" --version 2>&1), expected Python 3.11 or later"
@@ -25,7 +25,7 @@ fill_test_venv() {
     cp "$requirements" build/venv/requirements.txt
 }
 
-# need_python: makes build/venv, or makes it anew after a change of the requirements, and adds the Python package to
+# need_python: makes build/venv, again after a change of the requirements, and adds the Python package to
 # configure_options.
 need_python() {
     if [[ ${SKERRY_PYTHON:-ON} == OFF ]]; then

@@ -25,30 +25,60 @@ bool acts_for_whole_step(const TieTable& ties, std::span<const Range> body_impli
     return implicit(ties.first[t]) && implicit(ties.second[t]);
 }
 
+Vec3 impulse_of(const CableBlockTable& blocks, const CableBlock& tie) {
+    return {blocks.impulse[tie.points.begin], blocks.impulse[tie.points.begin + 1],
+            blocks.impulse[tie.points.begin + 2]};
+}
+
+/// Divides the impulse of tie `t` among its nodes by their masses. Returns true if the tie breaks.
+bool store_mean(const Vec3& impulse, const TiedMeans& means, std::size_t t, Real end, TieTable& ties) {
+    const Index first = means.body_nodes[static_cast<std::size_t>(ties.first[t])].begin;
+    const auto mass_of = [&](Index k) {
+        return means.mass[static_cast<std::size_t>(first + ties.node[static_cast<std::size_t>(k)])];
+    };
+    Real mass = 0;
+    for (Index k = ties.nodes[t].begin; k < ties.nodes[t].end; ++k) mass += mass_of(k);
+    for (Index k = ties.nodes[t].begin; k < ties.nodes[t].end; ++k) ties.impulse[k] = mass_of(k) / mass * impulse;
+    const bool breaks = impulse.norm() > ties.break_force[t] * ties.step[t];
+    if (breaks) std::ranges::fill(rows_of(ties.broken, ties.nodes[t]), end);
+    return breaks;
+}
+
 }  // namespace
 
-TieMeasures take_tie_rows(const TieWorkInputs& motion, ContactTable& contacts, TieRowTable& rows) {
+TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& blocks, ContactTable& contacts,
+                          TieRowTable& rows) {
     const std::size_t first = contacts.size() - rows.size();
     TieMeasures sum;
+    const auto add = [&](const Stencil& stencil, const Vec3& impulse, const Vec3* point) {
+        for (std::size_t a = 0; a < 4; ++a) {
+            const Real weight = stencil.weight[a];
+            const auto node = static_cast<std::size_t>(stencil.node[a]);
+            if (weight == 0 || !(motion.inverse_mass[node] > 0)) continue;
+            sum.impulse += weight * impulse;
+            sum.work +=
+                weight * impulse.dot(twice_mean(motion, stencil.node[a], point ? *point : motion.position[node])) / 2;
+        }
+    };
     rows.impulse.resize(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const Vec3& impulse = rows.impulse[i] = contacts.impulse[first + i];
-        const Stencil& stencil = rows.stencil[i];
-        for (std::size_t a = 0; a < 4; ++a) {
-            const Real weight = stencil.weight[a];
-            if (weight == 0 || !(motion.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)) continue;
-            sum.impulse += weight * impulse;
-            sum.work += weight * impulse.dot(twice_mean(motion, stencil.node[a], rows.point[i])) / 2;
-        }
+        add(rows.stencil[i], impulse, &rows.point[i]);
     }
     contacts.resize(first);
+    for (const CableBlock& block : blocks.solved()) {
+        if (!block.is_tie) continue;
+        const Vec3 impulse = impulse_of(blocks, block);
+        for (Index p = block.points.begin; p < block.points.end; ++p)
+            add(blocks.stencil[p], impulse, block.acting_point(p));
+    }
     return sum;
 }
 
-Index store_ties(const TieRowTable& rows, std::span<const Range> body_implicit, const TieTimes& times, TieTable& ties) {
+Index store_ties(const TieRowTable& rows, const TiedMeans& means, const TieTimes& times, TieTable& ties) {
     for (std::size_t t = 0; t < ties.size(); ++t) {
         if (rows.rests[t]) continue;
-        ties.step[t] = acts_for_whole_step(ties, body_implicit, t) ? times.h : times.kick;
+        ties.step[t] = acts_for_whole_step(ties, means.body_implicit, t) ? times.h : times.kick;
         std::ranges::fill(rows_of(ties.impulse, ties.nodes[t]), Vec3::Zero());
     }
     Index released = 0;
@@ -60,6 +90,10 @@ Index store_ties(const TieRowTable& rows, std::span<const Range> body_implicit, 
         const auto is_broken = [](Real time) { return time < infinity; };
         released += std::ranges::all_of(rows_of(ties.broken, ties.nodes[t]), is_broken);
     }
+    for (const CableBlock& block : means.blocks.solved())
+        if (block.is_tie)
+            released += store_mean(impulse_of(means.blocks, block), means, static_cast<std::size_t>(block.cable),
+                                   times.end, ties);
     for (std::size_t t = 0; t < ties.size(); ++t) {
         if (rows.rests[t]) continue;
         Vec3 sum = Vec3::Zero();

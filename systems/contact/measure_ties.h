@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "components/cable_table.h"
 #include "components/contact_table.h"
 #include "components/node_table.h"
 #include "components/tie_table.h"
@@ -34,8 +35,24 @@ struct TieWorkInputs {
 };
 
 /// Takes the rows of ties out of the contacts after the solve, and stores their impulses in `rows`. Returns the sums
-/// over all rows. Sequential, in row order.
-TieMeasures take_tie_rows(const TieWorkInputs& motion, ContactTable& contacts, TieRowTable& rows);
+/// over all rows, and over the ties in `blocks`. Sequential, in row order.
+TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& blocks, ContactTable& contacts,
+                          TieRowTable& rows);
+
+/// Solved ties of the kind `ball`, and the columns that divide their impulses among nodes.
+struct TiedMeans {
+    const CableBlockTable& blocks;
+    std::span<const Range> body_nodes, body_implicit;  // BodyTable
+    std::span<const Real> mass;                        // by node [kg]
+
+    static TiedMeans bind(const Binder& binder, const CableBlockTable& blocks, const BodyTable& body,
+                          const NodeTable& node) {
+        return {.blocks = binder.read(blocks),
+                .body_nodes = binder.read(body.nodes),
+                .body_implicit = binder.read(body.implicit),
+                .mass = binder.read(node.mass)};
+    }
+};
 
 /// Times of a step [s]: its end, its length, and the interval in which forces act on nodes with their own mass.
 struct TieTimes {
@@ -43,7 +60,8 @@ struct TieTimes {
 };
 
 /// Stores the impulses and the largest forces of a committed step. A node breaks off if its force exceeds the limit of
-/// its tie. Returns the number of ties of which the last node has broken off.
-Index store_ties(const TieRowTable& rows, std::span<const Range> body_implicit, const TieTimes& times, TieTable& ties);
+/// its tie; a tie of the kind `ball` breaks as a whole. Returns the number of ties of which the last node has broken
+/// off.
+Index store_ties(const TieRowTable& rows, const TiedMeans& means, const TieTimes& times, TieTable& ties);
 
 }  // namespace skerry

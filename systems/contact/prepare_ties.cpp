@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "components/write_contact.h"
 #include "systems/geometry/rotation.h"
@@ -90,14 +91,39 @@ Vec3 led_velocity(const RigidMotion& motion, const Vec3& point, Real h) {
     return motion.velocity + (rotation_matrix(h * motion.angular_velocity) * arm - arm) / h;
 }
 
-/// Row of one tied node.
+/// A point of the first body of a tie: one of its nodes, or the mean point of all.
+struct TiedPoint {
+    Vec3 position = Vec3::Zero();  // [m]
+    FrameMotion of_frame;          // of the frame of its body
+};
+
+TiedPoint tied_point(const TieInputs& ties, std::size_t t, Index node) {
+    const Index frame = ties.frame(ties.tie.first[t]);
+    const Vec3& position = ties.position[static_cast<std::size_t>(node)];
+    return {position, frame_motion(ties, frame, position, frame == no_index ? no_index : node)};
+}
+
+TiedPoint mean_of_points(const TieInputs& ties, std::size_t t) {
+    TiedPoint mean;
+    ties.for_each_share(t, [&](Index node, Real share) {
+        const TiedPoint of = tied_point(ties, t, node);
+        mean.position += share * of.position;
+        mean.of_frame.turning += share * of.of_frame.turning;
+        mean.of_frame.acceleration += share * of.of_frame.acceleration;
+    });
+    return mean;
+}
+
+/// Equation of one tied node, or of the mean point of a tie whose first node is `k`.
 class TieRow {
 public:
-    TieRow(const TieInputs& ties, const TieStep& step, std::size_t t, std::size_t k)
-        : ties_(ties), step_(step), t_(t), k_(k), place_(ties.place(t, k)) {
+    /// `weight`: weight of node `k` in the stencil.
+    TieRow(const TieInputs& ties, const TieStep& step, std::size_t t, std::size_t k, const TiedPoint& point,
+           Real weight)
+        : ties_(ties), step_(step), t_(t), k_(k), point_(point), place_(ties.place(t, k)) {
         const TieTable& tie = ties.tie;
-        node_ = ties.row_of(tie.first[t], tie.node[k]);
-        stencil_ = {{node_, node_, node_, node_}, {1, 0, 0, 0}};
+        const Index node = ties.row_of(tie.first[t], tie.node[k]);
+        stencil_ = {{node, node, node, node}, {weight, 0, 0, 0}};
         if (ties.deforms(tie.second[t])) {
             for (std::size_t a = 0; a < 3; ++a) {
                 stencil_.node[a + 1] = ties.row_of(tie.second[t], tie.corner[k][a]);
@@ -111,23 +137,22 @@ public:
     }
 
     const Stencil& stencil() const { return stencil_; }
-    const Vec3& point() const { return ties_.position[static_cast<std::size_t>(node_)]; }
+    const Vec3& point() const { return point_.position; }
     const Vec3& normal() const { return place_.normal; }
 
     /// Velocity that the row demands of the node relative to the nodes of the other object [m/s]
     Vec3 demanded() const {
         const TieTable& tie = ties_.tie;
-        const Index second = tie.second[t_], first_frame = ties_.frame(tie.first[t_]), frame = ties_.frame(second);
-        const FrameMotion of_first =
-            frame_motion(ties_, first_frame, point(), first_frame == no_index ? no_index : node_);
+        const Index second = tie.second[t_], frame = ties_.frame(second);
+        const FrameMotion& of_first = point_.of_frame;
         const FrameMotion of_second = frame_motion(ties_, frame, point(), no_index);
         Vec3 velocity = Vec3::Zero();
         if (tie.collider[t_] != no_index)
             velocity = led_velocity(ties_.motion[static_cast<std::size_t>(tie.collider[t_])], place_.point, step_.h);
-        else if (frame != no_index && stencil_.weight[1] == 0)
-            velocity = of_second.velocity;
         else if (ties_.deforms(second) && frame == no_index)
             velocity = turning_offset(ties_, t_, k_, step_.h);
+        else if (!ties_.deforms(second) && frame != no_index && stencil_.weight[1] == 0)
+            velocity = of_second.velocity;
         Vec3 error = point() - place_.point;
         if (tie.kind[t_] == TieKind::slide) error = place_.normal.dot(error) * place_.normal;
         Vec3 pull = error / step_.h;
@@ -140,8 +165,8 @@ private:
     const TieInputs& ties_;
     const TieStep& step_;
     std::size_t t_, k_;
+    TiedPoint point_;
     TiePlace place_;
-    Index node_;
     Stencil stencil_;
 };
 
@@ -167,6 +192,66 @@ ContactRow contact_row_of(const TieTable& tie, std::size_t t, std::size_t k, con
             .first_body = tie.first[t],
             .second_body = tie.second[t],
             .collider = tie.collider[t]};
+}
+
+/// Appends the equation of the mean point of a tie, unless impulses can move none of its points. Each point but the
+/// last one combines four nodes.
+void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real scale, CableBlockTable& blocks) {
+    const TieTable& tie = ties.tie;
+    const TieRow row(ties, step, t, static_cast<std::size_t>(tie.nodes[t].begin), mean_of_points(ties, t), 0);
+    const auto begin = static_cast<Index>(blocks.stencil.size());
+    bool moves = false;
+    const auto append_point = [&](const Stencil& stencil, const Vec3& velocity) {
+        for (std::size_t a = 0; a < 4; ++a)
+            moves |= stencil.weight[a] != 0 && ties.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0;
+        blocks.stencil.push_back(stencil);
+        blocks.velocity.push_back(velocity);
+        blocks.direction.push_back(Vec3::Zero());
+        blocks.length.push_back(0);
+        blocks.most_ratio.push_back(1);
+        blocks.impulse.push_back(0);
+    };
+    Stencil four{};
+    std::size_t count = 0;
+    const auto end_point = [&] {
+        for (std::size_t a = count; a < 4; ++a) four.node[a] = row.stencil().node[0];
+        append_point(std::exchange(four, {}), Vec3::Zero());
+        count = 0;
+    };
+    ties.for_each_share(t, [&](Index node, Real share) {
+        four.node[count] = node;
+        four.weight[count] = share;
+        if (++count == 4) end_point();
+    });
+    // The components of the impulse need three rows.
+    while (count > 0 || static_cast<Index>(blocks.stencil.size()) < begin + 2) end_point();
+    append_point(row.stencil(), -row.demanded());
+    const Range points{begin, static_cast<Index>(blocks.stencil.size())};
+    if (!moves) {
+        for (auto* const column : {&blocks.velocity, &blocks.direction})
+            column->resize(static_cast<std::size_t>(begin));
+        for (auto* const column : {&blocks.length, &blocks.most_ratio, &blocks.impulse})
+            column->resize(static_cast<std::size_t>(begin));
+        blocks.stencil.resize(static_cast<std::size_t>(begin));
+        return;
+    }
+    Vec3 impulse = Vec3::Zero();
+    for (const Vec3& of_node : rows_of(tie.impulse.span(), tie.nodes[t])) impulse += scale * of_node;
+    for (Index k = 0; k < 3; ++k) blocks.impulse[begin + k] = impulse[k];
+    CableBlock block{.cable = static_cast<Index>(t),
+                     .points = points,
+                     .solved = true,
+                     .by_length = false,
+                     .wanted = 0,
+                     .released = 0,
+                     .mobility = blocks.mobilities,
+                     .is_tie = true,
+                     .acts_at = row.point()};
+    blocks.mobilities += block.impulses() * block.impulses();
+    blocks.block.push_back(block);
+    blocks.work.push_back(0);
+    blocks.dissipated.push_back(0);
+    blocks.sum_impulse.push_back(Vec3::Zero());
 }
 
 }  // namespace
@@ -198,7 +283,8 @@ TiePlace TieInputs::place(std::size_t t, std::size_t k) const {
     return {of.position + of.rotation * tie.place[k], of.rotation * tie.normal[k]};
 }
 
-bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows) {
+bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows,
+                  CableBlockTable& blocks) {
     const TieTable& tie = ties.tie;
     rows.rests.resize(tie.size());
     rows.tie.clear();
@@ -209,10 +295,14 @@ bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& cont
         rows.rests[t] = ties.rests(t);
         if (rows.rests[t]) continue;
         const Real scale = step.warm_start == WarmStart::on && tie.step[t] > 0 ? step.kick / tie.step[t] : 0;
+        if (tie.kind[t] == TieKind::ball) {
+            if (tie.holds(t)) append_mean(ties, step, t, scale, blocks);
+            continue;
+        }
         for (Index k = tie.nodes[t].begin; k < tie.nodes[t].end; ++k) {
             const auto at = static_cast<std::size_t>(k);
             if (tie.broken[at] < infinity) continue;
-            const TieRow row(ties, step, t, at);
+            const TieRow row(ties, step, t, at, tied_point(ties, t, ties.row_of(tie.first[t], tie.node[k])), 1);
             append_row(contact_row_of(tie, t, at, row), scale * tie.impulse[at], contacts);
             rows.tie.push_back(static_cast<Index>(t));
             rows.node.push_back(k);

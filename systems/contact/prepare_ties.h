@@ -6,6 +6,7 @@
 #include <span>
 
 #include "components/body_table.h"
+#include "components/cable_table.h"
 #include "components/collider_table.h"
 #include "components/contact_table.h"
 #include "components/node_table.h"
@@ -31,6 +32,7 @@ struct TieInputs {
     std::span<const std::uint8_t> body_asleep;                     // column of BodyTable; empty if no body is asleep
     // Columns of NodeTable. `velocity_next`: predicted velocity [m/s]
     std::span<const Vec3> position, velocity_next;
+    std::span<const Real> node_mass, inverse_mass;  // [kg], [1/kg]
     // RigidBodyTable
     std::span<const Vec3> center, rest_center;
     std::span<const Mat3> axes, rotation;
@@ -49,6 +51,8 @@ struct TieInputs {
                 .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
                 .position = binder.read(node.position),
                 .velocity_next = binder.read(node.velocity_next),
+                .node_mass = binder.read(node.mass),
+                .inverse_mass = binder.read(node.inverse_mass),
                 .center = binder.read(rigid.center),
                 .rest_center = binder.read(rigid.rest_center),
                 .axes = binder.read(rigid.axes),
@@ -81,7 +85,23 @@ struct TieInputs {
     }
     /// True if no object of tie `t` can move in this step, because its bodies are asleep.
     bool rests(std::size_t t) const;
-    /// Present place to which node `k` of the columns by tied node is tied. `t`: row of its tie.
+    /// Calls visit(node, share) for each node of tie `t`. `node`: row of NodeTable. `share`: its part of the mass of
+    /// all nodes of the tie.
+    void for_each_share(std::size_t t, auto&& visit) const {
+        Real sum = 0;
+        for (const Index node : nodes_of(t)) sum += node_mass[static_cast<std::size_t>(row_of(tie.first[t], node))];
+        for (const Index node : nodes_of(t)) {
+            const Index row = row_of(tie.first[t], node);
+            visit(row, node_mass[static_cast<std::size_t>(row)] / sum);
+        }
+    }
+    /// Mean point of the nodes of a tie, weighted by their masses [m].
+    Vec3 mean_point(std::size_t t) const {
+        Vec3 mean = Vec3::Zero();
+        for_each_share(t, [&](Index node, Real share) { mean += share * position[static_cast<std::size_t>(node)]; });
+        return mean;
+    }
+    /// Present place to which node `k` of the columns by tied node, or the mean point, is tied. `t`: row of its tie.
     TiePlace place(std::size_t t, std::size_t k) const;
 };
 
@@ -95,9 +115,11 @@ struct TieStep {
     WarmStart warm_start = WarmStart::on;
 };
 
-/// Appends a row to the contacts for each tied node of a tie that does not rest. The rows demand that the position
-/// error is zero at the end of the step. Returns false if there is no tie (skipped).
-bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows);
+/// Appends a row to the contacts for each tied node of a weld or slide that does not rest, and a block to `blocks` for
+/// each tie of the kind `ball`. They demand that the position error is zero at the end of the step. Returns false if
+/// there is no tie (skipped).
+bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows,
+                  CableBlockTable& blocks);
 
 /// Marks bodies that are tied to a moving collider. Returns false if there is none.
 bool mark_led(const TieInputs& ties, std::span<std::uint8_t> marked);

@@ -211,6 +211,7 @@ CableWork work_of_cable(std::span<const Real> tension, std::span<const Real> bef
 
 bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const CableMemory& out) {
     for (const CableBlock& block : blocks.block) {
+        if (block.is_tie) continue;
         const auto c = static_cast<std::size_t>(block.cable);
         const std::span<const Real> length = rows_of(blocks.length, block.points),
                                     impulse = rows_of(blocks.impulse, block.points);

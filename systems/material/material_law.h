@@ -16,6 +16,12 @@ Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 /// Derivative dP/dF of the stress by the deformation gradient, for Newton steps [Pa].
 Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
+/// Energy density [J/m^3] for the displacement gradient `change`, and block -df_k/dx_l of the stiffness matrix per
+/// volume [Pa/m^2] of two nodes with the shape gradients g and other [1/m], both at small strain. Anisotropic laws have
+/// the members energy_of_strain and dyads for them; all other laws agree with Linear there.
+Real small_strain_energy(const MaterialConstants& material, const Mat3& change);
+Mat3 small_strain_stiffness(const MaterialConstants& material, const Vec3& g, const Vec3& other);
+
 /// Converts user parameters to material constants: Young's modulus > 0 [Pa], -1 < Poisson ratio < 0.5, density > 0
 /// [kg/m^3].
 MaterialConstants material_constants(MaterialModel model, Real young_modulus, Real poisson_ratio, Real density);

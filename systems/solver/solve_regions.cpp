@@ -50,9 +50,9 @@ void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, Re
 void make_room_for_cables(const SolvedCables& cables, RegionMemory& data) {
     if (cables.block.empty()) return;
     const CableBlock& last = cables.block.back();
-    const auto segments = static_cast<std::size_t>(last.points.size() - 1);
+    const auto impulses = static_cast<std::size_t>(last.impulses());
     make_room(data.cable_law, cables.block.size());
-    make_room(data.cable_mobility, static_cast<std::size_t>(last.mobility) + segments * segments);
+    make_room(data.cable_mobility, static_cast<std::size_t>(last.mobility) + impulses * impulses);
     make_room(data.cable_numbers, CableLaw::numbers_by_segment * cables.stencil.size());
 }
 

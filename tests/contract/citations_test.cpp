@@ -120,7 +120,7 @@ std::vector<std::string> objections(const ProjectFile& file) {
 
 }  // namespace
 
-TEST_CASE("what is cited is in the project, and so is the section", "[contract]") {
+TEST_CASE("cited files and sections exist", "[contract]") {
     std::vector<ProjectFile> files = skerry::test::project_files();
     const std::vector<ProjectFile> texts = skerry::test::project_texts();
     files.insert(files.end(), texts.begin(), texts.end());
@@ -131,7 +131,7 @@ TEST_CASE("what is cited is in the project, and so is the section", "[contract]"
         }
 }
 
-TEST_CASE("the test of citations notices what it is there for", "[contract]") {
+TEST_CASE("the test of citations finds planted faults", "[contract]") {
     const auto found = [](const std::string& path, const std::vector<std::string>& lines) {
         return objections({path, lines}).size();
     };

@@ -172,7 +172,7 @@ TEST_CASE("only jobs know a threading library", "[contract]") {
     }
 }
 
-TEST_CASE("the test of includes notices what it is there for", "[contract]") {
+TEST_CASE("the test of includes finds planted faults", "[contract]") {
     CHECK(objection("systems/geometry/a.h", "systems/solver/b.h") != "");
     CHECK(objection("systems/material/a.h", "systems/collision/b.h") != "");
     CHECK(objection("components/a.h", "jobs/b.h") != "");

@@ -1,6 +1,6 @@
-# Installs the build folder BUILD below WORK and links the program HOST, which uses Eigen itself, in every way that
-# docs/linking.md tells, with compilers COMPILERS and flags that are not Skerry's. Each has to end with the state in
-# which PROGRAM ends.
+# Installs the build folder BUILD below WORK. Links the program HOST, which uses Eigen itself, in all ways of
+# docs/linking.md, with the compilers COMPILERS and other flags than Skerry. Each program must end with the same state
+# as PROGRAM.
 function(run out)
     execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE errors
                     WORKING_DIRECTORY ${WORK})
@@ -12,7 +12,7 @@ function(run out)
     set(${out} "${text}" PARENT_SCOPE)
 endfunction()
 
-# A quarter of a second is 2^-2: 16 frames are that to the last bit.
+# A quarter of a second is 2^-2 s, so it has no rounding error as the sum of 16 frames.
 set(scene ${SCENES}/skittles.json)
 set(frame_step 0.015625)
 set(frames 16)
@@ -38,7 +38,7 @@ file(GLOB archive ${WORK}/prefix/lib*/libskerry.a ${WORK}/prefix/lib/*/libskerry
 cmake_path(GET archive PARENT_PATH libraries)
 set(ENV{PKG_CONFIG_PATH} ${libraries}/pkgconfig)
 set(flags_0 -O0)
-set(flags_1 -O2 -mavx)  # 32 bytes are Eigen's alignment then
+set(flags_1 -O2 -mavx)  # Eigen then aligns to 32 bytes
 set(number 0)
 foreach(compiler IN LISTS COMPILERS)
     math(EXPR which "${number} % 2")

@@ -1,6 +1,5 @@
-# skerry_readme_code(README SOURCE): writes the first block of C++ in README as a program: as it is when it has a main,
-# else its includes, then the rest as the body of main. Writes nothing, and removes what it wrote before, when there is
-# no such block.
+# skerry_readme_code(README SOURCE): writes the first block of C++ in README as a program. If the block has no main, its
+# includes are followed by a main with the rest. If there is no block, SOURCE is removed.
 function(skerry_readme_code readme source)
     set(text "")
     if(EXISTS ${readme})
@@ -21,7 +20,7 @@ function(skerry_readme_code readme source)
         return()
     endif()
 
-    # Lines cannot be told apart as a list: code is full of semicolons.
+    # The code is not split into a list, because it contains semicolons.
     set(includes "")
     set(body "\n${code}")
     while(body MATCHES "\n(#include [^\n]*)\n")

@@ -9,8 +9,7 @@ namespace skerry::test::determinism_access_test {
 
 #ifdef SKERRY_CHECK_ACCESS
 
-TEST_CASE("a stage that is slipped into the step and looks at what it has not declared fails, by name",
-          "[determinism]") {
+TEST_CASE("a stage that uses data that it has not declared fails by name", "[determinism]") {
     WorldState world{Settings{}};
     world.scratch.parameters.h = world.scratch.parameters.kick = 1e-3;
     const auto fails_with = [&](const char* message, auto touch) {

@@ -17,6 +17,7 @@
 #include "skerry/rollout.h"
 #include "skerry/spring.h"
 #include "skerry/surface.h"
+#include "skerry/tie.h"
 #include "tests/support/worlds.h"
 
 extern "C" void* __libc_malloc(std::size_t);
@@ -194,6 +195,27 @@ TEST_CASE("cables allocate nothing, either", "[determinism]") {
     cables.add({.points = points, .drive = {.tension = 1}});
     cables.add({.points = points, .drive = {.tension = 1}, .friction = 0.2});
     cables.add({.points = points, .drive = {.rate = -1e-4}});
+    REQUIRE(world.advance(1).ok());
+    CHECK(allocations_of_a_fifth_second(world) == 0);
+}
+
+TEST_CASE("ties of each kind allocate nothing, either", "[determinism]") {
+    const auto kind = GENERATE(TieKind::weld, TieKind::slide, TieKind::ball);
+    const auto dynamics = GENERATE(BodyDynamics::explicit_elastic, BodyDynamics::rigid, BodyDynamics::implicit_elastic);
+    Settings settings = two_threads();
+    settings.sleep = false;
+    World world(settings);
+    const auto stiff = world.add_material({.young_modulus = 1e6});
+    world.add_collider(Plane{});
+    const Mesh mesh = mesh::box({0.2, 0.1, 0.1}, {4, 2, 2});
+    const auto add = [&](Real x, BodyDynamics of) {
+        return world.add_body(mesh, {.material = stiff, .position = {x, 0, 0.055}, .dynamics = of});
+    };
+    const BodyHandle left = add(0, BodyDynamics::explicit_elastic), right = add(0.2, dynamics);
+    std::vector<Index> face;
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+        if (mesh.nodes[n].x() > 0.099) face.push_back(static_cast<Index>(n));
+    Ties(world).add({.kind = kind, .body = left, .nodes = face, .to_body = right});
     REQUIRE(world.advance(1).ok());
     CHECK(allocations_of_a_fifth_second(world) == 0);
 }

@@ -237,7 +237,7 @@ TEST_CASE("settings that users do not have are carried by clones and files", "[d
     }
 }
 
-TEST_CASE("handles, names, shapes and contacts are what they were after loading", "[determinism][serial]") {
+TEST_CASE("a loaded world has the same handles, names, shapes and contacts", "[determinism][serial]") {
     const TemporaryFolder folder;
     World world = lively_scene({});
     const std::vector<BodyHandle> all = world.bodies();

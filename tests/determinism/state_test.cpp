@@ -26,7 +26,7 @@ TEST_CASE("bodies with clusters have the same bits on any number of workers", "[
         for (const int threads : {2, 4}) CHECK(thrown(backend, threads).state_hash() == world.state_hash());
 }
 
-TEST_CASE("what the test of copies runs has bodies that sleep and wake", "[determinism][slow]") {
+TEST_CASE("the runs in the test of copies have bodies that sleep and wake", "[determinism][slow]") {
     World world = lively_scene({});
     std::size_t most = 0;
     bool woken = false;
@@ -81,7 +81,7 @@ TEST_CASE("the hash sees a bit in every column that is state", "[determinism][se
     CHECK(world.state_hash() == before);
 }
 
-TEST_CASE("every column of a table that is state can be told from what is not", "[determinism][serial]") {
+TEST_CASE("every column of a table that is state is tested for changes", "[determinism][serial]") {
     World world = lively_scene({});
     REQUIRE(world.advance(0.1).ok());
     WorldState& state = WorldAccess::state_of(world);
@@ -96,7 +96,7 @@ TEST_CASE("every column of a table that is state can be told from what is not", 
     CHECK(world.state_hash() == before);
 }
 
-TEST_CASE("the hash of a body does not depend on what else is in the world", "[determinism]") {
+TEST_CASE("the hash of a body does not depend on other objects of the world", "[determinism]") {
     const auto body_of = [](bool with_others) {
         World world;
         const auto rubber = world.add_material({.young_modulus = 3e4});

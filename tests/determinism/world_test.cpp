@@ -92,7 +92,7 @@ TEST_CASE("the hash sees a change of the last bit of one velocity", "[determinis
     CHECK(world.state_hash() != before);
 }
 
-TEST_CASE("budgets that skip what cannot be close change no bit that matters", "[determinism][serial]") {
+TEST_CASE("budgets that skip pairs that cannot be close change no bit that matters", "[determinism][serial]") {
     // Searching everything in every step finds the same contacts in the same order, so the runs stay equal.
     std::vector<std::uint64_t> hashes;
     for (bool budgets : {true, false}) {

@@ -203,7 +203,7 @@ TEST_CASE("rigid motion alone costs nothing, however thin the mesh", "[property]
         }
 }
 
-TEST_CASE("means are never stiffer than what they are of", "[property]") {
+TEST_CASE("means are never stiffer than the averaged elements", "[property]") {
     for (const Real nu : {0.3, 0.49}) {
         const test::TetMesh mesh = jittered_box({3, 3, 3}, cell, 0.25, 9);
         ElasticBody linear = body_of(mesh, ElementKind::linear, MaterialModel::linear, nu);

@@ -213,7 +213,7 @@ TEST_CASE("small tetrahedra of smoothed elements have guards, slivers and linear
     CHECK(guards_of({slivers.nodes, slivers.tetrahedra}).size() < slivers.tetrahedra.size() / 4);
 }
 
-TEST_CASE("guards stand behind the elements that a body has without them, and take no mass", "[property]") {
+TEST_CASE("guards come after the elements of the body without them, and take no mass", "[property]") {
     const TetMesh mesh = knotted();
     const GuardedBody guarded(mesh);
     const test::ElasticBody plain(mesh, rubber, Mat3::Identity(), ElementKind::edge_node_smoothed);

@@ -90,7 +90,7 @@ TEST_CASE("an edge or a node between two materials has an element of each", "[pr
     CHECK(count(ElementKind::linear, 0) == count(ElementKind::linear, 1));
 }
 
-TEST_CASE("each zone has the kind of element that it asks for", "[property]") {
+TEST_CASE("each zone has its own kind of element", "[property]") {
     const test::TetMesh mesh = jittered_box({2, 2, 2}, cell, 0, 1);
     std::vector<MaterialZone> zones{{5, ElementKind::edge_smoothed, {}}, {3, ElementKind::edge_node_smoothed, {}}};
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) zones[t % 2].tetrahedra.push_back(static_cast<Index>(t));

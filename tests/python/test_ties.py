@@ -29,6 +29,17 @@ def test_a_tie_to_the_world_carries_the_weight_of_a_body() -> None:
     assert world.ties == [tie]
 
 
+def test_a_ball_ties_the_mean_point_of_its_nodes() -> None:
+    world, body, weld = hanging_cube()
+    weld.remove()
+    tie = world.add_tie(body, range(8), kind="ball")
+    world.advance(0.1)
+    state = tie.state
+    assert state.kind == "ball" and state.error < 1e-9
+    assert state.point == pytest.approx((0, 0, 0), abs=1e-9)
+    assert state.node_forces.sum(axis=0) == pytest.approx((0, 0, 9.81), abs=0.01)
+
+
 def test_the_nodes_of_a_tie_break_off_when_their_force_is_lowered() -> None:
     world, _, tie = hanging_cube()
     world.advance(1.0)

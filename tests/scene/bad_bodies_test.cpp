@@ -82,7 +82,7 @@ TEST_CASE("a material with waves faster than light is refused by its numbers", "
     CHECK_NOTHROW(world.add_material({.young_modulus = 1e12, .density = 1}));
 }
 
-TEST_CASE("a body whose stable step is no number is refused by name, with its size and material", "[scene]") {
+TEST_CASE("a body whose stable step is not finite is refused by name, with its size and material", "[scene]") {
     World world;
     const MaterialHandle rubber = world.add_material({});
     world.add_body(mesh::box({1, 1, 1}, {2, 2, 2}), {.material = rubber, .position = {9, 0, 0}});
@@ -95,7 +95,7 @@ TEST_CASE("a body whose stable step is no number is refused by name, with its si
     CHECK(world.advance(0.01).ok());
 }
 
-TEST_CASE("a time that would take steps without end names the body that asks for them", "[scene]") {
+TEST_CASE("a time that needs too many steps is refused with the name of the body with the shortest step", "[scene]") {
     World world;
     const MaterialHandle hard = world.add_material({.young_modulus = 1e15, .density = 0.1});
     world.add_body(mesh::box({1e-6, 1e-6, 1e-6}, {2, 2, 2}),

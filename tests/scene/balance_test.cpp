@@ -78,7 +78,7 @@ TEST_CASE("a change from outside starts the balance afresh, and a held body that
     CHECK(damped.report().energy_error_share < 5e-3);
 }
 
-TEST_CASE("what rests without weight has no doubtful energy: shares of rounding are none", "[scene]") {
+TEST_CASE("weightless bodies at rest get no warning about energy errors of rounding", "[scene]") {
     Settings settings;
     settings.gravity.setZero();
     for (const Vec3& place : {Vec3(0, 0, 0), Vec3(0.3, -0.2, 7), Vec3(100, 0, 0)}) {

@@ -24,7 +24,7 @@ Real farthest(std::span<const Mat3> values, const Mat3& expected) {
 
 }  // namespace
 
-TEST_CASE("a body whose strain is the same everywhere says so, with every kind of element", "[scene]") {
+TEST_CASE("a body of uniform strain reports this strain, with every kind of element", "[scene]") {
     constexpr Real modulus = 1e5, nu = 0.4;  // Pa
     constexpr Real mu = modulus / (2 * (1 + nu)), lambda = modulus * nu / ((1 + nu) * (1 - 2 * nu));
     Mat3 rate;  // 1/s
@@ -85,7 +85,7 @@ TEST_CASE("a node with too few others around it has the mean of its elements", "
     }
 }
 
-TEST_CASE("stress of some nodes is to the bit what it is of all of them", "[scene][long]") {
+TEST_CASE("the stress of some nodes is bitwise the stress of these nodes among all", "[scene][long]") {
     const ElementKind kind = GENERATE(from_range(test::element_kinds));
     const MaterialModel model = GENERATE(from_range(test::material_models));
     const BodyDynamics dynamics = GENERATE(BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic);

@@ -384,7 +384,7 @@ TEST_CASE("a moving collider wakes a body that hangs on it by a cable", "[scene]
     CHECK(Cables(world).state(cable).length == Approx(0.95).epsilon(1e-3));
 }
 
-TEST_CASE("a cable whose points are all held is let out at its rate", "[scene][cables]") {
+TEST_CASE("a cable between held points lengthens at its rate", "[scene][cables]") {
     World world(with_step(1e-3));
     const BodyHandle cube = add_cube(world, {0, 0, 0});
     world.attach(cube, nodes_where(mesh::box(Vec3::Constant(0.1), {1, 1, 1}), [](const Vec3&) { return true; }));
@@ -433,7 +433,7 @@ TEST_CASE("a saved cable that pushes, or a point of two objects, is refused", "[
     CHECK_THAT(message([](CableTable& table) { table.anchor.collider[1] = 0; }), Contains("cables: collider"));
 }
 
-TEST_CASE("errors of cables name the field, what was found and what is expected", "[scene][cables]") {
+TEST_CASE("errors of cables name the field, the value found and the values expected", "[scene][cables]") {
     World world(with_step(1e-3));
     const BodyHandle cube = add_cube(world, {0, 0, 0});
     const Anchor on_cube{.body = cube, .point = {0, 0, 0}}, above{.point = {0, 0, 1}};

@@ -7,7 +7,7 @@ namespace skerry::test::capsule_turns_test {
 
 using namespace skerry::test::capsules;
 
-TEST_CASE("a capsule that spins on its end is not turned into what it spins on", "[scene]") {
+TEST_CASE("a capsule that spins on its end does not enter the surface below", "[scene]") {
     for (const Floor floor : {plane, box, mesh_collider, rigid_slab}) {
         CAPTURE(floor);
         Capsules c(steps_of(2e-3, Vec3::Zero()), 0);

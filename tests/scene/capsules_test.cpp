@@ -31,7 +31,7 @@ Real distance_to_faces(const Vec3& a, const Vec3& b, std::span<const Vec3> x,
 
 }  // namespace
 
-TEST_CASE("a capsule has the mass and the moments of the solid, not of what draws it", "[scene]") {
+TEST_CASE("a capsule has the mass and the moments of the solid, not of its drawn mesh", "[scene]") {
     for (const Vec3& rotation : {Vec3(0, 0, 0), Vec3(0.3, -1.2, 0.7)}) {
         Capsules c(steps_of(1e-2, Vec3::Zero()));
         const Mat3 turned = rotation_matrix(rotation);
@@ -220,7 +220,7 @@ TEST_CASE("a capsule lies over the sides of colliders", "[scene]") {
     CHECK((c.middle(upright) - Vec3(6, 0, 0.3 + kept / 2)).norm() < 1e-8);
 }
 
-TEST_CASE("a capsule lies on a soft block, which does not come into it", "[scene]") {
+TEST_CASE("a capsule lies on a soft block, which does not come into it", "[scene][long]") {
     Capsules c({.step_size = 1e-3});
     c.world.add_collider(Plane{});
     const auto soft = c.world.add_material(
@@ -295,7 +295,7 @@ TEST_CASE("a fast capsule goes through nothing, whatever way it turns", "[scene]
     }
 }
 
-TEST_CASE("what draws a capsule moves with it", "[scene]") {
+TEST_CASE("the drawn mesh of a capsule moves with it", "[scene]") {
     Capsules c(steps_of(1e-3, Vec3::Zero()));
     const Vec3 spin(0, 0, 3), tilt(0.3, 0, 0);
     const BodyHandle body = c.add({0, 0, 1}, Vec3::Zero(), {1, 0, 0}, spin);
@@ -364,7 +364,7 @@ TEST_CASE("capsules that overlap at the start are refused or moved apart", "[sce
     }
 }
 
-TEST_CASE("what a capsule cannot be is refused by name", "[scene]") {
+TEST_CASE("invalid settings of a capsule are refused by name", "[scene]") {
     Capsules c(steps_of(1e-3));
     using Catch::Contains;
     const auto add = [&](const Capsule& capsule, BodyDynamics dynamics, const std::string& name) {

@@ -143,7 +143,7 @@ TEST_CASE("the forces of a closed cavity cancel, and its gas gives a free body n
     }
 }
 
-TEST_CASE("a body that breathes on its gas keeps its energy for ten seconds", "[scene][cavities]") {
+TEST_CASE("a body that breathes on its gas keeps its energy for ten seconds", "[scene][cavities][long]") {
     Settings settings = accurate(no_gravity);
     settings.integrator = Integrator::leapfrog;
     HollowSphere sphere(pressurised, rubber(), BodyDynamics::explicit_elastic, settings);
@@ -182,7 +182,7 @@ TEST_CASE("the state under gas pressure depends neither on the step nor on the l
     CHECK(often.pressure == Approx(once.pressure).epsilon(1e-5));
 }
 
-TEST_CASE("a thick sphere widens under a prescribed pressure as Lame found", "[scene][cavities]") {
+TEST_CASE("a thick sphere widens under a prescribed pressure as Lame found", "[scene][cavities][long]") {
     constexpr Real a = 1, b = 2, modulus = 1e6, nu = 0.3, p = 100;
     const BodyDynamics dynamics = GENERATE(BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic);
     const Mesh mesh = hollow_sphere(a, b, 8, 4);

@@ -37,7 +37,7 @@ Settings step_of(Real h) {
 
 }  // namespace
 
-TEST_CASE("what swings in steps that are short while it is fast keeps its energy", "[scene]") {
+TEST_CASE("a fast swing with short steps keeps its energy", "[scene]") {
     // One tetrahedron with three held nodes: the fourth oscillates along z with omega^2 = 4 (lambda + 2 mu) / rho.
     Settings settings;
     settings.gravity = Vec3::Zero();
@@ -170,7 +170,7 @@ TEST_CASE("leapfrog kicks for the step itself, however long the last one was", "
     }
 }
 
-TEST_CASE("what stands much shorter steps is not thrown by the length of the last one", "[scene]") {
+TEST_CASE("a body with a much shorter stable step gets no kick from the length of the last step", "[scene]") {
     World world{Settings{}};
     const auto stone = world.add_material({.young_modulus = 1e9, .poisson_ratio = 0.3, .density = 2000});
     world.add_body(mesh::ball(0.1, 3), {.material = stone, .dynamics = BodyDynamics::rigid});

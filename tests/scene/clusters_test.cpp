@@ -81,7 +81,7 @@ TEST_CASE("where some elements allow a little less than the others there are clu
     }
 }
 
-TEST_CASE("clusters add at most a hundredth to a moment of inertia, or a quarter of what masses at the nodes do",
+TEST_CASE("clusters add at most a hundredth to a moment of inertia, or a quarter of the share of lumped masses",
           "[scene][clusters][long]") {
     Real most = 0, least = 1;
     for (const Mesh& mesh :
@@ -112,7 +112,8 @@ TEST_CASE("clusters add at most a hundredth to a moment of inertia, or a quarter
     CHECK(least < 0.001);
 }
 
-TEST_CASE("a body with clusters that is strained in one place stands what its shares of mass do", "[scene][clusters]") {
+TEST_CASE("a body with clusters that is strained in one place is stable at the step of its mass shares",
+          "[scene][clusters]") {
     World world(weightless(true));
     const BodyHandle body = world.add_body(uneven_box(0.2), {.material = world.add_material(lossless_rubber())});
     const Real rest = world.stable_step();
@@ -212,7 +213,7 @@ TEST_CASE("a spinning body with clusters keeps energy, momentum and angular mome
     CHECK(world.center_of_mass(body).x() == Approx(0.3).epsilon(1e-6));
 }
 
-TEST_CASE("damping takes out of clusters what is booked", "[scene][clusters]") {
+TEST_CASE("the energy that damping takes out of clusters is recorded", "[scene][clusters]") {
     // error of unresolved velocities: 0.04 of the energy at the full step, 3e-4 here
     World world = tuned_world(weightless(true), {.step_safety = 0.3});
     MaterialSettings rubber = lossless_rubber();
@@ -234,7 +235,7 @@ TEST_CASE("damping takes out of clusters what is booked", "[scene][clusters]") {
     CHECK(end.energy_error_share < 1e-2);  // 0.13 if computed with the masses of the nodes
 }
 
-TEST_CASE("what hangs from clusters hangs as low as without", "[scene][clusters][long]") {
+TEST_CASE("a body with clusters hangs as low as without", "[scene][clusters][long]") {
     std::vector<Real> height;
     for (const bool clusters : {false, true}) {
         Settings settings;

@@ -165,7 +165,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("the force on what is pressed into a block converges as its cells become finer", "[scene][slow]") {
+TEST_CASE("the force of a punch converges as the cells of the block become finer", "[scene][slow]") {
     for (const Press& press : presses) {
         INFO(press.name);
         const Real f2 = press_block(press, 2).force, f4 = press_block(press, 4).force, f8 = press_block(press, 8).force;

@@ -31,7 +31,7 @@ std::vector<Index> rim_of(const Mesh& sheet) {
 
 }  // namespace
 
-TEST_CASE("a scene without fast pairs never looks at the motion of a feature", "[scene][long]") {
+TEST_CASE("a scene without fast pairs never tests the motion of a feature", "[scene][long]") {
     World world;
     const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5, .damping = 20});
     world.add_collider(Plane{});
@@ -78,7 +78,7 @@ TEST_CASE("a sheet pinched hard between two balls stays between them", "[scene]"
     CHECK(world.center_of_mass(balls[0]).z() < world.center_of_mass(balls[1]).z() - 0.03);
 }
 
-TEST_CASE("a body put half into another leaves it about as slowly as it is pushed", "[scene]") {
+TEST_CASE("a body put half into another leaves it about as slowly as it is pushed", "[scene][long]") {
     Settings settings = weightless();
     settings.start_overlaps = StartOverlaps::ignore;
     World world(settings);

@@ -19,7 +19,7 @@ constexpr Floor floors[] = {plane, box, mesh_collider, rigid_slab};
 
 }  // namespace
 
-TEST_CASE("a cylinder has the mass and the moments of the solid, not of what draws it", "[scene]") {
+TEST_CASE("a cylinder has the mass and the moments of the solid, not of its drawn mesh", "[scene]") {
     for (const Vec3& rotation : {Vec3(0, 0, 0), Vec3(0.3, -1.2, 0.7)}) {
         Cylinders c(steps_of(1e-2, Vec3::Zero()));
         const Mat3 turned = rotation_matrix(rotation);
@@ -279,7 +279,7 @@ TEST_CASE("a soft block holds a cylinder that stands and one that lies on it, an
     }
 }
 
-TEST_CASE("what draws a cylinder moves with it", "[scene]") {
+TEST_CASE("the drawn mesh of a cylinder moves with it", "[scene]") {
     Cylinders c(steps_of(1e-3, Vec3::Zero()));
     const Vec3 spin(0, 0, 3);
     const BodyHandle body = c.add({0, 0, 1}, Vec3::Zero(), {1, 0, 0}, spin);
@@ -358,7 +358,7 @@ TEST_CASE("a peg goes into a hole with a clearance of a hundredth of its radius,
     }
 }
 
-TEST_CASE("what a cylinder cannot be is refused by name", "[scene]") {
+TEST_CASE("invalid settings of a cylinder are refused by name", "[scene]") {
     Cylinders c(steps_of(1e-3));
     using Catch::Contains;
     const auto add = [&](const Cylinder& cylinder, BodyDynamics dynamics, const std::string& name) {

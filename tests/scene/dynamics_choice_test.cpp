@@ -28,7 +28,7 @@ Chosen choose(Real young_modulus, const Settings& settings = {}, bool self_conta
 
 }  // namespace
 
-TEST_CASE("what is stiff becomes implicit, what is soft stays explicit, and both say why", "[scene]") {
+TEST_CASE("stiff bodies become implicit, soft bodies stay explicit, and both report the reason", "[scene]") {
     const Chosen steel = choose(2e11);
     CHECK(steel.dynamics == BodyDynamics::implicit_elastic);
     CHECK(steel.estimate.reason == DynamicsReason::cost);
@@ -88,7 +88,8 @@ TEST_CASE("a body that the world's step suits stays explicit, though it is stiff
     CHECK(steel.estimate.explicit_cost < 2 * steel.estimate.implicit_cost);
 }
 
-TEST_CASE("step_size above the stable step is granted where what does not stand it is implicit", "[scene]") {
+TEST_CASE("step_size above the stable step is accepted if all bodies with shorter stable steps are implicit",
+          "[scene]") {
     Settings settings;
     settings.step_size = 1e-3;
     World world(settings);
@@ -255,7 +256,7 @@ TEST_CASE("the elements of equal bodies are tried once", "[scene]") {
     CHECK(as_explicit(world, steel) == as_explicit(alone, alone.add_material({.young_modulus = 2e11})));
 }
 
-TEST_CASE("a body that was chosen has the bits of one that was told", "[scene]") {
+TEST_CASE("automatic dynamics give the bits of the same dynamics given by hand", "[scene]") {
     for (const Real modulus : {1e5, 2e11}) {
         INFO(modulus << " Pa");
         std::uint64_t hash[2];

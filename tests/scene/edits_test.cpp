@@ -249,7 +249,7 @@ TEST_CASE("a changed world goes on with the same bits on all threads, cloned, an
     }
 }
 
-TEST_CASE("what is new or thrown by hand is met in every try of its first step, and after one that was refused",
+TEST_CASE("contacts of new or thrown bodies are found in every try of the first step, also after a refused one",
           "[scene]") {
     // A tile without a contact distance falls on a plane. In the same step a cube beside it is pulled further than the
     // list of its pair is valid for, so that the step is tried again.
@@ -289,7 +289,7 @@ TEST_CASE("what is new or thrown by hand is met in every try of its first step, 
     CHECK(world.center_of_mass(tile).z() > 0.01 - 1e-9);
 }
 
-TEST_CASE("many removed at once leave what the same removed one by one leave", "[scene]") {
+TEST_CASE("removing many objects at once gives the same world as removing them one by one", "[scene]") {
     const auto scene = [] {
         Field field(4, 0.101);
         std::vector<ColliderHandle> blocks;
@@ -342,7 +342,7 @@ TEST_CASE("many removed at once leave what the same removed one by one leave", "
     CHECK(at_once.world.report().pair_searches == one_by_one.world.report().pair_searches);
 }
 
-TEST_CASE("a change searches the pairs of what changed, as many in a large world as in a small one", "[scene][long]") {
+TEST_CASE("a change searches the pairs of the changed objects only, in worlds of any size", "[scene][long]") {
     std::vector<std::vector<std::uint64_t>> found;
     for (const int side : {3, 9}) {
         Field field(side);
@@ -387,7 +387,7 @@ TEST_CASE("a change searches the pairs of what changed, as many in a large world
     CHECK(found[0] == found[1]);
 }
 
-TEST_CASE("who rests beside what comes, goes or changes wakes, and nobody else", "[scene][long]") {
+TEST_CASE("resting bodies beside an added, removed or changed object wake, and no others", "[scene][long]") {
     Field field(5, 0.2);
     World& world = field.world;
     const std::size_t all = field.balls.size();
@@ -454,7 +454,7 @@ TEST_CASE("who rests beside what comes, goes or changes wakes, and nobody else",
     }
 }
 
-TEST_CASE("a collider put into the way of what rests pushes it", "[scene]") {
+TEST_CASE("a collider put in the way of a resting body pushes it", "[scene]") {
     Field field(2, 0.2);
     for (const bool is_mesh : {false, true}) {
         const BodyHandle ball = field.balls[is_mesh ? 0 : 1];

@@ -52,7 +52,7 @@ Settings with_gravity() {
 
 }  // namespace
 
-TEST_CASE("what flies has no elements to compute until it touches, and bounces as its twin does", "[scene]") {
+TEST_CASE("a flying body computes no elements until it touches, and bounces like its twin", "[scene]") {
     Settings settings = with_gravity();
     settings.integrator = GENERATE(Integrator::symplectic_euler, Integrator::leapfrog);
     const Real damping = GENERATE(0.0, 3.0);

@@ -241,7 +241,7 @@ TEST_CASE("a step that was tried again counts once", "[scene]") {
     CHECK(on.impulse == world.forces().on(body, plane).impulse);
 }
 
-TEST_CASE("a hanging body pulls at what holds it by its weight, with clusters, damping and losses, too",
+TEST_CASE("a hanging body pulls at its support by its weight, also with clusters, damping and losses",
           "[scene][long]") {
     for (const bool slivers : {false, true})
         for (const Real damping : {0.0, 30.0}) {
@@ -336,7 +336,7 @@ TEST_CASE("the reaction of a sleeping held body contains its loads, also in a wo
     CHECK(world.forces().by(hold).impulse == from_file.forces().by(hold).impulse);
 }
 
-TEST_CASE("what holds a body at rest goes on as it was while it was still", "[scene]") {
+TEST_CASE("support forces of a body at rest are those of its last step", "[scene]") {
     constexpr Real sleep_speed = 1e-3;  // [m/s]
     World world = tuned_world({}, {.sleep_speed = sleep_speed});
     const auto rubber = world.add_material({.young_modulus = 1e5, .damping = 20});
@@ -393,7 +393,7 @@ TEST_CASE("a mat carries the same weight before and after it falls asleep", "[sc
           Approx(weight + world.mass(mat) * standard_gravity).epsilon(0.01));
 }
 
-TEST_CASE("measuring changes no step, costs nothing that is not asked for, and says so where it is not on", "[scene]") {
+TEST_CASE("measuring changes no step, costs nothing if it is off, and reading then fails with a message", "[scene]") {
     BusyWorld one(with(Integrator::leapfrog)), other(with(Integrator::leapfrog));
     one.world.measure_forces(true);
     REQUIRE(one.world.advance(0.1).ok());
@@ -417,7 +417,7 @@ TEST_CASE("measuring changes no step, costs nothing that is not asked for, and s
     CHECK_FALSE(one.world.measures_forces());
 }
 
-TEST_CASE("a body pressed on itself adds nothing to what it gets, but is told how hard", "[scene]") {
+TEST_CASE("self-contact adds nothing to the force on a body, but its amount is reported", "[scene]") {
     Settings settings;
     settings.gravity.setZero();
     World world(settings);

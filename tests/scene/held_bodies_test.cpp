@@ -85,7 +85,7 @@ TEST_CASE("a rigid body that is led goes where the attachment goes, and goes on 
     }
 }
 
-TEST_CASE("the reaction of an attachment is what a rigid body gains, less what others give it", "[scene][rigid]") {
+TEST_CASE("the reaction of an attachment is the impulse on its rigid body, less all other impulses", "[scene][rigid]") {
     Settings settings;
     settings.step_size = 1.0 / 250;
     World world(settings);
@@ -128,7 +128,7 @@ TEST_CASE("the reaction of an attachment is what a rigid body gains, less what o
     }
 }
 
-TEST_CASE("what a rigid body is led into sees what it sees of a collider with that mesh", "[scene][rigid]") {
+TEST_CASE("a rigid body that is led into others acts like a collider with its mesh", "[scene][rigid]") {
     const auto pushed = [](bool attached) {
         World world(accurate({0, 0, 0}));
         const auto material = world.add_material({.young_modulus = 1e5, .friction = 0.3});
@@ -185,7 +185,7 @@ TEST_CASE("a world with held rigid bodies goes on bit by bit when it is cloned o
     CHECK(loaded.state_hash() == one.world.state_hash());
 }
 
-TEST_CASE("held rigid bodies are put elsewhere with what holds them", "[scene][rigid]") {
+TEST_CASE("held rigid bodies move with their attachments when they are put elsewhere", "[scene][rigid]") {
     World world{Settings{}};
     const auto material = world.add_material({});
     const auto gone = world.add_body(cube, {.material = material, .position = {-1, 0, 0}});

@@ -162,7 +162,7 @@ TEST_CASE("an implicit body goes where its attachment goes, and rests there as i
     }
 }
 
-TEST_CASE("a held implicit body that is spun is stretched by what spins", "[scene][implicit]") {
+TEST_CASE("a spinning attachment stretches the held implicit body", "[scene][implicit]") {
     // u' = rho w^2 (L^2 - x^2)/(2 E) from the axis: u(L) = rho w^2 L^3/(3 E)
     const Mesh rod = mesh::box({0.4, 0.1, 0.1}, {8, 2, 2});
     const Real omega = 10, E = 1e8;
@@ -192,7 +192,7 @@ TEST_CASE("a held implicit body that is spun is stretched by what spins", "[scen
     CHECK(world.report().energy_error_share < 1e-8);
 }
 
-TEST_CASE("the reaction of an attachment is what an implicit body gains, less what others give it",
+TEST_CASE("the reaction of an attachment is the impulse on its implicit body, less all other impulses",
           "[scene][implicit]") {
     const Real h = 1.0 / 250;
     for (const Real theta : {0.5, 1.0}) {
@@ -272,7 +272,7 @@ TEST_CASE("an implicit body that is attached and let go keeps its places, veloci
     CHECK(world.report().energy_error_share < 1e-9);
 }
 
-TEST_CASE("what lies on a held implicit body rests on it and bends it", "[scene][implicit][long]") {
+TEST_CASE("a body that lies on a held implicit body rests and bends it", "[scene][implicit][long]") {
     const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
     for (const BodyDynamics falling :
          {BodyDynamics::rigid, BodyDynamics::implicit_elastic, BodyDynamics::explicit_elastic}) {
@@ -378,7 +378,7 @@ TEST_CASE("held implicit bodies rest, say what holds them then, and wake when th
     CHECK(scene.tip().z() == Approx(tip.z() + 0.06).margin(5e-3));
 }
 
-TEST_CASE("held implicit bodies are put elsewhere with what holds them", "[scene][implicit]") {
+TEST_CASE("held implicit bodies move with their attachments when they are put elsewhere", "[scene][implicit]") {
     Cantilever scene(settings_of(0.01, 1, Vec3::Zero()), {.young_modulus = 1e7, .damping = 10});
     World& world = scene.world;
     const auto is_at = [&](const Vec3& place, const Vec3& rotation) {

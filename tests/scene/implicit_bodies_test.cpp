@@ -384,7 +384,7 @@ TEST_CASE("stress and strain of an implicit body turn with it", "[scene][implici
     CHECK(scene.world.report().energy.elastic == Approx(2e6 * 1e-10 * 1e-3 / 2).epsilon(1e-3));
 }
 
-TEST_CASE("what an implicit body cannot have is refused by name", "[scene][implicit]") {
+TEST_CASE("settings that implicit bodies do not support are refused by name", "[scene][implicit]") {
     ImplicitCube scene(Settings{});
     CHECK_THROWS_WITH(
         scene.world.add_body(

@@ -1,7 +1,9 @@
 // Worlds in which joints, cables, ties and friction that depends on the direction act together, and forces that begin
 // during a long step.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,7 @@ const Mesh cube = mesh::box({side, side, side}, {2, 2, 2});
 struct Slider {
     World world;
     BodyHandle lower, upper;
+    std::vector<Index> bottom;  // nodes of the lower face of each body
 
     Slider(SolverMethod method, BodyDynamics dynamics, bool carries, bool ties_elsewhere) : world(settings_of(method)) {
         const MaterialHandle of = world.add_material({.young_modulus = 1e6, .friction = 0.3, .damping = 20});
@@ -32,7 +35,6 @@ struct Slider {
             return world.add_body(cube, {.material = of, .position = place, .velocity = {1, 1, 0}, .dynamics = kind});
         };
         lower = add({0, 0, 0.051}, dynamics);
-        std::vector<Index> bottom;
         for (std::size_t n = 0; n < cube.nodes.size(); ++n)
             if (cube.nodes[n].z() < -0.049) bottom.push_back(static_cast<Index>(n));
         SurfaceSets(world).add({.body = lower,
@@ -57,6 +59,49 @@ struct Slider {
 };
 
 }  // namespace
+
+TEST_CASE("a joint holds a body within the contact distance of a wall", "[scene]") {
+    for (const Real gap : {1e-4, 1e-3, 5e-3})  // [m]
+        for (const JointKind kind : {JointKind::slider, JointKind::fixed}) {
+            CAPTURE(gap, static_cast<int>(kind));
+            World world({.step_size = 5e-3, .sleep = false});
+            const BodyHandle block = world.add_body(
+                cube, {.material = world.add_material({}), .contact_distance = 0.01, .dynamics = BodyDynamics::rigid});
+            world.add_collider(Plane{.normal = {1, 0, 0}, .point = {-side / 2 - gap, 0, 0}}, {.friction = 0});
+            Joints(world).add({.kind = kind, .first = block, .axis = {0, 0, 1}});
+            REQUIRE(world.advance(0.05).ok());
+            CHECK(world.report().unconverged == 0);
+            CHECK(world.contacts().size() == 9);
+            for (const Contact& contact : world.contacts()) CHECK(contact.impulse.norm() < 1e-12);
+            CHECK(std::abs(world.center_of_mass(block).x()) < 1e-12);
+        }
+}
+
+TEST_CASE("ties hold bodies whose edges touch", "[scene][ties]") {
+    const auto dynamics = GENERATE(BodyDynamics::explicit_elastic, BodyDynamics::rigid);
+    World world({.step_size = 2e-4, .sleep = false});
+    const MaterialHandle of = world.add_material({.young_modulus = 1e6, .damping = 20});
+    const auto add = [&](const Vec3& place, BodyDynamics kind) {
+        return world.add_body(cube, {.material = of, .position = place, .dynamics = kind});
+    };
+    const BodyHandle lower = add({0, 0, 0}, dynamics), upper = add({0, 0, side}, BodyDynamics::explicit_elastic),
+                     beside = add({-side, 0, side}, BodyDynamics::explicit_elastic);
+    std::vector<Index> bottom, right;
+    for (std::size_t n = 0; n < cube.nodes.size(); ++n) {
+        if (cube.nodes[n].z() < -0.049) bottom.push_back(static_cast<Index>(n));
+        if (cube.nodes[n].x() > 0.049) right.push_back(static_cast<Index>(n));
+    }
+    Ties ties(world);
+    const std::array all{ties.add({.body = upper, .nodes = bottom, .to_body = lower}),
+                         ties.add({.body = beside, .nodes = right, .to_body = upper})};
+    REQUIRE(world.advance(0.01).ok());
+    CHECK(!world.contacts().empty());  // of the lower body with the one beside it
+    CHECK(world.report().unconverged == 0);
+    for (const TieHandle tie : all) {
+        CHECK(ties.state(tie).error < 1e-12);
+        CHECK(ties.state(tie).largest_force < 1e-4);  // the weight of a body is 10 N
+    }
+}
 
 TEST_CASE("ties do not change directional friction elsewhere", "[scene][ties]") {
     Slider alone(SolverMethod::automatic, BodyDynamics::explicit_elastic, false, false);
@@ -84,10 +129,13 @@ TEST_CASE("every solver method gives the same motion with each kind of row", "[s
             Joints(world).add({.first = pendulum, .point = {2.1, 0, 2}});
             Cables(world).add(
                 {.points = {{.point = {4.1, 0, 3}}, {.body = lamp, .point = {4, 0, 2.05}}}, .drive = {.length = 0.95}});
+            const BodyHandle top =
+                world.add_body(cube, {.material = of, .position = {0, 0, 0.051 + 2 * side}, .velocity = {1, 1, 0}});
+            Ties(world).add({.kind = TieKind::ball, .body = top, .nodes = slider.bottom, .to_body = slider.upper});
             REQUIRE(world.advance(0.02).ok());
             CHECK(world.report().unconverged == 0);
             std::vector<Vec3> now;
-            for (const BodyHandle body : {slider.lower, slider.upper, pendulum, lamp})
+            for (const BodyHandle body : {slider.lower, slider.upper, top, pendulum, lamp})
                 now.push_back(world.center_of_mass(body));
             if (expected.empty()) expected = now;
             for (std::size_t b = 0; b < now.size(); ++b) CHECK((now[b] - expected[b]).norm() < 1e-8);

@@ -143,7 +143,7 @@ TEST_CASE("a mimic forgets its impulse when a body of its leader is reset", "[sc
     CHECK(Joints(fall.world).state(fall.slider).mimic == 0);
 }
 
-TEST_CASE("a joint mimics a leader whose bodies impulses cannot move", "[scene][joints]") {
+TEST_CASE("a joint mimics a leader between bodies that impulses cannot move", "[scene][joints]") {
     Rack held(Vec3::Zero());
     held.world.attach(held.wheel, std::array<Index, 4>{0, 1, 2, 4}, Motion{.angular_velocity = {2, 0, 0}}, {0, 0.5, 0});
     REQUIRE(held.world.advance(0.1).ok());

@@ -51,7 +51,7 @@ TEST_CASE("a motor speeds up with its strength, and goes on at its speed", "[sce
     CHECK(arm.world.report().energy_error_share < 1e-3);
 }
 
-TEST_CASE("a motor holds what it can, and what it cannot falls with what is left", "[scene][joints]") {
+TEST_CASE("a motor holds a load up to its strength, and a heavier load falls", "[scene][joints]") {
     Arm holds({.motor = JointMotor{.position = 0, .strength = 1.01 * weight_moment}}, down);
     REQUIRE(holds.world.advance(2).ok());
     CHECK(std::abs(holds.state().coordinate) < 1e-9);
@@ -83,7 +83,7 @@ TEST_CASE("a motor takes a hinge to a position at its speed, and stops there", "
     CHECK(std::abs(arm.state().speed) < 1e-6);
 }
 
-TEST_CASE("a setter that gives what was there changes no bit", "[scene][joints]") {
+TEST_CASE("a setter with the present value changes no bit", "[scene][joints]") {
     const JointMotor motor{.speed = 1, .strength = 2};
     Arm arm({.lower = -1, .motor = motor}, down);
     REQUIRE(arm.world.advance(0.2).ok());

@@ -80,7 +80,7 @@ TEST_CASE("dry friction stops a joint and holds it", "[scene][joints]") {
     CHECK(arm.world.report().energy_error_share < 1e-3);
 }
 
-TEST_CASE("a motor works against friction, and the parts of the moment are told apart", "[scene][joints][long]") {
+TEST_CASE("a motor works against friction, and reports list the parts of the moment", "[scene][joints][long]") {
     const Real strength = 0.5, friction = 0.2;
     for (const Real sign : {1.0, -1.0}) {
         Arm arm(JointSettings{.motor = JointMotor{.speed = 4 * sign, .strength = strength},

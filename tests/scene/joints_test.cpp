@@ -111,7 +111,7 @@ TEST_CASE("a double pendulum keeps its energy", "[scene][joints]") {
     }
 }
 
-TEST_CASE("a chain of ten hangs at rest, and each joint carries what is below it", "[scene][joints]") {
+TEST_CASE("a chain of ten hangs at rest, and each joint carries the weight below it", "[scene][joints]") {
     for (const JointKind kind : {JointKind::ball, JointKind::hinge, JointKind::fixed}) {
         Bars bars(with_step(1.0 / 120), 10, 0, kind);
         REQUIRE(bars.world.advance(1).ok());
@@ -379,7 +379,7 @@ TEST_CASE("a whipping chain keeps its energy at the default step", "[scene][join
     CHECK(std::abs(mechanical_energy(world) - energy) < 0.02 * exchanged);
 }
 
-TEST_CASE("what joints cannot join is refused by name", "[scene][joints]") {
+TEST_CASE("objects that joints cannot join are refused by name", "[scene][joints]") {
     World world{Settings{}};
     const auto material = world.add_material({});
     const auto soft = world.add_body(bar, {.material = material, .name = "noodle"});

@@ -466,7 +466,8 @@ TEST_CASE("bodies of large strain go on bit by bit when they are cloned or saved
     CHECK(with_three.state_hash() == reference.state_hash());
 }
 
-TEST_CASE("a step of large strain that is not found is refused whole, and says whose it was", "[scene][implicit]") {
+TEST_CASE("a step of large strain without a solution is refused as a whole, with the name of the body",
+          "[scene][implicit]") {
     Cantilever scene(settings_of(0.01, 1, {0, 0, -standard_gravity}), {.young_modulus = 1e5}, bar);
     REQUIRE(scene.world.advance(0.2).ok());
     const std::uint64_t before = scene.world.state_hash();

@@ -131,6 +131,24 @@ TEST_CASE("drag gives the terminal velocity exactly and the decay to first order
     }
 }
 
+TEST_CASE("a stiff drag that is added in flight never speeds a body up", "[scene]") {
+    constexpr Real rate = 1e5;  // [1/s]; the steps before are up to a thousand times longer than 1 / rate
+    for (const BodyDynamics dynamics : all_kinds) {
+        CAPTURE(static_cast<int>(dynamics));
+        Flight flight(weightless(), dynamics);
+        flight.world.set_velocity(flight.body, {1, 0, 0}, Vec3::Zero());
+        REQUIRE(flight.world.advance(0.05).ok());
+        Loads(flight.world).add(DragField{.rate = rate});
+        Real last = 1;
+        for (int k = 0; k < 10; ++k) {
+            REQUIRE(flight.world.advance(1 / rate).ok());
+            const Real speed = flight.velocity().norm();
+            CHECK(speed <= 0.6 * last);
+            last = speed;
+        }
+    }
+}
+
 TEST_CASE("drag slows the rotation of rigid bodies with given masses", "[scene]") {
     constexpr Real rate = 2;
     World world(weightless(1e-3));

@@ -138,7 +138,7 @@ TEST_CASE("long steps keep momenta, gain no energy, and nothing overlaps", "[sce
     CHECK(scene.world.report().mean_contacts > 0);
 }
 
-TEST_CASE("what lies on a light implicit body gains no energy by its long steps", "[scene][implicit][slow]") {
+TEST_CASE("a body on a light implicit body gains no energy by long steps", "[scene][implicit][slow]") {
     const Real density = GENERATE(1000.0, 30.0);
     const int short_steps = GENERATE(16, 40);
     CAPTURE(density, short_steps);
@@ -253,7 +253,7 @@ TEST_CASE("a long step that ends early loses energy, as the whole one does", "[s
     CHECK(world.report().energy_error_share < 1e-11);
 }
 
-TEST_CASE("a step that is refused in the midst of a long one leaves what was there", "[scene][implicit][long]") {
+TEST_CASE("a step that is refused in the midst of a long one changes nothing", "[scene][implicit][long]") {
     Stack scene(settings_of(h, 12 * h, {0, 0, -standard_gravity}), 100);
     for (int k = 0; k < 10; ++k) REQUIRE(scene.world.advance(24 * h).ok());
     WorldState& state = WorldAccess::state_of(scene.world);
@@ -281,7 +281,7 @@ TEST_CASE("a step that is refused in the midst of a long one leaves what was the
     CHECK(scene.energy() < before + 1e-6);
 }
 
-TEST_CASE("what is large, asleep or held takes no long steps, and comes back to them", "[scene][implicit][long]") {
+TEST_CASE("large, sleeping or held bodies take no long steps, and return to them later", "[scene][implicit][long]") {
     Settings settings = settings_of(h, 10 * h, {0, 0, -standard_gravity});
     SECTION("large strain") {
         World world(settings);

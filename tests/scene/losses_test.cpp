@@ -68,7 +68,7 @@ Real bending_period(Real young_modulus, Real density) {
 
 }  // namespace
 
-TEST_CASE("a bending beam loses what its loss factor says, at any stiffness", "[scene][accuracy][long]") {
+TEST_CASE("a bending beam loses energy by its loss factor, at any stiffness", "[scene][accuracy][long]") {
     for (Real young_modulus : {1e4, 1e6, 1e10})
         for (Real loss_factor : {0.02, 0.05, 0.1}) {
             Beam beam({.young_modulus = young_modulus, .poisson_ratio = 0.3, .loss_factor = loss_factor});
@@ -200,7 +200,7 @@ TEST_CASE("at its stable step a body with losses is stable, and energy adds up",
 }
 
 // Regression: accounting only with the stretch of springs at the end of steps had an error of 2 to 3 %.
-TEST_CASE("a body that bounces on the floor loses what is booked as lost", "[scene]") {
+TEST_CASE("a bouncing body loses the energy that is recorded as lost", "[scene]") {
     for (const ElementKind kind : {ElementKind::linear, ElementKind::smoothed}) {
         World world;
         const auto rubber = world.add_material({.young_modulus = 1e6, .poisson_ratio = 0.4, .density = 1000});

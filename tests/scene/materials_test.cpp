@@ -146,7 +146,7 @@ TEST_CASE("a body of several materials has the same bits on any number of thread
     CHECK(hashes == std::vector<std::uint64_t>(3, hashes.front()));
 }
 
-TEST_CASE("what materials of one body lose adds up", "[scene][long]") {
+TEST_CASE("losses of several materials in one body add up", "[scene][long]") {
     struct Case {
         MaterialModel below, above;
         Real loss_below, loss_above;

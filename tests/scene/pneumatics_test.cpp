@@ -217,7 +217,7 @@ TEST_CASE("a tyre on a rim rolls without slip, and its air has the volume betwee
 }
 
 TEST_CASE("a tyre that rolls has the same bits on any number of threads, in copies and in files",
-          "[scene][cavities][ties][determinism]") {
+          "[scene][cavities][ties][determinism][long]") {
     check_same_bits(
         [](int threads) {
             Scene scene = load_scene(folder + "tyre.json", {.threads = threads});

@@ -1,7 +1,9 @@
 // Bodies that a user drags by a spring, against the closed form of a critically damped spring.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "engine/live/pull.h"
 #include "tests/support/message_of.h"
@@ -120,6 +122,26 @@ TEST_CASE("a reset to a clone without the pull ends the pull", "[scene]") {
     CHECK(!pull.state(cube.world));
     pull.end(cube.world);
     CHECK(cube.world.state_hash() == saved.state_hash());
+}
+
+TEST_CASE("a step that is refused during a pull changes nothing, and the pull goes on", "[scene]") {
+    Cube cube(BodyDynamics::explicit_elastic);
+    Pull pull;
+    pull.begin(cube.world, cube.body, {0, 0, 0.01}, {0, 0, 0.2});
+    REQUIRE(cube.world.advance(0.01).ok());
+    const std::vector<Vec3> before(cube.world.positions(cube.body).begin(), cube.world.positions(cube.body).end());
+    const Real force = pull.state(cube.world)->force;
+    std::vector<Vec3> load(before.size(), Vec3(0, 0, 1e308));
+    cube.world.set_loads(cube.body, load);
+    REQUIRE_FALSE(cube.world.advance(0.01).ok());
+    CHECK(std::ranges::equal(cube.world.positions(cube.body), before));
+    CHECK(pull.state(cube.world)->force == force);
+    load.assign(load.size(), Vec3::Zero());
+    cube.world.set_loads(cube.body, load);
+    cube.advance(1);
+    CHECK(cube.center().isApprox(Vec3(0, 0, 0.19), 1e-2));
+    pull.end(cube.world);
+    CHECK(Springs(cube.world).all().empty());
 }
 
 TEST_CASE("a pull wakes a sleeping body, lifts it, and does not pull it through the floor", "[scene]") {

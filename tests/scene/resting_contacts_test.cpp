@@ -78,7 +78,7 @@ void check_same(const Contact& a, const Contact& b) {
 
 }  // namespace
 
-TEST_CASE("contacts of what rests stay as they were in the last step before", "[scene]") {
+TEST_CASE("contacts of resting bodies stay as in the last step before rest", "[scene]") {
     Stack stack;
     std::vector<Contact> last;
     stack.world.watch_steps([&](const StepReport& report) {
@@ -108,7 +108,7 @@ TEST_CASE("contacts of what rests stay as they were in the last step before", "[
     }
 }
 
-TEST_CASE("ParaView is shown the contacts of what rests, with their forces", "[scene]") {
+TEST_CASE("ParaView files contain the contacts of resting bodies, with their forces", "[scene]") {
     Stack stack;
     REQUIRE(stack.settle());
     const TemporaryFolder folder;
@@ -128,7 +128,7 @@ TEST_CASE("ParaView is shown the contacts of what rests, with their forces", "[s
     CHECK_THAT(text, Catch::Contains("NumberOfPoints=\"" + std::to_string(stack.world.contacts().size()) + "\""));
 }
 
-TEST_CASE("what holds bodies at rest is known to who asks for forces only then", "[scene]") {
+TEST_CASE("support forces of resting bodies are known also when measuring starts later", "[scene]") {
     Stack stack;
     std::vector<Index> top;
     for (std::size_t n = 0; n < stack.block.nodes.size(); ++n)
@@ -159,7 +159,7 @@ TEST_CASE("what holds bodies at rest is known to who asks for forces only then",
     CHECK(stack.world.forces().by(pair).force().z() == Approx(forces.by(pair).force().z()).epsilon(0.02));
 }
 
-TEST_CASE("contacts of what wakes are those of the step, beside those of what rests on", "[scene]") {
+TEST_CASE("when a body wakes, its contacts are those of the step, beside the contacts of resting bodies", "[scene]") {
     Stack stack;
     REQUIRE(stack.settle());
     stack.world.wake(stack.low);
@@ -178,7 +178,7 @@ TEST_CASE("contacts of what wakes are those of the step, beside those of what re
         CHECK((contact.region == -1) == (contact.first == stack.beside || contact.second == stack.beside));
 }
 
-TEST_CASE("contacts of what rests go with who is removed, and those of others keep their names", "[scene]") {
+TEST_CASE("a removed resting body takes its contacts along, and other contacts keep their names", "[scene]") {
     Stack stack;
     REQUIRE(stack.settle());
     REQUIRE(stack.world.advance(0.01).ok());

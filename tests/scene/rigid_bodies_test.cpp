@@ -227,7 +227,7 @@ TEST_CASE("bodies are posed and thrown as a whole", "[scene][rigid]") {
     }
 }
 
-TEST_CASE("what a rigid body cannot have is refused by name", "[scene][rigid]") {
+TEST_CASE("settings that rigid bodies do not support are refused by name", "[scene][rigid]") {
     World world{Settings{}};
     const auto material = world.add_material({});
     const auto body = world.add_body(cube, {.material = material, .name = "wrench"});

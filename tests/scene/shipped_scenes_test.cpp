@@ -190,7 +190,7 @@ TEST_CASE("bodies from mesh files drop and lie still", "[scene][slow]") {
     for (BodyHandle body : scene.world.bodies()) CHECK(scene.world.center_of_mass(body).z() > 0);
 }
 
-TEST_CASE("cables bend the finger around the post and open it again", "[scene][scenes]") {
+TEST_CASE("cables bend the finger around the post and open it again", "[scene][scenes][long]") {
     Scene scene = open_scene("finger");
     World& world = scene.world;
     const BodyHandle finger = body_of(world, "finger");
@@ -231,7 +231,7 @@ TEST_CASE("cables bend the finger around the post and open it again", "[scene][s
 }
 
 TEST_CASE("each node of the ligament tears off the wall in the step in which its force exceeds the limit",
-          "[scene][scenes]") {
+          "[scene][scenes][long]") {
     SceneOverrides overrides;
     if (!full_tests())  // pulled sooner, and torn sooner
         overrides.assignments = {"ties[0].break_force=0.1",

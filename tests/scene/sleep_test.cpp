@@ -60,7 +60,7 @@ Real distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 
 }  // namespace
 
-TEST_CASE("what has settled rests to the last bit, near to where it would have settled", "[scene]") {
+TEST_CASE("a settled body rests bitwise still, near the place where it would have settled", "[scene]") {
     Tower tower, awake(0);
     REQUIRE(tower.settle());
     CHECK(tower.world.asleep(tower.low));
@@ -99,7 +99,7 @@ TEST_CASE("a body that falls on a tower wakes all of it, and only it", "[scene]"
     CHECK(tower.world.report().worst_volume_ratio > 0.5);
 }
 
-TEST_CASE("taking the support away, a load, a kick or a hand that asks wakes a body", "[scene]") {
+TEST_CASE("removing the support, a load, an impulse or a change of the body wakes it", "[scene]") {
     Tower tower;
     REQUIRE(tower.settle());
     SECTION("the collider under it goes") {
@@ -134,7 +134,8 @@ TEST_CASE("taking the support away, a load, a kick or a hand that asks wakes a b
     }
 }
 
-TEST_CASE("a collider that starts to move wakes what lies on it, and nothing rests on one that moves", "[scene]") {
+TEST_CASE("a collider that starts to move wakes the bodies on it, and bodies on a moving collider do not rest",
+          "[scene]") {
     World world = Tower::empty(sleep_speed, 1);
     const auto rubber = world.add_material({.young_modulus = 5e4, .density = 500, .friction = 0.5, .damping = 20});
     // A box that stands for two seconds and then moves on.
@@ -150,7 +151,7 @@ TEST_CASE("a collider that starts to move wakes what lies on it, and nothing res
     CHECK(world.center_of_mass(block).x() - start == Approx(0.2).margin(0.01));  // carried along by friction
 }
 
-TEST_CASE("what hangs on an attachment that moves does not rest, however slowly it moves", "[scene]") {
+TEST_CASE("a body on a moving attachment does not rest, however slowly it moves", "[scene]") {
     Settings settings;
     settings.sleep = true;
     settings.sleep_time = sleep_time;
@@ -170,7 +171,7 @@ TEST_CASE("what hangs on an attachment that moves does not rest, however slowly 
 
 // The engine's own limits (docs/methods/skipping.md 3.1)
 
-TEST_CASE("by the engine's own limits what has settled rests close to where it would go on", "[scene][long]") {
+TEST_CASE("with the default limits a settled body rests close to its final place", "[scene][long]") {
     Tower tower(own_limits), awake(0);
     REQUIRE(tower.settle());
     REQUIRE(awake.world.advance(tower.world.time() + 1).ok());
@@ -262,7 +263,7 @@ struct Sinking {
 
 }  // namespace
 
-TEST_CASE("what sinks or swings under its own weight rests half a percent of its deflection from its place at most",
+TEST_CASE("a body that sinks or swings under its weight rests within half a percent of its deflection",
           "[scene][long]") {
     const bool held = GENERATE(true, false);
     const Real damping = held ? GENERATE(6.0, 2.0) : GENERATE(8.0, 30.0);  // 1/s
@@ -295,7 +296,7 @@ TEST_CASE("a block that begins to tip over is never put to rest", "[scene][long]
     }
 }
 
-TEST_CASE("what goes on at one speed is never put to rest, be it on ice, rolling, carried, or by a motor",
+TEST_CASE("a body at constant speed never rests, be it on ice, rolling, carried, or driven by a motor",
           "[scene][long]") {
     constexpr Real speed = 1e-4;  // 2 to 7 times below the speed at which bodies move too far to count as still [m/s]
     enum What { on_ice, rolling, carried, by_motor };
@@ -338,7 +339,7 @@ TEST_CASE("what goes on at one speed is never put to rest, be it on ice, rolling
     CHECK(way.x() == Approx(4 * speed).epsilon(0.02));
 }
 
-TEST_CASE("while all look still regions are solved to 1e-5, before that to the tolerance, with the same bits",
+TEST_CASE("if all bodies appear still, regions are solved to 1e-5, else to the tolerance, with the same bits",
           "[scene][long]") {
     Tower tower(own_limits), awake(0);
     std::vector<Real> error, error_awake;  // error of each call

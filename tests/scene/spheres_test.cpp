@@ -59,7 +59,7 @@ Settings steps_of(Real h, const Vec3& gravity = {0, 0, -g}) {
 
 }  // namespace
 
-TEST_CASE("a sphere has the mass and the moments of the solid, not of what draws it", "[scene]") {
+TEST_CASE("a sphere has the mass and the moments of the solid, not of its drawn mesh", "[scene]") {
     Spheres s(steps_of(1e-2, Vec3::Zero()));
     const BodyHandle ball = s.add({0, 0, 1}, {1, 2, 3}, {4, 5, 6});
     CHECK(s.world.mass(ball) == Approx(mass).epsilon(1e-14));
@@ -123,7 +123,7 @@ TEST_CASE("a sphere that slides begins to roll at five sevenths of its speed", "
     CHECK(report.energy_error < 1e-9);
 }
 
-TEST_CASE("the moment that friction has on a sphere is what spins it", "[scene]") {
+TEST_CASE("the moment of friction on a sphere changes its spin", "[scene]") {
     constexpr Real mu = 0.2;
     Spheres s(steps_of(1e-3), mu);
     const auto floor = s.world.add_collider(Plane{});
@@ -137,7 +137,7 @@ TEST_CASE("the moment that friction has on a sphere is what spins it", "[scene]"
     CHECK(about.y() * 1e-3 / moment == Approx(s.spin(ball).y()).epsilon(1e-9));
 }
 
-TEST_CASE("what draws a sphere moves with it", "[scene]") {
+TEST_CASE("the drawn mesh of a sphere moves with it", "[scene]") {
     for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
         Settings settings = steps_of(1e-3, Vec3::Zero());
         settings.integrator = integrator;
@@ -157,7 +157,7 @@ TEST_CASE("what draws a sphere moves with it", "[scene]") {
     }
 }
 
-TEST_CASE("spheres are drawn for whoever looks in the middle of a call, and as if nobody had", "[scene]") {
+TEST_CASE("drawing a sphere within a call changes no bit", "[scene]") {
     const auto course = [](bool looks, bool may_rest) {
         Settings settings = steps_of(1e-3);
         settings.sleep = may_rest;
@@ -256,7 +256,8 @@ TEST_CASE("friction spins two spheres that graze each other, and angular momentu
     CHECK(s.world.report().momentum_error < 1e-12);
 }
 
-TEST_CASE("a sphere lies in a soft body that closes around it, and is carried by all that it touches", "[scene]") {
+TEST_CASE("a sphere lies in a soft body that closes around it, and is carried by all that it touches",
+          "[scene][long]") {
     Spheres s({.step_size = 1e-3});
     s.world.add_collider(Plane{});
     const auto soft = s.world.add_material(
@@ -426,7 +427,7 @@ TEST_CASE("spheres that overlap at the start are refused or moved apart", "[scen
     CHECK((moved.place(bodies[0]) - moved.place(bodies[1])).norm() > 2 * radius);
 }
 
-TEST_CASE("what a sphere cannot be is refused by name", "[scene]") {
+TEST_CASE("invalid settings of a sphere are refused by name", "[scene]") {
     Spheres s(steps_of(1e-3));
     using Catch::Contains;
     CHECK_THROWS_WITH(

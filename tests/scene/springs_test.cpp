@@ -88,7 +88,8 @@ Vec3 momentum_of(World& world) {
 
 }  // namespace
 
-TEST_CASE("a body on a spring and a damper has the frequency and the decay of the closed form", "[scene][springs]") {
+TEST_CASE("a body on a spring and a damper has the frequency and the decay of the closed form",
+          "[scene][springs][long]") {
     for (const BodyDynamics dynamics : {BodyDynamics::rigid, BodyDynamics::implicit_elastic}) {
         CAPTURE(static_cast<int>(dynamics));
         constexpr Real h = 3e-4, omega = 10, ratio = 0.05;

@@ -127,7 +127,7 @@ bool overlap_by_more_than_touching(const World& world, BodyHandle a, BodyHandle 
 
 }  // namespace
 
-TEST_CASE("what is inside something, or half in it, is refused by both names and changes nothing", "[scene]") {
+TEST_CASE("bodies inside each other are refused by both names, and nothing changes", "[scene]") {
     for (const Refused& c : hopeless)
         for (StartOverlaps overlaps : {StartOverlaps::resolve, StartOverlaps::refuse}) {
             Stage s(overlaps);
@@ -283,7 +283,7 @@ TEST_CASE("a body that something sharp is in between its nodes is lifted off it"
         }
 }
 
-TEST_CASE("what touches, or lies within the contact distance, is no overlap", "[scene]") {
+TEST_CASE("bodies that touch, or are within the contact distance, do not overlap", "[scene]") {
     for (Real gap : {0.0, 1e-12, -1e-12, 1e-3}) {
         Stage s(StartOverlaps::refuse);
         for (const Vec3& at : {Vec3(0, 0, 0), Vec3(0.1 + gap, 0, 0), Vec3(0, 0.1 + gap, 0.1 + gap), Vec3(0.07, 0.1, 0)})
@@ -294,7 +294,7 @@ TEST_CASE("what touches, or lies within the contact distance, is no overlap", "[
     }
 }
 
-TEST_CASE("a mesh collider seen from inside is a room, and what is in it may begin there", "[scene]") {
+TEST_CASE("a mesh collider oriented inwards is a room, in which bodies may start", "[scene]") {
     SurfaceMesh room = mesh::boundary(mesh::box({1, 1, 1}, {4, 4, 4}));
     for (auto& triangle : room.triangles) std::swap(triangle[0], triangle[1]);
     World world;
@@ -306,7 +306,7 @@ TEST_CASE("a mesh collider seen from inside is a room, and what is in it may beg
     CHECK(world.center_of_mass(ball).z() == Approx(-0.45).margin(0.01));  // the ball lies on a facet
 }
 
-TEST_CASE("only what is new is moved: a body that is held or has made a step stays", "[scene]") {
+TEST_CASE("only new bodies are moved: held bodies and those that have made a step stay", "[scene]") {
     const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
     Stage s(StartOverlaps::resolve);
     const auto old = s.add(mesh, {0, 0, 0}, "old");
@@ -389,7 +389,7 @@ TEST_CASE("random piles overlap where a search by force says so, and nowhere onc
     CHECK(resolved >= 8);
 }
 
-TEST_CASE("a world that had nothing to take apart has the same bits whatever is asked for", "[scene]") {
+TEST_CASE("a world without overlaps has the same bits for all values of start_overlaps", "[scene]") {
     std::vector<std::uint64_t> hashes;
     for (StartOverlaps overlaps : {StartOverlaps::resolve, StartOverlaps::refuse, StartOverlaps::ignore}) {
         Stage s(overlaps);

@@ -34,7 +34,7 @@ const StepLimitReport* find(const WorldReport& report, StepLimit limit) {
 
 }  // namespace
 
-TEST_CASE("steps are counted under the body that stands the shortest", "[scene]") {
+TEST_CASE("steps are counted under the body with the shortest stable step", "[scene]") {
     World world;
     const auto soft = world.add_material({.young_modulus = 1e4}), stiff = world.add_material({.young_modulus = 1e6});
     world.add_body(mesh::ball(0.1, 4), {.material = soft, .name = "soft"});

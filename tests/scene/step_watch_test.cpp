@@ -76,7 +76,7 @@ World without_clusters() {
 
 }  // namespace
 
-TEST_CASE("a step relies on what bodies stood at most two rounds ago", "[scene]") {
+TEST_CASE("a step relies on positions at most two rounds old", "[scene]") {
     Swinging scene(without_clusters());
     History history(scene.world);
     history.look();

@@ -179,7 +179,7 @@ TEST_CASE("a sliding plate that is half rubber and half ice turns about its cent
 }
 
 TEST_CASE("friction with two coefficients holds up to the ellipse, whatever the downhill direction",
-          "[scene][surface]") {
+          "[scene][surface][long]") {
     constexpr Real along = 0.6, across = 0.2;
     for (const Real dynamic : {1.0, 0.75})  // as a multiple of static friction, in both directions
         for (const Real heading : {0.0, 25 * degree, 60 * degree, 90 * degree}) {
@@ -410,7 +410,7 @@ TEST_CASE("a surface set stays with a body whose dynamics change", "[scene][surf
     }
 }
 
-TEST_CASE("surface rules refuse what cannot be", "[scene][surface]") {
+TEST_CASE("invalid surface rules are refused", "[scene][surface]") {
     World world(Settings{});
     const auto material = world.add_material({});
     const auto body = world.add_body(block, {.material = material, .name = "sledge"});

@@ -205,7 +205,7 @@ TEST_CASE("a tie follows a moving collider and keeps its bodies awake", "[scene]
     }
 }
 
-TEST_CASE("a pad on a jointed rigid pendulum keeps the period", "[scene][ties]") {
+TEST_CASE("a pad on a jointed rigid pendulum keeps the period", "[scene][ties][long]") {
     constexpr Real length = 0.4, width = 0.04, pad_side = 0.04;
     for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic}) {
         Settings settings = accurate({0, 0, -standard_gravity}, 1e-8);

@@ -168,7 +168,7 @@ TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
     CHECK(try_at(stable / 1024, stable / 1024) == StepOutcome::again_shorter);
 }
 
-TEST_CASE("only what the transaction puts back is written before a step is known to be good", "[scene]") {
+TEST_CASE("before a step is known to be good, it writes only data that the transaction restores", "[scene]") {
     Doomed scene(Integrator::leapfrog);
     WorldState& state = WorldAccess::state_of(scene.world);
     const auto lies_in = [](const void* place, const Access& access) {

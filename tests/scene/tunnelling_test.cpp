@@ -38,7 +38,7 @@ TEST_CASE("of many shots at up to 100 m/s all are stopped", "[scene][long]") {
     check_all_stopped(shoot(draws(1000), true), 950, 1000);
 }
 
-TEST_CASE("of many mesh colliders at up to 100 m/s, whose velocity is set anew all the time, none goes through",
+TEST_CASE("of many mesh colliders at up to 100 m/s, with a new velocity in each step, none passes through",
           "[scene][long]") {
     check_all_stopped(shoot(draws(1000), true, Flying::collider, Targets::surfaces), 900, 300);
 }
@@ -47,13 +47,13 @@ TEST_CASE("of many shots at thin and sharp analytic colliders all are stopped", 
     check_all_stopped(shoot(draws(1000), true, Flying::shot, Targets::shapes), 900, 300);
 }
 
-TEST_CASE("of many analytic colliders at up to 100 m/s, whose velocity is set anew all the time, none goes through",
+TEST_CASE("of many analytic colliders at up to 100 m/s, with a new velocity in each step, none passes through",
           "[scene][long]") {
     // The one crossing: a ball of 84 kPa meets a bead at 87 m/s, ten times its own wave speed.
     check_all_stopped(shoot(draws(1000), true, Flying::collider, Targets::shapes), 800, 300, 1);
 }
 
-TEST_CASE("of many spheres at up to 100 m/s no surface comes into what they are shot at", "[scene][long]") {
+TEST_CASE("of many spheres at up to 100 m/s none enters its target", "[scene][long]") {
     check_all_stopped(shoot(draws(1000), true, Flying::shot, Targets::all, Bullets::spheres), 900, 300);
 }
 
@@ -65,14 +65,14 @@ TEST_CASE("of many mesh colliders that fly at spheres no surface comes into them
     check_all_stopped(shoot(draws(1000), true, Flying::collider, Targets::surfaces, Bullets::spheres), 900, 0);
 }
 
-TEST_CASE("without the look at the motion of a step some of the shots come through", "[scene][long]") {
+TEST_CASE("without the test of the motion in a step some of the shots pass through", "[scene][long]") {
     INFO("seed " << seed);
     const Count count = shoot(100, false);
     CHECK(count.wrong != "");
     CHECK(count.tests == 0);
 }
 
-TEST_CASE("of many capsules at up to 100 m/s no surface comes into what they are shot at", "[scene][long]") {
+TEST_CASE("of many capsules at up to 100 m/s none enters its target", "[scene][long]") {
     check_all_stopped(shoot(draws(1500), true, Flying::shot, Targets::all, Bullets::capsules), 1400, 300);
 }
 
@@ -88,7 +88,7 @@ TEST_CASE("of many thin and sharp colliders that fly at capsules no surface come
     check_all_stopped(shoot(draws(500), true, Flying::collider, Targets::shapes, Bullets::capsules), 450, 0);
 }
 
-TEST_CASE("of many cylinders at up to 100 m/s no surface comes into what they are shot at", "[scene][long]") {
+TEST_CASE("of many cylinders at up to 100 m/s none enters its target", "[scene][long]") {
     check_all_stopped(shoot(draws(1500), true, Flying::shot, Targets::all, Bullets::cylinders), 1400, 300);
 }
 

@@ -81,7 +81,7 @@ TEST_CASE("contacts stay when something is added, and those of a collider go wit
     CHECK(scene.world.contacts().empty());
 }
 
-TEST_CASE("a world is built and advanced between steps only, also by what it calls", "[scene]") {
+TEST_CASE("a world is changed and advanced between steps only, also by callbacks", "[scene]") {
     ThreeBoxes scene;
     World& world = scene.world;
     int calls = 0;
@@ -115,7 +115,7 @@ TEST_CASE("a world is built and advanced between steps only, also by what it cal
     CHECK(world.advance(0.01).ok());
 }
 
-TEST_CASE("advance ends between two steps when it is asked to, and goes on from there", "[scene]") {
+TEST_CASE("advance ends between two steps when a callback requests it, and continues from there", "[scene]") {
     for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
         CAPTURE(name_of(integrator));
         Settings settings;
@@ -156,7 +156,7 @@ TEST_CASE("a handle of another world names nothing", "[scene]") {
     CHECK(one.world.bodies() == one.box);
 }
 
-TEST_CASE("handles go with a world that is moved, and what is left refuses all use", "[scene]") {
+TEST_CASE("handles move with a moved world, and the empty world refuses all calls", "[scene]") {
     ThreeBoxes scene;
     World moved = std::move(scene.world);
     CHECK(moved.alive(scene.box[0]));
@@ -177,7 +177,7 @@ TEST_CASE("handles go with a world that is moved, and what is left refuses all u
     CHECK(scene.world.advance(0.001).ok());
 }
 
-TEST_CASE("many changes in a row give the same bits as the same with a look at the world after each", "[scene]") {
+TEST_CASE("many changes in a row give the same bits as with a query after each change", "[scene]") {
     const auto built = [](auto look) {
         Settings settings;
         settings.start_overlaps = StartOverlaps::ignore;  // some balls are added overlapping others
@@ -221,8 +221,7 @@ TEST_CASE("many changes in a row give the same bits as the same with a look at t
           }) == expected);
 }
 
-TEST_CASE("bodies of one mesh have the same bits whether what was found of the first is kept or found anew",
-          "[scene]") {
+TEST_CASE("bodies of one mesh have the same bits whether data of the first are reused or computed again", "[scene]") {
     // Turned and unturned bodies, linear and smoothed elements, several materials: stored data are separate or rotated.
     const auto falls = [](bool look) {
         World world;

@@ -6,11 +6,11 @@
 
 namespace {
 
-/// Prints one line for each test case that is not hidden: its name, then its tags, separated by tabs.
+/// Prints one line for each test case that is not hidden: its source file, name and tags, separated by tabs.
 void list_cases(Catch::Session& session) {
     for (const Catch::TestCase& test : Catch::getAllTestCasesSorted(session.config())) {
         if (test.isHidden()) continue;
-        std::cout << test.name;
+        std::cout << test.lineInfo.file << '\t' << test.name;
         for (const std::string& tag : test.tags) std::cout << '\t' << tag;
         std::cout << '\n';
     }

@@ -14,7 +14,9 @@ namespace skerry {
 
 /// A tie between nodes of a deformable body and another object: a body of any kind, a collider, or the world if neither
 /// is given. Each node is tied in its present position to the nearest point of the other object, which must not be
-/// farther away than the mean edge length of the body. The tie of a single node acts like a ball joint.
+/// farther away than the mean edge length of the body. The tie of a single node acts like a ball joint. The kind `ball`
+/// ties the mean point of all nodes, weighted by their masses, and leaves its distance from a rigid object free: the
+/// impulse of the tie acts on the nodes in proportion to their masses.
 struct TieSettings {
     TieKind kind = TieKind::weld;
     BodyHandle body{};           // a deformable body
@@ -23,7 +25,7 @@ struct TieSettings {
     std::optional<BodyHandle> to_body{};
     std::optional<ColliderHandle> to_collider{};
     // Force at which a node breaks off, > 0 [N]. It applies to each node: the node breaks off at the end of the first
-    // step in which its force is greater. By default, a tie does not break.
+    // step in which its force is greater. For a ball it is the force of the tie. By default, a tie does not break.
     Real break_force = infinity;
     // false: each node keeps its distance from the surface. true: the distance is closed at Settings::recovery_speed.
     bool close_gap = false;
@@ -33,9 +35,9 @@ struct TieSettings {
 
 /// State of a tied node.
 struct TiedNode {
-    Index node = 0;                // number in the mesh of the body
-    Vec3 force = Vec3::Zero();     // force of the last step on the node [N]
-    Real error = 0;                // distance of the node from the place that the tie demands [m]
+    Index node = 0;             // number in the mesh of the body
+    Vec3 force = Vec3::Zero();  // force of the last step on the node [N]
+    Real error = 0;  // distance of the node, for a ball of the mean point, from the place that the tie demands [m]
     std::optional<Real> broken{};  // time at which the node broke off [s]
 };
 
@@ -46,7 +48,7 @@ struct TieState {
     std::optional<BodyHandle> to_body{};
     std::optional<ColliderHandle> to_collider{};
     Real break_force = infinity;  // [N]
-    Vec3 point = Vec3::Zero();    // mean position of the tied nodes [m]
+    Vec3 point = Vec3::Zero();    // mean position of the tied nodes, for a ball weighted by their masses [m]
     Vec3 force = Vec3::Zero();    // [N]
     Vec3 moment = Vec3::Zero();   // moment about `point` [N m]
     Real largest_force = 0;       // largest magnitude of `force` in a step since the tie was added [N]

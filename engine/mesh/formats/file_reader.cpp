@@ -15,10 +15,6 @@ namespace {
 
 constexpr const char* incomplete = "the file is incomplete; copy or export it again";
 
-bool is_space(char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
-}
-
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {

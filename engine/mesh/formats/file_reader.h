@@ -130,6 +130,9 @@ private:
 /// Converts a word of the file for use in an error message: in quotes, shortened, and with printable characters only.
 std::string in_quotes(std::string_view text);
 
+inline bool is_space(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+}
 /// The text without white space at both ends.
 std::string_view trimmed(std::string_view text);
 

@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::size_t, 32> nodes_of_type{0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                                     8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
 
-bool is_tetrahedron(std::int64_t type) {
+bool is_gmsh_tetrahedron(std::int64_t type) {
     return type == 4 || type == 11;  // of first or second order
 }
 bool is_triangle(std::int64_t type) {
@@ -69,12 +69,12 @@ void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_
     for (const std::int64_t number : node_numbers) rows.push_back(numbers.row(number, reader));
     if (type == 11) std::swap(rows[8], rows[9]);  // Gmsh lists the middle of edge 23 before that of edge 13
     // Version 2 writes a tetrahedron in several groups once for each group, one after the other.
-    const bool again = is_tetrahedron(type) && !mesh.tetrahedra.empty() &&
+    const bool again = is_gmsh_tetrahedron(type) && !mesh.tetrahedra.empty() &&
                        std::ranges::equal(mesh.tetrahedra.back(), std::span(rows).first(4)) &&
                        mesh.tags.back().elementary == tags.elementary && mesh.tags.back().physical != tags.physical;
     for (const std::int64_t group : groups) {
         MeshSet& set = mesh.groups[{dimension_of(type), group}];
-        if (is_tetrahedron(type))
+        if (is_gmsh_tetrahedron(type))
             set.tetrahedra.push_back(static_cast<Index>(mesh.tetrahedra.size() - (again ? 1 : 0)));
         else if (is_triangle(type))
             set.faces.push_back({rows[0], rows[1], rows[2]});
@@ -82,7 +82,7 @@ void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_
             set.nodes.insert(set.nodes.end(), rows.begin(), rows.end());
     }
     if (again) return;
-    if (is_tetrahedron(type)) {
+    if (is_gmsh_tetrahedron(type)) {
         take_tetrahedron(rows, reader, mesh);
         mesh.tags.push_back(tags);
     } else if (is_triangle(type)) {

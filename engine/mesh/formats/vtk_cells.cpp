@@ -23,7 +23,7 @@ constexpr CellKind other_kinds[] = {
     {73, "prisms"},    {74, "pyramids"},      {76, curved_triangle}};
 
 /// True for tetrahedra of first order (10) and of second order (24, or 71 with ten nodes).
-bool is_tetrahedron(std::int64_t type) {
+bool is_vtk_tetrahedron(std::int64_t type) {
     return type == 10 || type == 24 || type == 71;
 }
 
@@ -44,7 +44,7 @@ void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
         const std::span<const Index> nodes =
             std::span(cells.node).subspan(cells.offset[c], cells.offset[c + 1] - cells.offset[c]);
         const std::int64_t type = cells.type[c];
-        if (is_tetrahedron(type)) {
+        if (is_vtk_tetrahedron(type)) {
             if (nodes.size() != (type == 10 ? 4 : 10))
                 reader.complain("node count", std::to_string(nodes.size()),
                                 type == 10 ? "4 for a tetrahedron" : "10 for a tetrahedron of second order",
@@ -93,7 +93,7 @@ void take_vtk_sets(const VtkCells& cells, RawMesh& mesh) {
                             [](MeshSet& set, std::size_t row) { set.nodes.push_back(static_cast<Index>(row)); });
     std::vector<Index> number;  // by cell: number of the tetrahedron
     Index tetrahedra = 0;
-    for (const std::int64_t type : cells.type) number.push_back(is_tetrahedron(type) ? tetrahedra++ : no_index);
+    for (const std::int64_t type : cells.type) number.push_back(is_vtk_tetrahedron(type) ? tetrahedra++ : no_index);
     for (const VtkArray& array : cells.cell_data)
         if (array.value.size() == cells.type.size())
             for_each_member(array, mesh, [&](MeshSet& set, std::size_t cell) {

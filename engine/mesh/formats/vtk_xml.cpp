@@ -14,10 +14,6 @@ namespace {
 
 constexpr const char* damaged = "the file is damaged or incomplete; export it again";
 
-bool is_space(char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
-}
-
 /// Returns the place of `text` in the file. Throws SceneError if the file does not contain it after `from`.
 std::size_t place_of(std::string_view text, std::size_t from, FileReader& reader) {
     const std::size_t found = bytes_of(reader).find(text, from);

@@ -35,7 +35,7 @@ ElementKind: TypeAlias = Literal["linear", "smoothed", "edge_smoothed", "edge_no
 FilmColor: TypeAlias = Literal["none", "stress", "speed", "contact"]
 Dynamics: TypeAlias = Literal["explicit", "rigid", "implicit", "automatic"]
 JointKind: TypeAlias = Literal["ball", "hinge", "slider", "fixed"]
-TieKind: TypeAlias = Literal["weld", "slide"]
+TieKind: TypeAlias = Literal["weld", "slide", "ball"]
 CavityLaw: TypeAlias = Literal["pressure", "gas", "liquid"]
 SpringSide: TypeAlias = Literal["both", "tension", "compression"]
 

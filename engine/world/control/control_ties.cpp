@@ -132,20 +132,41 @@ OnSurface nearest_place(WorldState& world, const TiedObjects& objects, std::span
     return on_shape(model.colliders.geometry[c], pose[c], point);
 }
 
-/// Throws SceneError if a node is farther from the object to which it is tied than the mean edge length of its body, or
-/// if the object has no surface.
+bool is_deforming(const Model& model, Index body) {
+    return body != no_index && !model.is_rigid(static_cast<std::size_t>(body));
+}
+
+/// Present positions of the points that are tied: the nodes, or for each node the mean point of all [m].
+std::vector<Vec3> tied_points(const Model& model, const TiedObjects& objects, const TieSettings& tie) {
+    const Index first = model.bodies.nodes[static_cast<std::size_t>(objects.first)].begin;
+    std::vector<Vec3> points;
+    for (const Index node : tie.nodes) points.push_back(model.nodes.position[first + node]);
+    if (tie.kind != TieKind::ball) return points;
+    Vec3 sum = Vec3::Zero();
+    Real mass = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const Real of_node = model.nodes.mass[first + tie.nodes[k]];
+        sum += of_node * points[k];
+        mass += of_node;
+    }
+    points.assign(points.size(), sum / mass);
+    return points;
+}
+
+/// Throws SceneError if a tied point is farther from the object to which it is tied than the mean edge length of its
+/// body, or if the object has no surface. The mean point of a ball may be anywhere if the other object is rigid.
 void require_close(WorldState& world, const TiedObjects& objects, std::span<const RigidMotion> pose,
-                   const std::vector<Index>& nodes) {
+                   const TieSettings& tie, std::span<const Vec3> points) {
     const Model& model = world.model;
-    const auto first = static_cast<std::size_t>(objects.first);
-    const Real reach = model.bodies.mean_edge[first];
-    for (const Index node : nodes) {
-        const Vec3 point = model.nodes.position[static_cast<std::size_t>(model.bodies.nodes[first].begin + node)];
-        const Real distance = (point - nearest_place(world, objects, pose, point).point).norm();
-        if (!(distance <= reach))
+    const Real reach = model.bodies.mean_edge[static_cast<std::size_t>(objects.first)];
+    const bool is_ball = tie.kind == TieKind::ball;
+    const bool anywhere = is_ball && !is_deforming(model, objects.second);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const Real distance = (points[k] - nearest_place(world, objects, pose, points[k]).point).norm();
+        if (!(distance <= reach) && !anywhere)
             refuse_tie(model, objects, "nodes",
-                       "node " + std::to_string(node) + ", which is " + short_text(distance) +
-                           " m from the surface to which it is tied",
+                       (is_ball ? "nodes whose mean point" : "node " + std::to_string(tie.nodes[k]) + ", which") +
+                           " is " + short_text(distance) + " m from the surface to which it is tied",
                        "nodes at most " + short_text(reach) + " m from it (the mean edge length of the surface of " +
                            title_of_tied(model, objects.first) + ")");
     }
@@ -170,18 +191,15 @@ void append_node(TieTable& table, Index node, const OnSurface& on, const Vec3& p
     table.broken.push_back(infinity);
 }
 
-/// Appends a tied node at its present place.
+/// Appends a tied node. `point`: present place of the node, or of the mean point of all nodes [m].
 void tie_node(WorldState& world, const TieSettings& tie, const TiedObjects& objects, std::span<const RigidMotion> pose,
-              Index node) {
+              Index node, const Vec3& point) {
     Model& model = world.model;
-    const auto first = static_cast<std::size_t>(objects.first);
-    const Vec3 point = model.nodes.position[static_cast<std::size_t>(model.bodies.nodes[first].begin + node)];
     const OnSurface on = nearest_place(world, objects, pose, point);
     const Vec3& target = tie.close_gap ? on.point : point;
     const RigidPose frame = frame_of(model, objects, pose);
-    const bool deforms = objects.second != no_index && !model.is_rigid(static_cast<std::size_t>(objects.second));
     const Mat3 to_frame = frame.rotation.transpose();
-    if (!deforms) {
+    if (!is_deforming(model, objects.second)) {
         append_node(model.ties, node, on, to_frame * (target - frame.position), to_frame * on.normal);
         return;
     }
@@ -240,7 +258,8 @@ TieHandle Ties::add(const TieSettings& tie) {
     validate_break_force(model, objects, tie.break_force);
     const std::vector<RigidMotion> poses = present_poses(state);
     TieTable& table = model.ties;
-    require_close(state, objects, poses, tie.nodes);
+    const std::vector<Vec3> points = tied_points(model, objects, tie);
+    require_close(state, objects, poses, tie, points);
     const std::size_t row = table.size();
     AnyTable(table).resize(row + 1);
     const TieHandle handle = model.tie_map.insert(static_cast<Index>(row));
@@ -254,7 +273,7 @@ TieHandle Ties::add(const TieSettings& tie) {
     table.bodies_touch[row] = tie.bodies_touch;
     table.largest_force[row] = table.step[row] = 0;
     const auto begin = static_cast<Index>(table.node.size());
-    for (const Index node : tie.nodes) tie_node(state, tie, objects, poses, node);
+    for (std::size_t k = 0; k < points.size(); ++k) tie_node(state, tie, objects, poses, tie.nodes[k], points[k]);
     table.nodes[row] = {begin, static_cast<Index>(table.node.size())};
     table.parts[row] = 0;
     if (!tie.bodies_touch)
@@ -308,7 +327,9 @@ TieState tie_state(const WorldState& world, TieHandle tie) {
         return model.nodes.position[static_cast<std::size_t>(inputs.row_of(table.first[t], table.node[k]))];
     };
     const Range nodes = table.nodes[t];
-    for (Index k = nodes.begin; k < nodes.end; ++k)
+    const bool is_ball = now.kind == TieKind::ball;
+    if (is_ball) now.point = inputs.mean_point(t);
+    for (Index k = nodes.begin; k < nodes.end && !is_ball; ++k)
         now.point += position(static_cast<std::size_t>(k)) / static_cast<Real>(nodes.size());
     for (Index row = nodes.begin; row < nodes.end; ++row) {
         const auto k = static_cast<std::size_t>(row);
@@ -317,7 +338,7 @@ TieState tie_state(const WorldState& world, TieHandle tie) {
         if (table.step[t] > 0) node.force = table.impulse[k] / table.step[t];
         if (table.broken[k] < infinity) node.broken = table.broken[k];
         const TiePlace place = inputs.place(t, k);
-        const Vec3 apart = position(k) - place.point;
+        const Vec3 apart = (is_ball ? now.point : position(k)) - place.point;
         node.error = now.kind == TieKind::slide ? std::abs(place.normal.dot(apart)) : apart.norm();
         now.force += node.force;
         now.moment += (position(k) - now.point).cross(node.force);

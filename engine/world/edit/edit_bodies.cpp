@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "components/any_table.h"
+#include "engine/mesh/repair/surface_measures.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
@@ -93,17 +94,6 @@ Real mean_edge_length(const Model& model, Range edges) {
                    .norm();
     }
     return edges.size() > 0 ? sum / edges.size() : 0;
-}
-
-/// Mean edge length of the triangles that only draw a body [m].
-Real mean_edge_length(std::span<const std::array<Index, 3>> triangles, std::span<const Vec3> nodes) {
-    Real sum = 0;
-    for (const auto& triangle : triangles)
-        for (std::size_t k = 0; k < 3; ++k)
-            sum +=
-                (nodes[static_cast<std::size_t>(triangle[k])] - nodes[static_cast<std::size_t>(triangle[(k + 1) % 3])])
-                    .norm();
-    return sum / static_cast<Real>(3 * triangles.size());
 }
 
 /// Smallest altitude of all tetrahedra of a body; 0 without tetrahedra [m].
@@ -228,8 +218,10 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     model.settled = false;
     model.append_outline(b);
     model.body_records[b].surface = outline(model, b, body);
-    bodies.mean_edge[b] = body.core_nodes > 0 ? mean_edge_length(model.body_records[b].surface, body.nodes)
-                                              : mean_edge_length(model, bodies.edges[b]);
+    // A round body has no edges: its triangles only draw it.
+    bodies.mean_edge[b] = body.core_nodes > 0
+                              ? mesh::mean_edge({{body.nodes.begin(), body.nodes.end()}, model.body_records[b].surface})
+                              : mean_edge_length(model, bodies.edges[b]);
     bodies.contact_distance[b] =
         body.contact_distance >= 0 ? body.contact_distance : default_contact_distance * bodies.mean_edge[b];
     bodies.min_altitude[b] = smallest_altitude(body);

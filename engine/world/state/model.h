@@ -165,6 +165,9 @@ struct Model {
     // For each body: sum of the bounds that ForceElement::add_rate adds for all force elements [1/s^2]. If the column
     // is empty, all sums are zero. Computed by note_forces.
     Column<Real> force_rate;
+    // Memory in which the rates of cavities sum over the faces at each node of a body: areas [m^2] and edges [m].
+    Column<Vec3> face_areas;
+    Column<Real> face_edges;
     // True if the bounds depend on positions, so that they must be computed again before each step. Computed by
     // note_forces.
     bool force_rate_moves = false;

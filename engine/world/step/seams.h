@@ -27,7 +27,7 @@ struct ForceElement {
     // For each body, adds an upper bound of the contribution of this force element to the squared natural frequencies
     // of the body [1/s^2]. This bound limits the stable step. The pointer is null if the forces do not depend on
     // positions.
-    void (*add_rate)(const Model&, std::span<Real> of_body) = nullptr;
+    void (*add_rate)(Model&, std::span<Real> of_body) = nullptr;
     bool rate_moves = false;  // true: the bound depends on positions, and is computed again before each step
     // For each body, raises a bound to the rate at which dampers of this force element reduce velocities [1/s]. In a
     // step of length h they must reduce no velocity by more than the factor exp(-rate h). The bound limits the stable

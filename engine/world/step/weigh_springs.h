@@ -13,7 +13,7 @@ SpringInputs springs_of(const Model& model);
 /// Computes the inverse masses of the anchors of all springs, and the number of dampers that share each mass.
 void weigh_springs(Model& model);
 /// See ForceElement::add_rate and ForceElement::bound_damping.
-void add_spring_rates(const Model& model, std::span<Real> of_body);
+void add_spring_rates(Model& model, std::span<Real> of_body);
 void bound_spring_damping(const Model& model, std::span<Real> of_body);
 
 }  // namespace skerry

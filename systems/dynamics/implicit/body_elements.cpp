@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "systems/material/material_law.h"
-#include "systems/material/orthotropic.h"
 
 namespace skerry {
 
@@ -17,14 +16,6 @@ Mat3 further_block(const Tangent& tangent, const Vec3& g, const Vec3& other) {
     Mat3 block = g.dot(tangent.second_stress * other) * Mat3::Identity();
     for (const Mat3& dyad : tangent.dyads) block += (dyad * g) * (dyad * other).transpose();
     return block;
-}
-
-/// Energy density of small strain, for the displacement gradient `change` [J/m^3].
-Real linear_energy(MaterialConstants material, const Mat3& change) {
-    if (material.model == MaterialModel::orthotropic)
-        return Orthotropic::energy_of_strain(material, (change + change.transpose()) / 2);
-    material.model = MaterialModel::linear;
-    return energy_density(material, Mat3::Identity() + change);
 }
 
 }  // namespace
@@ -80,7 +71,7 @@ BodyElements::Misfit BodyElements::misfit(const Displacements& displacement) con
     Misfit sum{0, 0};
     for (std::size_t e = 0; e < size(); ++e) {
         const Mat3 change = gradient_of(e, displacement), F = Mat3::Identity() + change;
-        const Real of_linear = volume_[e] * linear_energy(material_[e], change);
+        const Real of_linear = volume_[e] * small_strain_energy(material_[e], change);
         sum.linear += of_linear;
         sum.off += std::abs(volume_[e] * energy_density(material_[e], F) - of_linear);
     }

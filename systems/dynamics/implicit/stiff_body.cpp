@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "systems/geometry/rotation.h"
-#include "systems/material/orthotropic.h"
+#include "systems/material/material_law.h"
 
 namespace skerry {
 
@@ -78,18 +78,6 @@ void leave_out_held(std::span<const std::uint8_t> held, std::span<const Real> ma
 
 }  // namespace
 
-Mat3 element_stiffness(const MaterialConstants& material, Real volume, const Vec3& gradient_k, const Vec3& gradient_l) {
-    const Real lambda = material.lame_lambda, mu = material.shear_modulus;
-    if (material.model == MaterialModel::orthotropic) {
-        Mat3 stiffness = Mat3::Zero();
-        for (const Mat3& dyad : Orthotropic::dyads(material, Mat3::Identity()))
-            stiffness += (dyad * gradient_k) * (dyad * gradient_l).transpose();
-        return volume * stiffness;
-    }
-    return volume * (lambda * gradient_k * gradient_l.transpose() +
-                     mu * (gradient_k.dot(gradient_l) * Mat3::Identity() + gradient_l * gradient_k.transpose()));
-}
-
 StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConstants> constants,
                      std::span<const Real> mass, std::span<const Vec3> rest_position,
                      std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> tetrahedron_mass) {
@@ -108,7 +96,7 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
                             column = place_[static_cast<std::size_t>(nodes[l])];
                 if (column <= row)
                     block_at(stiffness_, row, column) +=
-                        element_stiffness(material, elements.volume[e], gradients[k], gradients[l]);
+                        elements.volume[e] * small_strain_stiffness(material, gradients[k], gradients[l]);
             }
     }
     mass_.resize(mass.size());

@@ -16,10 +16,6 @@
 
 namespace skerry {
 
-/// Stiffness block -df_k/dx_l of an element in its rest shape [N/m], with the force f_k on node k and the position x_l
-/// of node l. `gradient_k`, `gradient_l`: shape gradients at these nodes [1/m]; `volume`: [m^3].
-Mat3 element_stiffness(const MaterialConstants& material, Real volume, const Vec3& gradient_k, const Vec3& gradient_l);
-
 /// Counters of Newton's method in steps at large strain.
 struct NewtonCounts {
     std::uint64_t solved = 0;   // number of steps of single bodies in which Newton's method was run

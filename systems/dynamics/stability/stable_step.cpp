@@ -15,7 +15,6 @@
 #include "systems/dynamics/stability/stiffness_share.h"
 #include "systems/dynamics/stability/without_guards.h"
 #include "systems/material/extract_rotation.h"
-#include "systems/material/linear.h"
 
 namespace skerry {
 
@@ -305,51 +304,6 @@ void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<con
         for (std::size_t b = 0; b < step.size(); ++b)
             for (std::size_t l = 0; l < element_lanes; ++l) mass_share[b][l] *= std::max(least, shortest / step[b][l]);
     }
-}
-
-Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                                    std::span<const Real> inverse_mass, int iterations) {
-    std::vector<Vec3> u(position.size()), next(position.size());
-    // No symmetry of the mesh makes this start vector orthogonal to the highest mode.
-    for (std::size_t n = 0; n < u.size(); ++n)
-        u[n] = Vec3(std::sin(12.9898 * static_cast<Real>(n + 1)), std::sin(78.233 * static_cast<Real>(n + 1)),
-                    std::sin(37.719 * static_cast<Real>(n + 1)));
-    Real estimate = 0;
-    for (int i = 0; i < iterations; ++i) {
-        // Computes the Rayleigh quotient of M^-1/2 K M^-1/2 at w = M^1/2 u, then replaces u by M^-1 K u.
-        for (Vec3& x : next) x.setZero();
-        for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-            const MaterialConstants material = elements.material_of(b);
-            const BlockNodes nodes = elements.nodes_of(b);
-            const KernelReal one = KernelReal{} + 1.0, zero{};
-            const LaneMat3<KernelReal> identity{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
-            Parts<LaneMat3<KernelReal>> Q;
-            for (std::size_t part = 0; part < kernel_parts; ++part)
-                Q[part] = (-load_part<KernelReal>(elements.volume[b], part)) *
-                          Linear::stress(material, identity + deformation_gradient(nodes, part, u));
-            for_each_force(Q, nodes, [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
-                const std::size_t first = part * lanes_of<KernelReal>;
-                for (std::size_t l = 0; l < lanes_of<KernelReal>; ++l)
-                    next[static_cast<std::size_t>(nodes.node[k][first + l])] -= Vec3(f.x[l], f.y[l], f.z[l]);
-            });
-        }
-        Real energy = 0, size = 0, largest = 0;
-        for (std::size_t n = 0; n < u.size(); ++n) {
-            if (!(inverse_mass[n] > 0)) {
-                next[n].setZero();
-                u[n].setZero();
-                continue;
-            }
-            energy += u[n].dot(next[n]);
-            size += u[n].squaredNorm() / inverse_mass[n];
-            next[n] *= inverse_mass[n];
-            largest = std::max(largest, next[n].cwiseAbs().maxCoeff());
-        }
-        if (!(largest > 0)) return 0;
-        estimate = energy / size;
-        for (std::size_t n = 0; n < u.size(); ++n) u[n] = next[n] / largest;
-    }
-    return estimate;
 }
 
 }  // namespace skerry

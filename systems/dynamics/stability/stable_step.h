@@ -70,9 +70,4 @@ struct ElementBounds {
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share);
 
-/// Lower estimate of omega_max^2 for the stiffness at rest [1/s^2], by power iteration on the assembled linear operator
-/// (docs/methods/stable_step.md 5). For tests and reports.
-Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                                    std::span<const Real> inverse_mass, int iterations);
-
 }  // namespace skerry

@@ -1,5 +1,6 @@
 #include "systems/solver/local/cable_law.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +25,19 @@ struct MobilitySum {
 
 }  // namespace
 
+Vec3 CableLaw::at_point(std::span<const Real> of, std::size_t p) const {
+    if (is_tie) return {of[0], of[1], of[2]};
+    Vec3 sum = Vec3::Zero();
+    if (p < segments()) sum += of[p] * direction[p];
+    if (p > 0) sum -= of[p - 1] * direction[p - 1];
+    return sum;
+}
+
 void CableLaw::read(std::span<const Vec4> point, std::span<Real> impulse_of_segment) const {
+    if (is_tie) {
+        for (std::size_t k = 0; k < 3; ++k) impulse_of_segment[k] = point[0][static_cast<Index>(k)];
+        return;
+    }
     Vec3 last = Vec3::Zero();
     std::size_t known = 0;  // number of segments whose impulse is known
     for (std::size_t s = 0; s < segments(); ++s) {
@@ -85,7 +98,17 @@ Real CableLaw::step(std::size_t s) const {
     return std::abs(change);
 }
 
+Vec3 CableLaw::change_of_tie() const {
+    const Eigen::Map<const Mat3> of(mobility.data());
+    return -of.ldlt().solve(Eigen::Map<const Vec3>(rate.data()));
+}
+
 void CableLaw::solve() const {
+    if (is_tie) {
+        Eigen::Map<Vec3>(impulse.data()) += change_of_tie();
+        std::ranges::fill(rate, Real(0));
+        return;
+    }
     // The sweeps of the region continue an unfinished solution, so the limit of the passes does not limit the accuracy.
     constexpr int most_passes = 50;
     constexpr Real rounding = 1e-15;
@@ -97,6 +120,7 @@ void CableLaw::solve() const {
 }
 
 Real CableLaw::squared_residual() const {
+    if (is_tie) return -change_of_tie().dot(Eigen::Map<const Vec3>(rate.data()));
     Real sum = 0;
     for (std::size_t s = 0; s < segments(); ++s) {
         const Real off = impulse[s] - answer(s, far_mobility[s]);

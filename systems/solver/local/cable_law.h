@@ -1,5 +1,5 @@
 // Law of a cable that runs through points of bodies: prescribed length or tension, and friction at the points
-// (docs/methods/cables.md 2).
+// (docs/methods/cables.md 2). Law of a tie of the mean of many points (docs/methods/ties.md).
 #pragma once
 
 #include <span>
@@ -14,6 +14,11 @@ namespace skerry {
 struct CableLaw {
     Index first = 0;   // number of the first point among the rows of the region
     Index moving = 0;  // number of the first point that impulses can move
+    Index points = 0;  // number of points
+    // True for a tie: `impulse` has the three components of the impulse of every point, `rate` those of the sum u of
+    // the velocities of the points, which the law makes zero, and u changes by +A r. Members that name segments are
+    // unused.
+    bool is_tie = false;
     bool by_length = false;
     Real wanted = 0;                   // greatest sum of u [m/s] if `by_length`, else the impulse r_0 [N s]
     std::span<const Vec3> direction;   // by segment: unit vector to the next point; 0 if the segment has no length
@@ -32,6 +37,8 @@ struct CableLaw {
     /// first. At its two points a segment has the impulses r_s and -r_s along its direction. A segment without length
     /// has the impulse of the segment before it, or of the first segment with a length.
     void read(std::span<const Vec4> point, std::span<Real> impulse_of_segment) const;
+    /// Impulse of point `p` by the impulses `of` of the segments or of the tie [N s].
+    Vec3 at_point(std::span<const Real> of, std::size_t p) const;
     /// Fills far_mobility.
     void prepare() const;
     /// Computes the impulses of the law from the present ones, while all contacts keep their impulses. Updates the
@@ -50,6 +57,8 @@ private:
     /// Impulse of segment `s` by the law, if its mobility is `of` [N s].
     Real answer(std::size_t s, Real of) const;
     Real step(std::size_t s) const;
+    /// Change of the impulse of a tie that makes its rate zero [N s].
+    Vec3 change_of_tie() const;
 };
 
 }  // namespace skerry

@@ -46,19 +46,24 @@ inline Real push_bias_turned(Real bias, Real normal_velocity, Real gap, Real slo
     return left < 0 ? std::max(left, loss) : left;
 }
 
-/// Normal impulse of the push, from the impulse that would stop the normal pseudo velocity. Only ties may pull.
-inline Real pushed_impulse(FrictionLimits mu, Real stopping) {
-    return mu.ties() ? stopping : std::max(Real(0), stopping);
+/// Part of the velocity `u` that a tie demands to be zero: all of it (weld), or the part along the normal (slide).
+inline Vec4 held_part(const LumpedContact& tie, const Vec4& u) {
+    return tie.friction.stick == 0 ? Vec4(tie.normal.dot(u) * tie.normal) : u;
 }
 
-/// Gauss-Seidel step of one contact on the pseudo velocities. `apply` changes the pseudo velocities by an impulse.
-/// Returns D (change of the impulse)^2 with the mobility D (LumpedContact::diagonal) [J]
+/// Gauss-Seidel step of one contact or tie on the pseudo velocities. `apply` changes the pseudo velocities by an
+/// impulse. Returns D (change of the impulse)^2 with the mobility D (LumpedContact::diagonal) [J]
 template <class Apply>
 inline Real push_contact(const LumpedContact& contact, Real bias, Vec4* velocity, Real& impulse, const Apply& apply) {
-    Real along = bias;
-    for (Index a = 0; a < contact.node_count; ++a)
-        along += contact.weight[a] * contact.normal.dot(velocity[contact.node[a]]);
-    const Real next = pushed_impulse(contact.friction, impulse - contact.inverse_diagonal * along);
+    Vec4 pushed = Vec4::Zero();
+    for (Index a = 0; a < contact.node_count; ++a) pushed += contact.weight[a] * velocity[contact.node[a]];
+    if (contact.friction.ties()) {
+        const Vec4 change = -contact.inverse_diagonal * held_part(contact, pushed);
+        if (change.isZero(0)) return 0;
+        apply(contact, change, velocity);
+        return contact.diagonal * change.squaredNorm();
+    }
+    const Real next = std::max(Real(0), impulse - contact.inverse_diagonal * (bias + contact.normal.dot(pushed)));
     const Real change = next - impulse;
     if (change == 0) return 0;
     apply(contact, change * contact.normal, velocity);

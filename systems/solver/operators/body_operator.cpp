@@ -50,6 +50,17 @@ Vec4 BodyOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
     return project(i, impulse - u / of.steepest);
 }
 
+Real BodyOperator::push_tie(Index i, const Vec4& held, Vec4* velocity) const {
+    if (held.isZero(0)) return 0;
+    Vec4 change = -held / part(i).along_normal;
+    if (limits(i).stick > 0) {
+        const Mat3 mobility = walk_.undeformed_coupling(contact(i), contact(i)) + rigid_coupling(part(i), part(i));
+        change = -padded(mobility.inverse() * held.head<3>());
+    }
+    apply_undeformed(i, change, velocity);
+    return -change.dot(held);
+}
+
 Vec4 BodyOperator::project_in_frame(Index i, const Vec4& impulse) const {
     const RigidPart& of = part(i);
     Vec4 local = in_frame(of.frame, impulse);
@@ -132,6 +143,12 @@ SweepChange BodyOperator::accelerated_sweep(Real relaxation) {
 const CableLaw& BodyOperator::read_cable(Index cable) const {
     const CableLaw& law = memory_.cable_law[static_cast<std::size_t>(cable)];
     law.read(memory_.impulse.subspan(static_cast<std::size_t>(law.first)), law.impulse);
+    if (law.is_tie) {
+        Vec4 sum = Vec4::Zero();
+        for (Index p = 0; p < law.points; ++p) sum += velocity(law.first + p);
+        for (std::size_t k = 0; k < 3; ++k) law.rate[k] = sum[static_cast<Index>(k)];
+        return law;
+    }
     Vec4 start = velocity(law.first);
     for (std::size_t s = 0; s < law.segments(); ++s) {
         const Vec4 end = velocity(law.first + static_cast<Index>(s) + 1);
@@ -153,11 +170,9 @@ void BodyOperator::sweep_cables(Real relaxation, SweepChange& sum) {
                 law.impulse[s] = law.before[s] + relaxation * (law.impulse[s] - law.before[s]);
         if (std::ranges::equal(law.impulse, law.before)) continue;
         Vec4* const nodes = runs_ ? runs_->sums(memory_.velocity.size()).data() : nullptr;
-        Vec3 last = Vec3::Zero();  // change of the impulse of the segment that ends at the point [N s]
-        for (std::size_t p = 0; p <= law.segments(); ++p) {
-            const Vec3 next =
-                p < law.segments() ? Vec3((law.impulse[p] - law.before[p]) * law.direction[p]) : Vec3(Vec3::Zero());
-            const Vec4 change = padded(Vec3(next - last));
+        for (std::size_t s = 0; s < law.segments(); ++s) law.before[s] = law.impulse[s] - law.before[s];
+        for (std::size_t p = 0; p < static_cast<std::size_t>(law.points); ++p) {
+            const Vec4 change = padded(law.at_point(law.before, p));
             const auto i = static_cast<Index>(first + p);
             if (nodes != nullptr)
                 walk_.collect(contact(i), change, nodes, velocity);
@@ -165,14 +180,10 @@ void BodyOperator::sweep_cables(Real relaxation, SweepChange& sum) {
                 walk_.apply_undeformed(contact(i), change, velocity);
             apply_to_rigid(part(i), change, velocity);
             memory_.impulse[first + p] += change;
-            last = next;
         }
         if (nodes != nullptr) runs_->spread_sums(walk_, velocity);
         if (!memory_.workspace[1].empty()) law.read(memory_.workspace[1].subspan(first), law.previous);
-        for (std::size_t s = 0; s < law.segments(); ++s) {
-            law.previous[s] = law.impulse[s] - law.previous[s];
-            law.before[s] = law.impulse[s] - law.before[s];
-        }
+        for (std::size_t s = 0; s < law.segments(); ++s) law.previous[s] = law.impulse[s] - law.previous[s];
         sum.size += law.product(law.before, law.before);
         sum.against -= law.product(law.before, law.previous);
     }

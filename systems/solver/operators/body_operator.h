@@ -95,8 +95,9 @@ public:
         const Real mobility = part(i).along_normal;
         if (!(mobility > 0)) return 0;
         const Vec4& normal = contact(i).normal;
-        const Real along = bias + normal.dot(velocity_at(i, velocity));
-        const Real next = pushed_impulse(limits(i), impulse - along / mobility);
+        const Vec4 pushed = velocity_at(i, velocity);
+        if (limits(i).ties()) return push_tie(i, held_part(contact(i), pushed), velocity);
+        const Real next = std::max(Real(0), impulse - (bias + normal.dot(pushed)) / mobility);
         const Real change = next - impulse;
         if (change == 0) return 0;
         apply_undeformed(i, change * normal, velocity);
@@ -151,6 +152,8 @@ private:
     BodyEquations* rigid_mode_memory();
     void start_rigid_round(BodyEquations& equations);
     void push_rigid_modes(std::span<const Vec4> start);
+    /// Step of the split impulse that makes the part `held` of the pseudo velocity of a tie zero.
+    Real push_tie(Index i, const Vec4& held, Vec4* velocity) const;
     std::optional<Real> go_on_as_before(BodyEquations& equations, std::span<const Vec4> start);
     std::optional<Real> step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack);
     void list_unknowns(BodyEquations& equations) const;

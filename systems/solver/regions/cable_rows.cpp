@@ -15,9 +15,10 @@ CableLaw& law_of(const RegionStage& stage, Index cable) {
     return stage.memory.cable_law[static_cast<std::size_t>(cable)];
 }
 
-/// Writes the mobility matrix of a cable.
+/// Writes the mobility matrix of a cable or tie.
 void find_mobility(const CableLaw& law, const BodyMemory& memory, const ThroughGroups& walk, std::span<Real> mobility) {
-    const std::size_t count = law.segments(), first = static_cast<std::size_t>(law.first);
+    const std::size_t count = law.segments(), first = static_cast<std::size_t>(law.first),
+                      points = static_cast<std::size_t>(law.points);
     std::ranges::fill(mobility, Real(0));
     // An impulse at point b changes the velocity of point a by the block of W. Point p ends segment p - 1 and begins
     // segment p.
@@ -25,10 +26,14 @@ void find_mobility(const CableLaw& law, const BodyMemory& memory, const ThroughG
         if (point > 0) visit(point - 1, Real(1));
         if (point < count) visit(point, Real(-1));
     };
-    for (std::size_t a = 0; a <= count; ++a)
-        for (std::size_t b = 0; b <= count; ++b) {
+    for (std::size_t a = 0; a < points; ++a)
+        for (std::size_t b = 0; b < points; ++b) {
             const Mat3 block = walk.coupling(memory.contact[first + a], memory.contact[first + b]) +
                                rigid_coupling(memory.part[first + a], memory.part[first + b]);
+            if (law.is_tie) {
+                Eigen::Map<Mat3>(mobility.data()) += block;
+                continue;
+            }
             for_each_segment(a, [&](std::size_t row, Real of_row) {
                 for_each_segment(b, [&](std::size_t column, Real of_column) {
                     mobility[row * count + column] +=
@@ -39,11 +44,15 @@ void find_mobility(const CableLaw& law, const BodyMemory& memory, const ThroughG
 }
 
 void add_to_sums(const CableLaw& law, LoadSums& sums) {
-    const Real mobility = law.far_mobility[0];
-    if (!(mobility > 0)) return;
-    Real rate = 0;
-    for (const Real of_segment : law.rate) rate += of_segment;
-    sums.moving += rate * rate / mobility;
+    if (law.is_tie) {
+        sums.moving += law.squared_residual();
+    } else {
+        const Real mobility = law.far_mobility[0];
+        if (!(mobility > 0)) return;
+        Real rate = 0;
+        for (const Real of_segment : law.rate) rate += of_segment;
+        sums.moving += rate * rate / mobility;
+    }
     const Real asked = law.squared_residual();
     if (asked == 0) return;
     sums.separating = false;
@@ -56,14 +65,17 @@ void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory,
                 LoadSums& sums) {
     RegionMemory& data = stage.memory;
     const CableBlock& block = block_of(stage, cable);
-    const auto points = static_cast<std::size_t>(block.points.size()), count = points - 1,
-               begin = static_cast<std::size_t>(block.points.begin), all = stage.inputs.cables.stencil.size();
+    const auto points = static_cast<std::size_t>(block.points.size()),
+               count = static_cast<std::size_t>(block.impulses()), begin = static_cast<std::size_t>(block.points.begin),
+               all = stage.inputs.cables.stencil.size();
     const auto numbers = [&](std::size_t copy) { return data.cable_numbers.span().subspan(copy * all + begin, count); };
     const std::span<Real> mobility =
         data.cable_mobility.span().subspan(static_cast<std::size_t>(block.mobility), count * count);
     CableLaw& law = law_of(stage, cable);
     law = {.first = first,
            .moving = first,
+           .points = block.points.size(),
+           .is_tie = block.is_tie,
            .by_length = block.by_length,
            .wanted = block.wanted,
            .direction = stage.inputs.cables.direction.subspan(begin, count),
@@ -74,11 +86,11 @@ void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory,
            .rate = numbers(2),
            .before = numbers(3),
            .previous = numbers(4)};
-    const auto last = static_cast<Index>(count) + first;
+    const Index last = first + law.points - 1;
     while (law.moving < last && memory.contact[static_cast<std::size_t>(law.moving)].inverse_diagonal == 0)
         ++law.moving;
     find_mobility(law, memory, walk, mobility);
-    law.prepare();
+    if (!law.is_tie) law.prepare();
     std::ranges::fill(law.impulse, Real(0));
     const auto velocity = [&](std::size_t p) {
         const std::size_t i = static_cast<std::size_t>(first) + p;
@@ -88,29 +100,31 @@ void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory,
              add_rigid_velocities(memory.part[i], rows, add_node_velocities(memory.contact[i], rows, Vec4::Zero())))
                 .head<3>());
     };
-    for (std::size_t s = 0; s < count; ++s) law.rate[s] = law.direction[s].dot(velocity(s + 1) - velocity(s));
+    if (law.is_tie) {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t p = 0; p < points; ++p) sum += velocity(p);
+        Eigen::Map<Vec3>(law.rate.data()) = sum;
+    } else {
+        for (std::size_t s = 0; s < count; ++s) law.rate[s] = law.direction[s].dot(velocity(s + 1) - velocity(s));
+    }
     add_to_sums(law, sums);
 }
 
 void take_cable_impulses(const RegionStage& stage, Index cable, const BodyMemory& memory) {
     const CableLaw& law = law_of(stage, cable);
-    const Range points = block_of(stage, cable).points;
-    Vec3 last = Vec3::Zero();
-    for (Index p = 0; p < points.size(); ++p) {
-        const auto s = static_cast<std::size_t>(p);
-        const Vec3 next =
-            s < law.segments()
-                ? Vec3(stage.out.cable_impulse[static_cast<std::size_t>(points.begin + p)] * law.direction[s])
-                : Vec3(Vec3::Zero());
-        memory.impulse[static_cast<std::size_t>(law.first + p)] = padded(Vec3(next - last));
-        last = next;
-    }
+    const std::span<const Real> last = rows_of(stage.out.cable_impulse, block_of(stage, cable).points);
+    for (std::size_t p = 0; p < last.size(); ++p)
+        memory.impulse[static_cast<std::size_t>(law.first) + p] = padded(law.at_point(last, p));
 }
 
 void write_cable(const RegionStage& stage, Index cable, const BodyMemory& memory) {
     const CableLaw& law = law_of(stage, cable);
     const Range points = block_of(stage, cable).points;
     law.read(memory.impulse.subspan(static_cast<std::size_t>(law.first)), law.impulse);
+    if (law.is_tie) {  // take_tie_rows() finds its work
+        std::ranges::copy(law.impulse, rows_of(stage.out.cable_impulse, points).begin());
+        return;
+    }
     // Rounding can make the tension of a slack segment negative.
     for (Real& impulse : law.impulse) impulse = std::max(Real(0), impulse);
     std::ranges::copy(law.impulse, rows_of(stage.out.cable_impulse, points).begin());

@@ -126,10 +126,10 @@ private:
         std::size_t i = region_.row.size() + region_.joint.size();
         for (const Index cable : region_.cable) {
             const auto first = static_cast<Index>(i);
-            const Range points = cables.block[static_cast<std::size_t>(cable)].points;
-            for (Index p = points.begin; p < points.end; ++p) {
-                load_point(static_cast<std::size_t>(p), data_.contact[static_cast<std::size_t>(region_.base) + i],
-                           region_.memory.part[i]);
+            const CableBlock& block = cables.block[static_cast<std::size_t>(cable)];
+            for (Index p = block.points.begin; p < block.points.end; ++p) {
+                load_point(static_cast<std::size_t>(p), block.acting_point(p),
+                           data_.contact[static_cast<std::size_t>(region_.base) + i], region_.memory.part[i]);
                 region_.memory.impulse[i++].setZero();
             }
             load_cable(stage_, cable, region_.memory, region_.walk, first, region_.sums);
@@ -137,7 +137,8 @@ private:
     }
 
     /// Loads a point of a cable. Its `offset` is the velocity of the held nodes, or of a point of a collider.
-    void load_point(std::size_t point, LumpedContact& contact, RigidPart& part) {
+    /// `acts_at`: point at which impulses act on rigid and implicit bodies; null: the nodes of the point.
+    void load_point(std::size_t point, const Vec3* acts_at, LumpedContact& contact, RigidPart& part) {
         const RigidNodes& rigid = stage_.inputs.rigid.nodes;
         const Stencil& stencil = stage_.inputs.cables.stencil[point];
         Vec3 offset = stage_.inputs.cables.velocity[point];
@@ -155,8 +156,9 @@ private:
             }
             const Index body = rigid.row(node);
             if (body != no_index)
-                add_term(part, body, stage_.inputs.rigid.position[static_cast<std::size_t>(node)], weight,
-                         [] { return Vec3(Vec3::Zero()); });
+                add_term(part, body,
+                         acts_at != nullptr ? *acts_at : stage_.inputs.rigid.position[static_cast<std::size_t>(node)],
+                         weight, [] { return Vec3(Vec3::Zero()); });
             if (body != no_index && stage_.inputs.implicit.row(node, rigid) == no_index) continue;
             const auto place = static_cast<std::size_t>(contact.node_count++);
             contact.weight[place] = weight;

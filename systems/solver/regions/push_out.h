@@ -99,18 +99,30 @@ private:
     }
 
     void sweep(Real asked) {
-        const Real small = region_.tolerance * region_.tolerance * asked;
+        if (sweep_rows(region_.tolerance * region_.tolerance * asked, false)) return;
+        // Joints and ties can hold a contact that asks for a push. They take precedence: an error in their positions
+        // would ask the next velocity solve for a motion that the contact forbids.
+        constexpr Real rounding = 1e-24;  // squared
+        sweep_rows(rounding * asked, true);
+    }
+
+    /// Sweeps over the joints and contacts, or over the joints and ties only, until the squared energy norm of the
+    /// change of a sweep is at most `small`. Returns true if it is reached before the limit of the iterations.
+    bool sweep_rows(Real small, bool only_equations) {
         for (Index iteration = 1; iteration <= stage_.settings.max_iterations; ++iteration) {
             const Real of_joints = others_.sweep_joints(velocity_);
             const Real change =
                 region_.walk.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
                     Real size = begin == 0 ? of_joints : 0;
                     for (std::size_t i = begin; i < end; ++i)
-                        size += op_.push(static_cast<Index>(i), memory_.bias[i], velocity_.data(), memory_.impulse[i]);
+                        if (!only_equations || region_.memory.contact[i].friction.ties())
+                            size +=
+                                op_.push(static_cast<Index>(i), memory_.bias[i], velocity_.data(), memory_.impulse[i]);
                     return size;
                 });
-            if (change <= small && !stage_.settings.fixed_iterations) break;
+            if (change == 0 || (change <= small && !stage_.settings.fixed_iterations)) return true;
         }
+        return false;
     }
 
     const RegionStage& stage_;

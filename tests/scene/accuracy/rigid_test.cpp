@@ -151,7 +151,7 @@ TEST_CASE("a slender rigid block rocks with Housner's period", "[scene][accuracy
                      .tolerance = 0.01});
 }
 
-TEST_CASE("a rigid block that rocks onto its other edge loses what Housner says", "[scene][accuracy]") {
+TEST_CASE("a rigid block that rocks onto its other edge loses energy by Housner's formula", "[scene][accuracy]") {
     RockingBlock block(0.1, 0.2, 0.15, 1e-4);
     Real before = 0, time = 0;
     while (tilt(block.world, block.body) > 1e-4 && time < 2) {

@@ -119,7 +119,7 @@ TEST_CASE("1 to 64 threads give the same bits after 1000 steps", "[scene][determ
                      .kind = Tolerance::absolute});
 }
 
-TEST_CASE("what the solver leaves over in each step does not add up as steps get shorter", "[scene][accuracy]") {
+TEST_CASE("errors of the solver do not add up as steps get shorter", "[scene][accuracy]") {
     constexpr Real length = 0.1, shell = 0.001;
     for (const Real step : {4e-4, 1e-5}) {
         CAPTURE(step);

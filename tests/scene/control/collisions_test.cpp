@@ -30,7 +30,7 @@ struct Stack {
 
 }  // namespace
 
-TEST_CASE("what is in no group that the mask of the other has falls through it", "[scene]") {
+TEST_CASE("a body in no group of the other's mask falls through", "[scene]") {
     for (const bool mesh : {false, true}) {
         Stack stack(mesh);
         stack.world.set_collision_groups(stack.lower, 2, 1);
@@ -141,7 +141,7 @@ TEST_CASE("bodies that do not collide may overlap at the start", "[scene]") {
     CHECK(world.report().start_overlaps.empty());
 }
 
-TEST_CASE("a scene has groups and masks, and refuses what has no 32 bits", "[scene]") {
+TEST_CASE("a scene has groups and masks, and refuses values without 32 bits", "[scene]") {
     const TemporaryFolder folder;
     const auto scene = [&](const std::string& group) {
         return folder.write("scene.json", R"({"materials": {"rubber": {}},

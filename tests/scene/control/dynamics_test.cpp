@@ -245,7 +245,7 @@ TEST_CASE("a body goes on under its handle with all that was set of it", "[scene
     CHECK(other.world.stable_step() == Approx(world.stable_step()).epsilon(0.02));
 }
 
-TEST_CASE("what a body cannot become is refused by name, and what it is already changes no bit", "[scene]") {
+TEST_CASE("unsupported dynamics are refused by name, and the present dynamics change no bit", "[scene]") {
     Bar bar;
     World& world = bar.world;
     REQUIRE(world.advance(0.01).ok());
@@ -281,7 +281,7 @@ TEST_CASE("what a body cannot become is refused by name, and what it is already 
     CHECK_THROWS_WITH(world.set_dynamics(bar.body, rigid), Contains("set_dynamics"));
 }
 
-TEST_CASE("what becomes rigid in a stack carries and is carried, without an overlap at any step", "[scene]") {
+TEST_CASE("a body that becomes rigid in a stack carries and is carried, without an overlap at any step", "[scene]") {
     Stack stack;
     World& world = stack.world;
     REQUIRE(world.advance(0.5).ok());
@@ -295,7 +295,7 @@ TEST_CASE("what becomes rigid in a stack carries and is carried, without an over
     }
 }
 
-TEST_CASE("a world whose bodies have changed kind goes on bit by bit, on any number of threads and from a file",
+TEST_CASE("a world in which bodies changed their kind continues bitwise, on any number of threads and from a file",
           "[determinism]") {
     const auto course = [](int threads) {
         Bar bar(Bar::two_materials, {.young_modulus = 1e6, .poisson_ratio = 0.3, .density = density}, threads,

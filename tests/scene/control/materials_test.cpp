@@ -42,7 +42,7 @@ struct LayeredBar {
 
 }  // namespace
 
-TEST_CASE("a material that changes makes of its bodies what they would have been with it", "[scene]") {
+TEST_CASE("a changed material makes its bodies as if they had been added with it", "[scene]") {
     const MaterialSettings one{.young_modulus = 1e5, .density = 1000, .loss_factor = 0.1},
         other{.young_modulus = 3e5, .poisson_ratio = 0.3, .density = 700, .loss_factor = 0.02};
     LayeredBar changed(one, one), added(one, other);
@@ -80,7 +80,7 @@ TEST_CASE("a change of material reaches only the bodies that have it, and can be
     REQUIRE(world.advance(0.01).ok());
 }
 
-TEST_CASE("what of a material cannot change is refused by name and changes nothing", "[scene]") {
+TEST_CASE("constants of a material that cannot change are refused by name, and nothing changes", "[scene]") {
     using Catch::Contains;
     World world;
     const auto rubber = world.add_material({});
@@ -143,7 +143,7 @@ TEST_CASE("friction of a material, a body and a collider can change while a bloc
 
 // Regression: with losses off, kernels leave both buffers of the spring strains alone, and every step swaps them. A
 // loaded world, whose buffers are equal, then had another state_hash in every other step.
-TEST_CASE("what elements have forgotten stays as it is once losses are off", "[scene]") {
+TEST_CASE("strains that elements have forgotten stay the same once losses are off", "[scene]") {
     MaterialSettings rubber{.young_modulus = 1e5};
     World world({.gravity = Vec3::Zero()});
     const MaterialHandle material = world.add_material(rubber);

@@ -73,7 +73,7 @@ TEST_CASE("a velocity that is set moves a collider as one that it was added with
     CHECK(final_height(true).first > 0.13);
 }
 
-TEST_CASE("what is moved to a pose within the next advance is there at its end, the shorter way round, and stands",
+TEST_CASE("a collider that is moved to a pose is there at the end of advance, on the shorter way, and then stops",
           "[scene]") {
     constexpr Real pi = std::numbers::pi;
     for (const bool mesh : {false, true}) {
@@ -147,7 +147,7 @@ TEST_CASE("an attachment is led by the velocity that is set, to a target and to 
     CHECK(world.state_hash() == before);
 }
 
-TEST_CASE("a teleport touches nothing on the way, and what it lands in is treated as at a start", "[scene]") {
+TEST_CASE("a teleport touches nothing on the way, and overlaps at its end are treated as at a start", "[scene]") {
     for (const bool mesh : {false, true}) {
         BallOnBox scene(weightless(), mesh);
         World& world = scene.world;
@@ -218,7 +218,7 @@ TEST_CASE("a target that is set again as it was changes no bit", "[scene][determ
     CHECK(hash_after(one.world, 0.0625) == hash_after(other.world, 0.0625));
 }
 
-TEST_CASE("what is refused is named and changes nothing", "[scene]") {
+TEST_CASE("refused calls name the object and change nothing", "[scene]") {
     BallOnBox scene;
     World& world = scene.world;
     REQUIRE(world.advance(0.01).ok());
@@ -235,7 +235,7 @@ TEST_CASE("what is refused is named and changes nothing", "[scene]") {
     CHECK(world.state_hash() == before);
 }
 
-TEST_CASE("a body at rest on a collider wakes when that is told to move", "[scene]") {
+TEST_CASE("a body at rest on a collider wakes when the collider gets a motion", "[scene]") {
     for (const bool mesh : {false, true})
         for (const Real speed : {0.1, -0.1}) {
             World world = tuned_world({.sleep_time = 0.1}, {.sleep_speed = 5e-3});

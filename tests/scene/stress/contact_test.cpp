@@ -88,7 +88,7 @@ TEST_CASE("a ball at 100 m/s does not go through a sheet of one layer", "[scene]
     }
 }
 
-TEST_CASE("what begins deep inside is pushed out gently", "[scene][stress]") {
+TEST_CASE("a body that starts deep inside another is pushed out gently", "[scene][stress]") {
     // The push moves the nodes that are inside, with push_speed at most, and elasticity moves the rest. A bar whose end
     // is moved at v gets a wave that brings it to v and returns from the far end with 2 v. A rigid body would leave at
     // v at most and without energy; a deformable one leaves at up to 2 v, with the energy of that speed.

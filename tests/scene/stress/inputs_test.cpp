@@ -243,7 +243,7 @@ TEST_CASE("colliders that are no numbers or out of range are refused by name", "
     judge_refusals("colliders", list);
 }
 
-TEST_CASE("values that are numbers but beyond what can be calculated with change nothing and name their body",
+TEST_CASE("finite values that are too large to compute with change nothing, and errors name their body",
           "[scene][stress]") {
     // Two separate bodies: an overflow in one must not affect the other.
     struct Case {

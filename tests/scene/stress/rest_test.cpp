@@ -237,7 +237,7 @@ TEST_CASE("a stack at rest does not notice its restitution", "[scene][stress]") 
     }
 }
 
-TEST_CASE("bodies that come and go do not touch a bit of what they have no contact with", "[scene][stress]") {
+TEST_CASE("adding and removing bodies changes no bit of bodies without contact with them", "[scene][stress]") {
     const auto run = [](bool change) {
         Settings settings;
         settings.step_size = 1e-4;  // equal steps in both runs, whatever bodies there are

@@ -53,7 +53,7 @@ void add_copies(ContactScene& scene, std::size_t count, int copies) {
 
 }  // namespace
 
-TEST_CASE("a hundred copies of every contact of two sheets do what one does", "[scene][solver][stress]") {
+TEST_CASE("a hundred copies of every contact of two sheets act like one copy", "[scene][solver][stress]") {
     ContactScene once, often;
     add_sheets(once, 6, 0.5, 2);
     add_sheets(often, 6, 0.5, 2);
@@ -71,7 +71,7 @@ TEST_CASE("a hundred copies of every contact of two sheets do what one does", "[
             1e-6);
 }
 
-TEST_CASE("without friction three rows a contact come to what one row does", "[scene][solver][stress]") {
+TEST_CASE("without friction three rows per contact give the result of one row", "[scene][solver][stress]") {
     ContactScene scene;
     for (int k = 0; k < 10; ++k) add_sheets(scene, 4 + k % 6, 0, static_cast<unsigned>(k));
     SolverSettings rows = tight(), vectors = tight();

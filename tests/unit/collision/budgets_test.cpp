@@ -147,7 +147,7 @@ TEST_CASE("budgets find exactly the contacts that a search of everything finds, 
     CHECK(thrifty.w.search.pair_searches * 3 < thorough.w.search.pair_searches);
 }
 
-TEST_CASE("what is held apart is looked for less far, and all contacts are found", "[unit]") {
+TEST_CASE("features that are held apart are searched within less distance, and all contacts are found", "[unit]") {
     // Balls swing above and below a plate that is thinner than the search depth behind a face.
     struct Swing {
         CollisionWorld w;

@@ -68,7 +68,7 @@ TEST_CASE("each vertex and each edge is owned once, by the lowest triangle that 
     CHECK(static_cast<Index>(edge_owner.size()) == b.ranges.edges.size());
 }
 
-TEST_CASE("faces, nodes and edges stand as sorting by comparison has them", "[unit]") {
+TEST_CASE("faces, nodes and edges have the order of sorting by comparison", "[unit]") {
     std::mt19937_64 random(2);
     for (const std::size_t count : {0, 1, 40, 300}) {
         // Not a valid mesh of a body: tetrahedra overlap, and faces belong to more than two of them.

@@ -94,7 +94,7 @@ struct Outlines {
 
 }  // namespace
 
-TEST_CASE("a body whose mesh came before has the rows that it would have by itself", "[unit]") {
+TEST_CASE("a body whose mesh is known has the rows that it would have by itself", "[unit]") {
     for (const test::SolidMesh& mesh : {test::ball_mesh(1, 4), test::box_mesh({1, 1, 1}, {1, 2, 3})}) {
         const auto count = static_cast<Index>(mesh.nodes.size());
         Outlines found, copied;

@@ -242,7 +242,7 @@ TEST_CASE("a pair that stays near keeps its list over a broad search, and one th
     CHECK(w.search.pair_searches == narrow);  // nothing else had moved
 }
 
-TEST_CASE("all pairs of what is new or forgotten are searched, and no others", "[unit]") {
+TEST_CASE("all pairs of new or forgotten bodies are searched, and no others", "[unit]") {
     CollisionWorld w;
     for (int i = 0; i < 4; ++i) w.add_solid(test::ball_mesh(1, 3), w.at({2.05 * i, 0, 1.02}), 0.02);
     w.add_collider(ColliderShape::plane, Vec3::Zero(), w.at(Vec3::Zero()));
@@ -297,7 +297,7 @@ TEST_CASE("all pairs of what is new or forgotten are searched, and no others", "
     CHECK(look(1, all) >= 9);
 }
 
-TEST_CASE("what is forgotten is looked at by velocities that it has now", "[unit]") {
+TEST_CASE("pairs of forgotten bodies are searched with their present velocities", "[unit]") {
     CollisionWorld w;
     const Index low = w.add_solid(test::ball_mesh(1, 3), w.at({0, 0, 0}), 0.02);
     const Index high = w.add_solid(test::ball_mesh(1, 3), w.at({0, 0, 2.3}), 0.02);
@@ -312,7 +312,7 @@ TEST_CASE("what is forgotten is looked at by velocities that it has now", "[unit
     CHECK(w.contacts.size() > 0);
 }
 
-TEST_CASE("a body's pair with itself leaves out neighbours and what is nearer than the contact distance at rest",
+TEST_CASE("the pair of a body with itself omits neighbours and features nearer than the contact distance at rest",
           "[unit]") {
     CollisionWorld w;
     // A flat body whose two faces are closer than the skin.

@@ -73,7 +73,7 @@ TEST_CASE("a point that would go through a face becomes a contact where it meets
     for (std::size_t i = 1; i < s.w.contacts.size(); ++i) CHECK(s.w.contacts.key[i - 1] < s.w.contacts.key[i]);
 }
 
-TEST_CASE("motions that cannot cross are not looked at, and what only slides along does not cross", "[unit]") {
+TEST_CASE("motions that cannot cross are not tested, and sliding features do not cross", "[unit]") {
     SpikeOverPlate slow(0.03);
     slow.move_spike({0, 0, -10});  // a third of the distance
     slow.w.find(h);
@@ -116,7 +116,7 @@ TEST_CASE("on the last try a crossing is let through, counted, and its pair over
     CHECK(s.w.pairs.state[0] == PairState::overlapping);
 }
 
-TEST_CASE("a pair that moves further than its list of candidates is good for stands against the step", "[unit]") {
+TEST_CASE("a pair that moves beyond the validity of its list of candidates prevents the step", "[unit]") {
     SpikeOverPlate s(0.03);
     s.w.find(h);
     s.move_spike({0, 0, 2000});  // away, into space that has not been searched
@@ -146,7 +146,7 @@ TEST_CASE("lists that were too short are made for the motion of the step, whatev
     CHECK(s.crossings() > 0);
 }
 
-TEST_CASE("what the nodes of a body drifted before takes nothing from a list that was searched for this step",
+TEST_CASE("earlier drift of the nodes of a body does not shorten the validity of a list searched for this step",
           "[unit]") {
     SpikeOverPlate s(0.03);
     s.w.body.displacement[s.plate] = 10;  // after a flight at constant velocity while its nodes swung [m]
@@ -210,7 +210,7 @@ TEST_CASE("two edges that would go through each other become a contact although 
     CHECK(std::find(w.contacts.key.begin(), w.contacts.key.end(), crossing->key) != w.contacts.key.end());
 }
 
-TEST_CASE("what find_contacts has looked at is all that a test of every feature finds to cross", "[unit][long]") {
+TEST_CASE("find_contacts tests all features that a test of every feature finds to cross", "[unit][long]") {
     // Balls near each other get a speed and then a change of it, smaller or larger than find_contacts accounts for.
     const Real change = GENERATE(Real(0.3), Real(120));
     CAPTURE(change);

@@ -42,7 +42,7 @@ TEST_CASE("eight boxes against one are as far as each of them alone, to the last
     CHECK(overlapping > 50);
 }
 
-TEST_CASE("empty lanes are near nothing, and what is not a number is near what it cannot be told from", "[unit]") {
+TEST_CASE("empty lanes are near nothing, and lanes with NaN are near all features", "[unit]") {
     constexpr Real infinite = std::numeric_limits<Real>::infinity(), nan = std::numeric_limits<Real>::quiet_NaN();
     const Aabb unit{Vec3::Zero(), Vec3::Ones()};
     LeafBoxes leaf = empty_leaf();

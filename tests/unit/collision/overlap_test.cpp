@@ -120,7 +120,7 @@ TEST_CASE("boxes that share a face, an edge or a corner only touch, wherever the
         }
 }
 
-TEST_CASE("boxes in a row, whose faces lie in the same planes, overlap by what they are too close", "[unit]") {
+TEST_CASE("boxes in a row, whose faces lie in the same planes, overlap by the missing distance", "[unit]") {
     for (Index cells : {1, 2, 5}) {
         const Solid box = solid_of(box_mesh({cells, cells, cells}, Vec3(1, 1, 1)));
         for (int axis = 0; axis < 3; ++axis) {
@@ -147,7 +147,7 @@ TEST_CASE("balls overlap by their depth along the line of their centres", "[unit
         }
 }
 
-TEST_CASE("what coincides, and what is inside or around, is told", "[unit]") {
+TEST_CASE("coincident, inner and enclosing solids are reported as overlaps", "[unit]") {
     for (Index cells : {1, 4}) {
         const Solid large = solid_of(box_mesh({cells, cells, cells}, Vec3(1, 1, 1))),
                     small = solid_of(box_mesh({cells, cells, cells}, Vec3(0.2, 0.2, 0.2)));
@@ -281,7 +281,7 @@ TEST_CASE("a box in every collider is found, outside by nothing it is not", "[un
     }
 }
 
-TEST_CASE("a tree over boxes finds what overlaps, and nothing that is not finite", "[unit]") {
+TEST_CASE("a tree over boxes finds all overlapping boxes, and none that is not finite", "[unit]") {
     Random random(4);
     std::vector<Aabb> boxes;
     for (int i = 0; i < 500; ++i) {

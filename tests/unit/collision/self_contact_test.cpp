@@ -108,7 +108,8 @@ std::set<std::uint64_t> features_within_reach(const RollingStrip& strip) {
 
 }  // namespace
 
-TEST_CASE("the candidates of a strip with itself include all features within reach, whatever the motion", "[unit]") {
+TEST_CASE("the candidates of a strip with itself include all features within reach, whatever the motion",
+          "[unit][long]") {
     RollingStrip strip;
     strip.steer(5.9, 0, 0);
     strip.w.drift(h);

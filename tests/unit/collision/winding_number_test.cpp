@@ -7,7 +7,7 @@
 
 namespace skerry::test::winding_number_test {
 
-TEST_CASE("the surface of a body goes once round what is within, and not round what is outside", "[unit]") {
+TEST_CASE("the surface of a body winds once around inner points, and not around outer points", "[unit]") {
     CollisionWorld world;
     world.add_solid(box_mesh({2, 3, 2}, {1, 2, 3}), CollisionWorld::at(Vec3::Zero()), 0.01);
     Random random{5};

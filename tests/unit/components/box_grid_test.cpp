@@ -48,7 +48,7 @@ std::size_t check_visits(const std::vector<Aabb>& boxes, const std::vector<Index
 
 }  // namespace
 
-TEST_CASE("of boxes of all sizes each two that meet are told of each other once", "[unit]") {
+TEST_CASE("of boxes of all sizes each pair that meets is reported once", "[unit]") {
     test::Random random(5);
     BoxGrid grid;  // one grid for all trials: nothing of earlier boxes may remain
     std::size_t meeting = 0;
@@ -81,7 +81,7 @@ TEST_CASE("boxes that share a face, an edge, a corner or a point meet", "[unit]"
     check_visits(boxes, rows, visits_of(grid, rows));
 }
 
-TEST_CASE("boxes that are left out are not told of", "[unit]") {
+TEST_CASE("omitted boxes are not reported", "[unit]") {
     const std::vector<Aabb> boxes(6, {Vec3::Zero(), Vec3::Ones()});
     const std::vector<Index> rows{1, 3, 4};
     BoxGrid grid;
@@ -89,7 +89,7 @@ TEST_CASE("boxes that are left out are not told of", "[unit]") {
     CHECK(visits_of(grid, rows) == Visits{{{1, 3}, 1}, {{1, 4}, 1}, {{3, 4}, 1}});
 }
 
-TEST_CASE("of boxes as large as their distance few are told that do not meet", "[unit]") {
+TEST_CASE("of boxes as large as their distance few pairs are reported that do not meet", "[unit]") {
     std::vector<Aabb> boxes;
     for (int x = 0; x < 12; ++x)
         for (int y = 0; y < 12; ++y)

@@ -51,7 +51,7 @@ std::string flags_of_memory(const void* at) {
 
 }  // namespace
 
-TEST_CASE("long columns ask for large pages, short ones do not", "[unit]") {
+TEST_CASE("long columns use large pages, short ones do not", "[unit]") {
     if (!std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled"))
         SUCCEED("this system has none");
     else {
@@ -88,7 +88,7 @@ TEST_CASE("erase keeps the order of the rows that are left", "[unit]") {
     REQUIRE(column.empty());
 }
 
-TEST_CASE("ranges that are erased at once leave what one by one they leave", "[unit]") {
+TEST_CASE("ranges erased at once leave the same rows as ranges erased one by one", "[unit]") {
     std::vector<Range> gone;
     for (const Range rows : {Range{1, 2}, Range{2, 2}, Range{2, 4}, Range{5, 6}, Range{9, 12}}) append_gone(rows, gone);
     REQUIRE(gone == std::vector<Range>{{1, 4}, {5, 6}, {9, 12}});

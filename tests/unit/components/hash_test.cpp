@@ -29,7 +29,7 @@ TEST_CASE("the hash is the published XXH3", "[unit]") {
     CHECK(hash_of({'a'}) == 0xe6c632b61e964e1full);
 }
 
-TEST_CASE("the hash does not depend on how the data were cut, and can be asked for in between", "[unit]") {
+TEST_CASE("the hash does not depend on the division of the data, and can be read in between", "[unit]") {
     const std::vector<unsigned char> bytes = some_bytes(5000);
     for (const std::size_t piece : {1, 7, 8, 64, 255, 256, 1000}) {
         INFO("pieces of " << piece);

@@ -52,7 +52,7 @@ TEST_CASE("lanes of eight reals fill one cache line", "[unit]") {
 }
 
 #ifndef SKERRY_NO_CHECKS
-TEST_CASE("a failed check says what and where", "[unit]") {
+TEST_CASE("a failed check reports condition and place", "[unit]") {
     const int rows = 3;
     REQUIRE_NOTHROW(SKERRY_CHECK(rows == 3));
     REQUIRE_THROWS_WITH(SKERRY_CHECK(rows == 4), Catch::Contains("rows == 4") && Catch::Contains("tables_test.cpp"));

@@ -42,7 +42,7 @@ TEST_CASE("the root of a set is its smallest index, whatever was joined in which
     }
 }
 
-TEST_CASE("sets are numbered in the order in which they are asked for", "[unit]") {
+TEST_CASE("sets are numbered in the order of the first query", "[unit]") {
     UnionFind sets;
     sets.start(6);
     sets.join(5, 1);

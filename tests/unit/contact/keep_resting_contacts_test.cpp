@@ -66,7 +66,7 @@ TEST_CASE("contacts are kept when all of their sides rest or stand still", "[uni
     CHECK(world.pairs_kept() == std::vector<std::uint64_t>{12, 100});
 }
 
-TEST_CASE("contacts are kept until a step looks at their pair", "[unit][contact]") {
+TEST_CASE("contacts are kept until a step tests their pair", "[unit][contact]") {
     World world;
     world.pair = {1, 12, 100};
     world.idle = {0, 0, 0};
@@ -101,7 +101,7 @@ TEST_CASE("contacts are kept until a step looks at their pair", "[unit][contact]
     CHECK(world.kept.empty());
 }
 
-TEST_CASE("contacts of a step and of what rests are shown in one order, each once", "[unit][contact]") {
+TEST_CASE("contacts of a step and of resting bodies are shown in one order, each once", "[unit][contact]") {
     World world;
     for (const std::uint64_t pair : {1, 1, 12, 100}) world.add(pair, 0, 1);
     RestingContactTable kept;

@@ -31,7 +31,7 @@ TEST_CASE("impulses follow their contacts when others appear and vanish", "[unit
     CHECK(matched == std::vector<Vec3>{{0, 0, 0}, {0, 0, 1}, {0, 0, 0}, {0, 1, 3}, {0, 0, 0}});
 }
 
-TEST_CASE("keys are told apart by the pair before the feature", "[unit][contact]") {
+TEST_CASE("keys differ by the pair before the feature", "[unit][contact]") {
     WarmStartTable last;
     store_warm_start(*serial,
                      {std::vector<ContactKey>{{1, 9}, {2, 3}}, std::vector<Vec3>(2, Vec3::UnitX()),
@@ -43,7 +43,7 @@ TEST_CASE("keys are told apart by the pair before the feature", "[unit][contact]
     CHECK(matched == std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}, {0, 0, 0}});
 }
 
-TEST_CASE("a contact that was not in the last step starts from what it came to rest with", "[unit][contact]") {
+TEST_CASE("a contact that was not in the last step starts from its impulse before rest", "[unit][contact]") {
     WarmStartTable last;
     const auto ups = [](std::size_t count) { return std::vector<Vec3>(count, Vec3::UnitZ()); };
     store_warm_start(
@@ -142,7 +142,7 @@ struct Stacked {
 
 }  // namespace
 
-TEST_CASE("what a contact that is gone carried goes to the nearest one of its pair", "[unit][contact]") {
+TEST_CASE("the impulse of a vanished contact goes to the nearest contact of its pair", "[unit][contact]") {
     Stacked before, after;
     for (std::uint64_t f : {1, 2, 3, 4, 5}) before.add(key(f), {0.1 * static_cast<Real>(f), 0, 0});
     before.add({9, 1}, {0.1, 0, 0});

@@ -322,7 +322,7 @@ TEST_CASE("the paper's Algorithm 1 goes wrong more often the more contacts there
     CHECK(wrong_of_100(100) > 80);
 }
 
-TEST_CASE("what a joint joins is one region, and what no contact touches one of its own", "[unit][regions]") {
+TEST_CASE("a joint makes one region of its bodies, also without contacts", "[unit][regions]") {
     // Bodies have two nodes each (0 1, 2 3, ...); joints name the first node of a body.
     const auto joining = [](Index first, Index second) {
         JointBlock block{};

@@ -86,7 +86,7 @@ TEST_CASE("speeds in a frame are those of nodes less its own", "[unit]") {
     CHECK(state.body_speed[0] == Approx(std::sqrt(3.25)));
 }
 
-TEST_CASE("what is not finite is found, the first body first", "[unit]") {
+TEST_CASE("values that are not finite are found, in the first body first", "[unit]") {
     for (Real bad : {not_a_number, unbounded, -unbounded, 1e200}) {
         State state;
         state.next[570].y() = bad;
@@ -279,7 +279,7 @@ struct TrembleState {
 
 }  // namespace
 
-TEST_CASE("what deforms too fast is an element, and the fastest tetrahedron is blamed", "[unit]") {
+TEST_CASE("an element that deforms too fast is found, and the report names the fastest tetrahedron", "[unit]") {
     TrembleState tetrahedra(ElementKind::linear), edges(ElementKind::edge_smoothed);
     const auto [of_tetrahedra, fastest] = tetrahedra.fastest();
     const Real of_edges = edges.fastest().first;

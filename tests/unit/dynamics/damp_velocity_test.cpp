@@ -197,7 +197,7 @@ TEST_CASE("places that turn on while velocities lag behind are rigid motion", "[
     CHECK(excess_with_lag(0) > 0.1);  // outward velocity omega^2 r h / 2, of which damping removed a part
 }
 
-TEST_CASE("what is not rigid motion decays at the given rate", "[unit]") {
+TEST_CASE("motion other than rigid decays at the given rate", "[unit]") {
     const auto executor = make_executor(Backend::serial, 1);
     Cloud cloud;
     cloud.add({Vec3(-1, 0, 0), Vec3(1, 0, 0)}, {Vec3(-1, 0, 0), Vec3(1, 0, 0)}, 1);

@@ -94,7 +94,7 @@ struct Loose {
 
 }  // namespace
 
-TEST_CASE("what turns inside out is found, as by looking at every element in every step", "[unit][long]") {
+TEST_CASE("inverted elements are found as by testing every element in every step", "[unit][long]") {
     for (const int workers : {1, 4}) {
         std::mt19937_64 random(7);
         std::normal_distribution<Real> kick(0, 1);

@@ -70,7 +70,7 @@ TEST_CASE("one node that moves otherwise by the last bit ends it", "[unit]") {
         }
 }
 
-TEST_CASE("what is strained, turned, mirrored or not a number is not unstrained", "[unit]") {
+TEST_CASE("a strained, rotated, mirrored or NaN body is not unstrained", "[unit]") {
     Flight body;
     SECTION("one node a little away") {
         body.position[20].y() += 1e-10;
@@ -97,7 +97,7 @@ TEST_CASE("what is strained, turned, mirrored or not a number is not unstrained"
     CHECK_FALSE(body.find());
 }
 
-TEST_CASE("what is taken to be unstrained is looked at again in the end", "[unit]") {
+TEST_CASE("bodies taken to be unstrained are finally tested again", "[unit]") {
     Flight body;
     REQUIRE(body.find());
     body.position[20].y() += 1e-3;  // this change is not announced
@@ -105,7 +105,7 @@ TEST_CASE("what is taken to be unstrained is looked at again in the end", "[unit
     CHECK_FALSE(body.find());
 }
 
-TEST_CASE("elements of what becomes unstrained remember for the next step what they remember now", "[unit]") {
+TEST_CASE("elements of a body that becomes unstrained keep their state for the next step", "[unit]") {
     Flight body;
     for (ElementRotation& rotation : body.elements.rotation_next) rotation = {};
     for (SpringStrain& strain : body.elements.spring_strain_next) strain[0].lane[0] = 1;

@@ -170,7 +170,7 @@ TEST_CASE("the bound in a frame is the highest eigenvalue of stiffness over mass
     }
 }
 
-TEST_CASE("a body whose elements turn against each other goes by forms", "[unit]") {
+TEST_CASE("a body of elements that rotate against each other uses mass forms", "[unit]") {
     ElasticBody body(jittered_box({12, 2, 2}, 0.1, 0.1, 3),
                      material_constants(MaterialModel::stable_neo_hookean, 1e5, 0.4, 1000));
     find_forms(body);
@@ -185,7 +185,7 @@ TEST_CASE("a body whose elements turn against each other goes by forms", "[unit]
     CHECK(twisted == test::stable_step_of(body));
 }
 
-TEST_CASE("what relaxes counts in the step in a frame", "[unit]") {
+TEST_CASE("relaxing springs shorten the step in a frame", "[unit]") {
     MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1e5, 0.4, 1000);
     material.loss_factor = 0.1;
     for (const ElementKind kind : test::element_kinds) {

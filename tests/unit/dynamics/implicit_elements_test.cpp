@@ -124,7 +124,7 @@ Matrix by_component(const Matrix& by_node) {
 
 }  // namespace
 
-TEST_CASE("with clusters the exact highest frequency stands the step", "[unit][clusters][long]") {
+TEST_CASE("with clusters the exact highest frequency is stable at the step", "[unit][clusters][long]") {
     const auto kind = GENERATE(ElementKind::linear, ElementKind::edge_smoothed, ElementKind::edge_node_smoothed);
     const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
     INFO(name_of(kind) << ", " << name_of(model));
@@ -148,8 +148,7 @@ TEST_CASE("with clusters the exact highest frequency stands the step", "[unit][c
     CHECK(highest < of_masses);
 }
 
-TEST_CASE("mass forms without implicit elements let the others stand more, and the exact highest frequency does",
-          "[unit][clusters]") {
+TEST_CASE("mass forms without implicit elements lengthen the step, within the exact limit", "[unit][clusters]") {
     const auto kind = GENERATE(ElementKind::edge_smoothed, ElementKind::edge_node_smoothed);
     const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
     INFO(name_of(kind) << ", " << name_of(model));
@@ -178,7 +177,7 @@ TEST_CASE("clusters have the inverse of the inertia that implicit elements add",
     CHECK((product - Matrix::Identity(product.rows(), product.cols())).cwiseAbs().maxCoeff() < 1e-10);
 }
 
-TEST_CASE("an element that stiffens raises its part of the inverse, and what is needed is known", "[unit][clusters]") {
+TEST_CASE("an element that stiffens raises its part of the inverse, with the needed stiffness", "[unit][clusters]") {
     SliverBox box(MaterialModel::stable_neo_hookean, ElementKind::edge_node_smoothed, 3);
     const Column<ElementLane> before = box.body.elements.implicit_modulus;
     const std::vector<std::uint8_t> asleep{0}, resting{1};

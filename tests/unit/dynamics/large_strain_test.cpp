@@ -287,7 +287,7 @@ TEST_CASE("a step of large strain is solved, held or free, crushed or not", "[dy
     CHECK(std::sqrt(missing / kick) < 1e-2);
 }
 
-TEST_CASE("what is not finite has no step of large strain", "[dynamics][implicit]") {
+TEST_CASE("a body that is not finite has no step of large strain", "[dynamics][implicit]") {
     const ElasticBody body = rubber(MaterialModel::stable_neo_hookean);
     StiffBody stiff = stiff_body_of(body);
     std::vector<Vec3> velocity(stiff.size(), Vec3::Zero());
@@ -297,7 +297,7 @@ TEST_CASE("what is not finite has no step of large strain", "[dynamics][implicit
     CHECK(!solve_large_step(1, 0.01, stiff));
 }
 
-TEST_CASE("that strain becomes large is seen by bounds as by looking each time", "[dynamics][implicit]") {
+TEST_CASE("bounds find large strain as a test in each step does", "[dynamics][implicit]") {
     const auto model = GENERATE(from_range(std::begin(test::material_models), std::end(test::material_models)));
     const ElasticBody body = rubber(model);
     StiffBody stiff = stiff_body_of(body);

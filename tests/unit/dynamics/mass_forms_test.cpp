@@ -121,7 +121,7 @@ TEST_CASE("mass forms turn with nothing and make the step of smoothed elements a
     CHECK(test::stable_step_of(body) == Approx(by_forms).epsilon(0.003));  // tolerance of the bisection
 }
 
-TEST_CASE("what relaxes counts in the step by mass forms", "[unit]") {
+TEST_CASE("relaxing springs shorten the step by mass forms", "[unit]") {
     MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1e5, 0.4, 1000);
     material.loss_factor = 0.1;
     ElasticBody body(jittered_box({4, 3, 3}, 0.1, 0.1, 5), material, Mat3::Identity(), ElementKind::edge_node_smoothed);
@@ -134,7 +134,7 @@ TEST_CASE("what relaxes counts in the step by mass forms", "[unit]") {
 
 // Springs count by 2 / (2 + h r). Most elements are only compared with the step that others allow. No element that is
 // unstable at that step may pass.
-TEST_CASE("the step that is found is one that all elements stand as they relax in it", "[unit][long]") {
+TEST_CASE("all elements are stable at the found step, in which their springs relax", "[unit][long]") {
     MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1e5, 0.4, 1000);
     material.loss_factor = 0.1;
     for (const ElementKind kind : test::element_kinds)

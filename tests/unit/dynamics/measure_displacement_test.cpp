@@ -74,7 +74,7 @@ TEST_CASE("no node comes further than the growth of travel and twice the displac
     REQUIRE(cloud.travel[0] > 0.5);
 }
 
-TEST_CASE("a body that flies does not travel in its frame, whose way is that of the body", "[unit]") {
+TEST_CASE("a flying body does not travel in its frame, whose path is that of the body", "[unit]") {
     Cloud cloud;
     const Vec3 speed(3, -1, 2);
     std::ranges::fill(cloud.velocity, speed);

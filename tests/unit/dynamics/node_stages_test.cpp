@@ -166,7 +166,7 @@ TEST_CASE("a drift without a push-out has the bits of one with a push-out of zer
     }
 }
 
-TEST_CASE("the largest length is found among any number of vectors, and what is not finite shows", "[unit]") {
+TEST_CASE("the largest length is found among any number of vectors, and values that are not finite show", "[unit]") {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<Real> uniform(-1, 1);
     for (const std::size_t count : {0u, 1u, 2u, 7u, 8u, 9u, 100u, 256u}) {

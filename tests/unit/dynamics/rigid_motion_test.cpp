@@ -81,7 +81,7 @@ TEST_CASE("a wing nut turns over in the time that elliptic functions give", "[dy
     CHECK(turns[4] - turns[0] == Approx(2 * period).epsilon(1e-3));
 }
 
-TEST_CASE("what rounding has strained is a rotation again", "[dynamics][rigid]") {
+TEST_CASE("a rotation strained by rounding becomes a rotation again", "[dynamics][rigid]") {
     const Mat3 rotation = rotation_matrix({0.4, -0.2, 0.1});
     const Mat3 strained = rotation * (Mat3::Identity() + 1e-7 * Mat3::Ones());
     const Mat3 again = without_strain(strained);

@@ -176,7 +176,7 @@ TEST_CASE("an implicit body that is held responds as the matrix of its free node
     CHECK(std::ranges::equal(stiff.column(7), never.column(7)));
 }
 
-TEST_CASE("responses of touched nodes are the columns of those nodes, whatever was asked for before",
+TEST_CASE("responses of touched nodes are the columns of those nodes, whatever was computed before",
           "[dynamics][implicit]") {
     const ElasticBody body(jittered_box({2, 2, 2}, 0.1, 0.2, 2), stiff_rubber());
     StiffBody stiff = stiff_body_of(body);

@@ -63,7 +63,7 @@ TEST_CASE("an estimate of the implicit volume leaves mass shares and moduli as t
     CHECK(std::ranges::equal(modulus, moduli, equal));
 }
 
-TEST_CASE("where forces say that elements stiffen is all that a look at every element finds", "[unit][clusters]") {
+TEST_CASE("bounds by forces find all elements that stiffen, as a test of every element does", "[unit][clusters]") {
     const auto kind = GENERATE(ElementKind::linear, ElementKind::edge_node_smoothed);
     INFO(name_of(kind));
     SliverBox box(kind), twin(kind);
@@ -112,8 +112,7 @@ TEST_CASE("where forces say that elements stiffen is all that a look at every el
 
 // If a stiffening element kept its velocity, its energy would double each time, and knots of a mesh would reach 1e5
 // times their inertia. Therefore the momentum is kept.
-TEST_CASE("elements that stiffen are deformed with the momentum that they had, and what that takes is booked",
-          "[unit][clusters]") {
+TEST_CASE("elements that stiffen keep their momentum, and the lost energy is recorded", "[unit][clusters]") {
     constexpr Real kick = 1e-4;
     SliverBox box(ElementKind::edge_node_smoothed);
     const auto executor = make_executor(Backend::serial, 1);
@@ -200,8 +199,7 @@ TEST_CASE("elements that stiffen are deformed with the momentum that they had, a
     CHECK(after - before == Approx(brought - taken).epsilon(1e-9));
 }
 
-TEST_CASE("whether elements are less stiff than they are taken to be is what the bound on their stiffness says",
-          "[unit][clusters]") {
+TEST_CASE("the bound on the stiffness decides whether elements are softer than assumed", "[unit][clusters]") {
     constexpr Real looseness = 1.16;  // ratio to the bound: 9^(1/16)
     SliverBox box(ElementKind::edge_node_smoothed);
     const ElementInputs inputs = box.body.inputs();

@@ -58,11 +58,11 @@ TEST_CASE("the step of a body that is strained in places is below the limit", "[
         for (const MaterialModel model : test::material_models)
             for (const Real pressed : {0.0, 0.3, 0.6, -0.6})
                 for (const Real moved : {0.0, 0.25}) {
-                    ElasticBody body(jittered_box({5, 3, 3}, 0.1, 0.1, 12), material_constants(model, 1e5, 0.4, 1000),
+                    ElasticBody body(jittered_box({4, 3, 3}, 0.1, 0.1, 12), material_constants(model, 1e5, 0.4, 1000),
                                      Mat3::Identity(), kind);
                     find_forms(body);
                     const Real at_rest = test::stable_step_of(body);
-                    press_middle(body, {0.5, 0.3, 0.3}, pressed);
+                    press_middle(body, {0.4, 0.3, 0.3}, pressed);
                     std::mt19937_64 random(13);
                     for (Vec3& x : body.position) x += 0.1 * moved * test::random_vector(random);
                     const Real limit = test::exact_limit(body), stands = test::stable_step_of(body);
@@ -133,7 +133,7 @@ TEST_CASE("elements of clusters take no part in the step of a strained body", "[
     CHECK(strained_step_of(body, at_rest, 0.5 * at_rest) == Approx(all_asked));
 }
 
-TEST_CASE("what has no mass bounds no step of a strained body", "[unit]") {
+TEST_CASE("elements without mass do not limit the step of a strained body", "[unit]") {
     ElasticBody body(jittered_box({4, 3, 3}, 0.1, 0.1, 5),
                      material_constants(MaterialModel::stable_neo_hookean, 1e5, 0.4, 1000), Mat3::Identity(),
                      ElementKind::edge_node_smoothed);
@@ -148,7 +148,7 @@ TEST_CASE("what has no mass bounds no step of a strained body", "[unit]") {
     CHECK(held <= at_rest / std::sqrt(1.1));
 }
 
-TEST_CASE("a strained body that is not finite stands no step", "[unit]") {
+TEST_CASE("a strained body that is not finite has the stable step zero", "[unit]") {
     ElasticBody body(jittered_box({2, 2, 2}, 0.1, 0, 1), material_constants(MaterialModel::linear, 1e5, 0.3, 1000));
     find_forms(body);
     body.position[0].x() = std::numeric_limits<Real>::quiet_NaN();

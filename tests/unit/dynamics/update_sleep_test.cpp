@@ -90,22 +90,21 @@ std::optional<Real> rests(Real edge, Real seconds, const std::function<Real(Real
 
 }  // namespace
 
-TEST_CASE("what does not move rests after the time that is asked for, what swings within the limits does, too",
-          "[unit]") {
+TEST_CASE("a body without motion rests after sleep_time, and so does one that swings within the limits", "[unit]") {
     const auto still = rests(0.02, 1, [](Real) { return 0.0; });
     REQUIRE(still);
     CHECK(*still == Approx(time_still).margin(2 * h));
     CHECK(rests(0.02, 1, [](Real t) { return 2e-5 * std::sin(40 * t); }));
 }
 
-TEST_CASE("what is fast, or comes far slowly, is not still", "[unit]") {
+TEST_CASE("a body that is fast, or goes far slowly, is not still", "[unit]") {
     // oscillates with amplitude 3 um at 6 mm/s, where 4.4 mm/s are allowed
     CHECK_FALSE(rests(0.02, 3, [](Real t) { return 3e-6 * std::sin(2000 * t); }));
     // moves as a whole by 5e-3 edges in half of the time, at 0.4 mm/s
     CHECK_FALSE(rests(0.02, 3, [](Real t) { return 4e-4 * t; }));
 }
 
-TEST_CASE("what goes on at one speed is not still down to the noise, whether it trembles or not", "[unit]") {
+TEST_CASE("a body at constant speed is not still, down to the noise, whether it trembles or not", "[unit]") {
     constexpr Real edge = 0.02;                         // [m]
     for (const Real speed : {12e-3, 1e-3, 1e-4}) {      // speeds [edges/s]
         for (const Real tremble : {0.0, speed / 80}) {  // amplitude [edges]; the motion between samples is 2.5 times it
@@ -118,7 +117,7 @@ TEST_CASE("what goes on at one speed is not still down to the noise, whether it 
     CHECK(rests(edge, 3, [](Real t) { return 0.9 * 8e-5 * edge * t; }));
 }
 
-TEST_CASE("what begins to slide is not still though it has hardly moved", "[unit]") {
+TEST_CASE("a body that begins to slide is not still even if it has hardly moved", "[unit]") {
     const Real edge = 1;  // the motion in the second quarter of a second is two thirds of the limit [m]
     CHECK_FALSE(rests(edge, 5, [](Real t) { return 0.02 * t * t / 2; }));
     CHECK_FALSE(rests(edge, 5, [](Real t) { return 1e-5 * (std::exp(4 * t) - 1); }));
@@ -127,7 +126,7 @@ TEST_CASE("what begins to slide is not still though it has hardly moved", "[unit
     CHECK(rests(edge, 5, [](Real t) { return 1.9e-4 * t * t / 2; }));
 }
 
-TEST_CASE("an oscillation that is back at evenly spread looks is seen", "[unit]") {
+TEST_CASE("an oscillation that returns at evenly spread checks is recognised", "[unit]") {
     const Real edge = 0.002, period = time_still / 2 / own_sleep_limits::looks;
     // 8 um peak to peak, where 6 are allowed; speed 0.8 mm/s, where 1.4 are allowed
     CHECK_FALSE(rests(edge, 3, [&](Real t) { return 4e-6 * std::cos(2 * std::numbers::pi * t / period); }));
@@ -169,7 +168,7 @@ TEST_CASE("a shape rests near to its place: half a percent of its deflection whe
     CHECK_FALSE(left_at_rest(9.81, [](Real t) { return 0.02 * shape * std::sin(40 * t); }));
 }
 
-TEST_CASE("what is slow since it is damped is not at rest", "[unit]") {
+TEST_CASE("a body that damping slows down is not at rest", "[unit]") {
     const auto way = [](Real t) { return 4e-6 * std::sin(40 * t); };  // motion of 8e-6 m in a half of the time
     CHECK(Alone(own_limits, 0.1, true, 40).rests(3, way));
     CHECK_FALSE(Alone(own_limits, 0.1, true, 2500).rests(3, way));  // 2500/s 8e-6 m/0.25 s is 8e-3 of gravity
@@ -193,7 +192,7 @@ TEST_CASE("the distance of shapes knows no rigid motion", "[unit]") {
     CHECK(shape_distance(std::span(shape).first(1), std::span(moved).first(1)) == 0);
 }
 
-TEST_CASE("what moves is not put to rest where no time is asked for", "[unit]") {
+TEST_CASE("without a sleep time no moving body rests", "[unit]") {
     SleepSettings at_once{.speed = 1e-3, .own_limits = false, .time = 0, .gravity = 9.81};
     CHECK_FALSE(Alone(at_once, 0.02).rests(0.1, [](Real t) { return t; }));
     CHECK(Alone(at_once, 0.02).rests(0.1, [](Real) { return 0.0; }) == std::optional<Real>(h));

@@ -3,10 +3,11 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <list>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <numeric>
+#include <optional>
 #include <thread>
 
 #include "engine/live/live_run.h"

@@ -159,7 +159,7 @@ TEST_CASE("aligned or nested shells that overlap are refused, and shells that on
     CHECK_NOTHROW(mesh::require_shells(mesh::weld(both(box, moved(box, {1, 0, 0})), 0), "part", false));
 }
 
-TEST_CASE("boundary triangles look outwards", "[unit]") {
+TEST_CASE("boundary triangles face outwards", "[unit]") {
     const SurfaceMesh surface = mesh::boundary(mesh::box({1, 1, 1}, {3, 2, 2}));
     Real volume = 0;  // by the divergence theorem
     for (const auto& t : surface.triangles) {

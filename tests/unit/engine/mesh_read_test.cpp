@@ -393,7 +393,7 @@ TEST_CASE("equal corners of an STL are one node, and triangles without three are
     CHECK(surface.triangles.size() == 1);
 }
 
-TEST_CASE("an STL that is empty, flat or something else is refused for what it is", "[unit]") {
+TEST_CASE("an STL file that is empty, flat or of another kind is refused, and the error names the fault", "[unit]") {
     const TemporaryFolder folder;
     CHECK_THROWS_WITH(mesh::read_surface(folder.write("a.stl", "")), Contains("found an empty file"));
     CHECK_THROWS_WITH(mesh::read_surface(folder.write("b.stl", "garbage")),
@@ -414,7 +414,7 @@ TEST_CASE("a file that is not there, or is a folder, is refused", "[unit]") {
     CHECK_THROWS_WITH(mesh::read(inner), Contains("found a folder or device"));
 }
 
-TEST_CASE("meshes of other programs load, and malformed ones are refused for what is wrong with them", "[unit]") {
+TEST_CASE("meshes of other programs load, and errors of malformed ones name the fault", "[unit]") {
     const std::optional<std::filesystem::path> given = meshes_of_others();
     if (!given) return;
     const std::filesystem::path& folder = *given;

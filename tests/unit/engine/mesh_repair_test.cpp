@@ -165,7 +165,7 @@ TEST_CASE("knots of a ball go within the tolerance, and no further", "[unit]") {
     CHECK(last > 2 * before);
 }
 
-TEST_CASE("what is not flat is not touched, and the smallest closed surface stays", "[unit]") {
+TEST_CASE("triangles that are not flat stay, and so does the smallest closed surface", "[unit]") {
     const SurfaceMesh box = unit_box(3);
     const mesh::ThinnedSurface same = mesh::thin_knots(box, {.tolerance = 1, .altitude = 0.1});
     CHECK(same.surface.nodes == box.nodes);

@@ -207,7 +207,7 @@ TEST_CASE("sizes that are not positive and meshes too large to index are refused
                       "indices have 32 bits");
 }
 
-TEST_CASE("what draws a sphere begins with its middle and corners around it, and lies on it", "[unit]") {
+TEST_CASE("the drawn mesh of a sphere begins with its middle and corners around it, and lies on it", "[unit]") {
     const Mesh picture = mesh::sphere_picture(2);
     CHECK(picture.nodes.size() == 163);
     CHECK(picture.tetrahedra.size() == 320);

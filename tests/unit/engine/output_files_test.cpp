@@ -32,8 +32,7 @@ std::string content(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("a file is replaced as a whole, and what fails on the way leaves the old one and nothing beside it",
-          "[unit][output]") {
+TEST_CASE("a file is replaced as a whole, and a failure leaves the old file and nothing beside it", "[unit][output]") {
     const TemporaryFolder folder;
     const fs::path file = folder.path() / "made" / "on" / "demand.txt";
     write_file(file, [](std::ostream& out) { out << "first"; });
@@ -53,7 +52,7 @@ TEST_CASE("a file is replaced as a whole, and what fails on the way leaves the o
     CHECK(count_files(folder, ".part") == 0);
 }
 
-TEST_CASE("a folder that cannot be made is named, with what was found and what was expected", "[unit][output]") {
+TEST_CASE("a folder that cannot be made is named, with the error found", "[unit][output]") {
     const TemporaryFolder folder;
     const fs::path file = folder.path() / "plain_file";
     std::ofstream(file) << "not a folder";

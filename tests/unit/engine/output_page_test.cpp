@@ -105,7 +105,7 @@ TEST_CASE("a wider scale halves codes by each factor of four", "[unit][output]")
     CHECK(shifted(code, -255, 511) == 0);
 }
 
-TEST_CASE("points on a lattice are right to half a step, and what is not finite stays where it was", "[unit][output]") {
+TEST_CASE("points on a lattice are right to half a step, and points that are not finite stay", "[unit][output]") {
     const std::vector<Vec3> points{{-1, 5, 3}, {2, 5, not_a_number}, {0.123, 5, -4}, {infinity, 0, 0}};
     const Lattice lattice = Lattice::around(points);
     CHECK(lattice.origin == Vec3(-1, 5, -4));
@@ -181,8 +181,7 @@ TEST_CASE("packed frames give back places to half a step and values to half a co
     }
 }
 
-TEST_CASE("packed contacts give back what touches, where, how strongly, and which row they had before",
-          "[unit][output]") {
+TEST_CASE("packed contacts give back bodies, places, strengths and earlier rows", "[unit][output]") {
     OutputSample sample(3, 2, 60);
     PageData data;
     for (int i = 0; i < 60; ++i) data.add(sample.frame(i));

@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
     // A live page, and by frame the new objects and the bytes that a server sends to it. Expected values: position of
     // node 1 of the first body, sums of the points and forces of all contacts.
     std::ofstream(folder / "live.html") << live_page();
-    OutputSample live(3, 1, 30);
+    OutputSample live(3, 2, 60);
     PageStream stream;
     PageCounts known;
     Json sent = Json::array();

@@ -74,8 +74,7 @@ TEST_CASE("a bucket is drawn with its floor at zero and its wall outside of the 
     CHECK(has_floor);
 }
 
-TEST_CASE("the picture of a plane is the square of z = 0 around the foot of what is shown, facing up",
-          "[unit][output]") {
+TEST_CASE("the picture of a plane is the square of z = 0 below the middle of the scene, facing up", "[unit][output]") {
     const SurfaceMesh mesh =
         shape_picture(Plane{.normal = {1, 1, 1}, .point = {5, 5, 5}}, {.center = {2, 3, 7}, .half_size = 4});
     Vec3 lower = mesh.nodes[0], upper = lower;

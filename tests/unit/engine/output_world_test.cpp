@@ -179,7 +179,7 @@ TEST_CASE("a rigid body without tetrahedra is written as the triangles of its su
     CHECK(text.find(types) != std::string::npos);
 }
 
-TEST_CASE("contacts of the page name both bodies, or the collider, and carry what lies on them", "[unit][output]") {
+TEST_CASE("contacts of the page name both bodies or the collider, and have all their values", "[unit][output]") {
     BodyHandle lower;
     World world = box_on_floor(lower);
     world.add_body(mesh::box({0.08, 0.08, 0.08}, {2, 2, 2}),

@@ -304,7 +304,7 @@ TEST_CASE("joints, ties, rollers and cables are eliminated from problems, and th
     add(1, high, soft);  // lies on the tied body, so that their regions are one
     Ties ties(world);
     ties.add({.body = tied, .nodes = {0}});
-    ties.add({.body = hung, .nodes = {4}});
+    ties.add({.kind = TieKind::ball, .body = hung, .nodes = {0, 1, 2, 3, 4}});
     const BodyHandle plate =
         world.add_body(mesh::box({0.2, 0.2, 0.02}, {1, 1, 1}),
                        {.material = rubber, .position = {6, 0, high + 0.062}, .dynamics = BodyDynamics::rigid});

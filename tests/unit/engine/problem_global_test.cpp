@@ -133,7 +133,7 @@ TEST_CASE("a body of many contacts is condensed in batches as if at once", "[uni
         for (int c = 0; c < 3 * contacts; c += 5) CHECK(entry(problem, r, c) == Approx(w(r, c)).margin(1e-12));
 }
 
-TEST_CASE("every malformed global file is refused by name of what is wrong", "[unit][problem]") {
+TEST_CASE("every malformed global file is refused, and the error names the fault", "[unit][problem]") {
     const auto spoil = [](const std::function<void(FclibFile&)>& change) {
         FclibFile file = global_file();
         change(file);

@@ -38,7 +38,7 @@ TEST_CASE("rows and triplets are read like columns", "[unit][problem]") {
     }
 }
 
-TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][problem]") {
+TEST_CASE("every malformed file is refused, and the error names the fault", "[unit][problem]") {
     const auto spoil = [](const std::function<void(FclibFile&)>& change) {
         FclibFile file = local_file();
         change(file);
@@ -105,7 +105,7 @@ std::string refusal_of_empty_q(hid_t type, hsize_t size) {
 
 }  // namespace
 
-TEST_CASE("a data set that claims more than its file can hold is refused before memory is asked for",
+TEST_CASE("a data set that claims more than its file can contain is refused before memory is allocated",
           "[unit][problem]") {
     CHECK_THAT(refusal_of_empty_q(H5T_NATIVE_DOUBLE, 2000000000),
                Catch::Contains("2000000000 values, expected a number of values that fits the size of the file"));

@@ -117,7 +117,7 @@ TEST_CASE("a written problem is the problem, bit for bit, and so are its bytes",
     CHECK(bytes_of(path) == bytes);
 }
 
-TEST_CASE("what cannot be written is refused and leaves what was there", "[unit][problem]") {
+TEST_CASE("errors of writing leave the earlier file", "[unit][problem]") {
     const TemporaryFolder folder;
     const fs::path path = folder.write("old.hdf5", "old");
     ContactProblem problem = read_back(local_file());

@@ -30,12 +30,15 @@ class ProgramInspectTest(ProgramCase):
         material = body["material"]
         scene = self.write("joined.json", {
             **SCENE, "probes": [], "bodies": [body], "pairs": [{"materials": [material, material], "friction": 0.2}],
-            "loads": [{"kind": "gravity", "scale": 0.5}],
+            "loads": [{"name": "weight", "kind": "gravity", "scale": 0.5}],
+            "sliders": [{"name": "moon", "load": "weight", "low": 0, "high": 1}],
             "springs": [{"first": {"body": "pad"}, "second": {"point": [0, 0, 1]}, "stiffness": 1}]})
         text = self.skerry("inspect", scene).stdout
         self.assertIn(" colliders, 1 loads, 1 springs, 1 pairs of materials, 1 surface sets\n  step ", text)
         found = json.loads(self.skerry("inspect", scene, "--json").stdout)
         self.assertEqual([found[key] for key in ("pipes", "loads", "springs", "pairs", "surfaces")], [0, 1, 1, 1, 1])
+        self.assertIn("  slider        moon: from 0 to 1\n", text)
+        self.assertEqual(found["sliders"], [{"name": "moon", "unit": "1", "value": 0.5, "low": 0, "high": 1}])
 
     def test_inspect_knows_rigid_bodies(self):
         rigid = {**SCENE["bodies"][0], "name": "stone", "dynamics": "rigid", "position": [0, 0, 3]}

@@ -61,8 +61,7 @@ std::vector<std::string> lines_of(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("rows of a recorder are what the world says at multiples of a time, impulses the sums between them",
-          "[unit]") {
+TEST_CASE("rows of a recorder have values at multiples of a time, and sums of impulses between them", "[unit]") {
     Swing swing;
     World& world = swing.world;
     Recorder recorder(world, swing.probes(), 0.05);
@@ -206,7 +205,7 @@ TEST_CASE("a stream goes on with the whole rows of its file up to a time, of the
     CHECK(lines_of(file).size() == 1 + 4);
 }
 
-TEST_CASE("a point inside of a body follows its material, one outside of it is refused by what is near", "[unit]") {
+TEST_CASE("a point inside a body follows its material, and an outer point is refused with the nearest body", "[unit]") {
     Swing swing;
     const Vec3 place(0.033, 0.012, 0.487);
     const PointProbe point = probe_point(swing.world, swing.bar, place);
@@ -220,7 +219,7 @@ TEST_CASE("a point inside of a body follows its material, one outside of it is r
                       Catch::Contains("(3, 0, 0) m") && Catch::Contains("the nearest node is"));
 }
 
-TEST_CASE("bad probes are refused by name, field, what was found and what was expected", "[unit]") {
+TEST_CASE("bad probes are refused by name, field, value found and value expected", "[unit]") {
     Swing swing;
     World& world = swing.world;
     const auto refused = [&](const RecordedProbe& probe, const char* said) {

@@ -260,7 +260,7 @@ TEST_CASE("a force on a body accelerates its centre of mass and does not rotate 
     for (const std::size_t angle : {3, 4, 5}) CHECK(std::abs(result.series[1].values[2 * 6 + angle]) < 1e-12);
 }
 
-TEST_CASE("a world whose step is refused ends with a reason and rows of NaN, and the others go on", "[unit]") {
+TEST_CASE("a world whose step is refused ends with a reason and rows of NaN, and the others continue", "[unit]") {
     const Yard yard;
     constexpr std::size_t worlds = 4, intervals = 6;
     std::vector<Real> force(worlds * intervals * 3, 0);

@@ -94,7 +94,7 @@ TEST_CASE("materials of tetrahedra are found by the labels of the mesh", "[unit]
     CHECK(scene.world.mass(scene.world.bodies()[0]) == Approx(1000.0 / 6 + 8000.0 / 3));
 }
 
-TEST_CASE("labels and materials that are not there are named with what is", "[unit]") {
+TEST_CASE("errors about unknown labels and materials list the known ones", "[unit]") {
     const auto refusal = [](const std::string& materials) {
         const TemporaryFolder folder;
         return message_of([&] { plan_scene(labelled_scene(folder, materials)); });
@@ -271,7 +271,7 @@ TEST_CASE("joints of a scene join its bodies by name", "[unit]") {
     CHECK(joints.state(joints.all()[0]).speed > 0);
 }
 
-TEST_CASE("joints of what is not there, or cannot be, are refused where they stand", "[unit]") {
+TEST_CASE("joints of unknown objects, or invalid joints, are refused with their place in the file", "[unit]") {
     const TemporaryFolder folder;
     const auto refused = [&](const std::string& keys, const std::string& what) {
         CHECK_THROWS_WITH(load_scene(folder.write("joint.json", jointed_scene(keys))), Catch::Contains(what));

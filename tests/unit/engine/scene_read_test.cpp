@@ -102,7 +102,7 @@ TEST_CASE("unknown keys are named with their place and the nearest known key", "
     });
 }
 
-TEST_CASE("withdrawn keys and values are refused with what to use instead", "[unit]") {
+TEST_CASE("withdrawn keys and values are refused with their replacement", "[unit]") {
     check_messages({
         {"a key",
          scene_with(R"("settings": {"multirate": true})"),
@@ -114,7 +114,7 @@ TEST_CASE("withdrawn keys and values are refused with what to use instead", "[un
     });
 }
 
-TEST_CASE("a setting that froze contacts is refused with what to do instead", "[unit]") {
+TEST_CASE("a setting that froze contacts is refused with its replacement", "[unit]") {
     check_messages({
         {"settings",
          scene_with(R"("settings": {"freeze_contacts": false})"),
@@ -123,7 +123,7 @@ TEST_CASE("a setting that froze contacts is refused with what to do instead", "[
     });
 }
 
-TEST_CASE("settings that are internal now are refused with what to use instead", "[unit]") {
+TEST_CASE("settings that are internal now are refused with their replacement", "[unit]") {
     const std::map<std::string, std::string> instead{
         {"step_safety", "step_size"},     {"max_strain_step", "step_size"},   {"restitution_speed", "restitution"},
         {"sleep_speed", "sleep_time"},    {"relaxation", "method"},           {"fixed_iterations", "max_iterations"},
@@ -226,7 +226,7 @@ TEST_CASE("values of the wrong kind or out of range are refused with unit and ra
     });
 }
 
-TEST_CASE("what is missing, or there twice, is named", "[unit]") {
+TEST_CASE("missing or repeated objects are named", "[unit]") {
     check_messages({
         {"no mesh",
          R"({"bodies": [{"name": "b", "material": "m"}]})",
@@ -338,7 +338,7 @@ TEST_CASE("assignments change a scene on its way in", "[unit]") {
     CHECK(scene.seconds == 5);
 }
 
-TEST_CASE("assignments that cannot be carried out are refused by what is wrong with them", "[unit]") {
+TEST_CASE("errors of assignments name the cause", "[unit]") {
     const TemporaryFolder folder;
     const auto file = folder.write("a.json", scene_with(R"("seconds": 5)"));
     const std::vector<std::pair<std::string, std::string>> mistakes{

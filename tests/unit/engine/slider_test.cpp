@@ -54,7 +54,8 @@ std::string yard(const std::string& more) {
     "pipes": [{"name": "valve", "first": "bag", "conductance": 0},
               {"name": "bridge", "first": "bag", "second": "bag_2", "conductance": 0}],
     "springs": [{"name": "band", "first": {"point": [0, 1, 0]}, "second": {"body": "cube"}, "stiffness": 1}],
-    "loads": [{"name": "push", "kind": "force", "body": "cube", "nodes": [0], "force": [1, 0, 0]}],
+    "loads": [{"name": "push", "kind": "force", "body": "cube", "nodes": [0], "force": [1, 0, 0]},
+              {"name": "press", "kind": "acceleration", "body": "cube", "acceleration": [0, 0, 1], "scale": 2}],
     "fibres": [{"name": "muscle", "body": "cube", "direction": [1, 0, 0], "stiffness": 10}], "sliders": [)" +
            more + "]}";
 }
@@ -128,10 +129,18 @@ TEST_CASE("a slider turns an object about an axis of the world through the origi
 }
 
 TEST_CASE("one slider drives several objects, and a scene starts with the value of the slider", "[unit]") {
-    Scene scene = yard_with(R"({"name": "both", "cavity": ["skin"], "low": 0, "high": 8, "value": 3},
-        {"name": "lift", "collider": ["ball"], "along": [0, 0, 1], "low": -1, "high": 1, "value": 0.5})");
+    Scene scene = yard_with(R"({"name": "both", "load": ["push", "press"], "low": 0, "high": 4},
+        {"name": "lift", "collider": ["ball"], "along": [0, 0, 1], "low": -1, "high": 1, "value": 0.5},
+        {"name": "inflate", "cavity": "skin", "low": 0, "high": 8, "value": 3})");
     Cavities cavities(scene.world);
     CHECK(cavities.state(cavities.find("skin")).pressure == 3);
+    Loads loads(scene.world);
+    set_slider(scene.world, scene.sliders[0], 3);
+    REQUIRE(scene.world.advance(0.25).ok());  // half of the time that the first load needs from 1 to 3
+    CHECK(loads.state(loads.find("push")).scale == Approx(2));
+    CHECK(loads.state(loads.find("press")).scale == Approx(2.5));
+    REQUIRE(scene.world.advance(0.5).ok());
+    for (const LoadHandle load : loads.all()) CHECK(loads.state(load).scale == 3);
     CHECK(scene.world.pose(scene.world.colliders()[0]).position == Vec3(0, 0, 3.5));
     CHECK(slider_value(scene.world, scene.sliders[1]) == 0.5);
 }
@@ -147,12 +156,15 @@ TEST_CASE("a slider that has its own value changes no bit of a run", "[unit]") {
 
 TEST_CASE("a value out of bounds, and one for a removed object, are refused and change nothing", "[unit]") {
     Scene scene = yard_with(R"({"name": "lift", "collider": "ball", "along": [0, 0, 1], "low": -1, "high": 1},
-        {"name": "force", "load": "push", "low": 0, "high": 2})");
+        {"name": "force", "load": "push", "low": 0, "high": 2},
+        {"name": "bend", "joint": "hinge", "low": 0, "high": 1})");
     const std::uint64_t before = scene.world.state_hash();
     CHECK_THAT(message_of([&] { set_slider(scene.world, scene.sliders[0], 1.5); }),
                Contains("slider 'lift'") && Contains("1.5") && Contains("-1 to 1 m"));
     CHECK_THAT(message_of([&] { set_slider(scene.world, scene.sliders[0], std::nan("")); }), Contains("nan"));
     CHECK(scene.world.state_hash() == before);
+    Joints(scene.world).set_motor(Joints(scene.world).find("hinge"), {});
+    CHECK_THAT(message_of([&] { set_slider(scene.world, scene.sliders[2], 0); }), Contains("a joint with a motor"));
     Loads(scene.world).remove(Loads(scene.world).all()[0]);
     CHECK_THAT(message_of([&] { set_slider(scene.world, scene.sliders[1], 0); }), Contains("load"));
 }

@@ -140,7 +140,7 @@ TEST_CASE("a saved world with any bytes in its header is refused, or is the same
     CHECK(taken < tries / 10);
 }
 
-TEST_CASE("a file of another kind, or of another version, is refused by what it is", "[unit]") {
+TEST_CASE("a file of another kind or version is refused, and the error names it", "[unit]") {
     const FileOfWorld saved(full_world());
     CHECK_THAT(saved.refusal(""), Contains("found a file of another kind, expected a world that Skerry saved"));
     CHECK_THAT(saved.refusal("{\"bodies\": []}"), Contains("expected a world that Skerry saved, version 28"));
@@ -418,7 +418,7 @@ TEST_CASE("a world that cannot be written stays, and so does the file before it"
     CHECK_THROWS_WITH(world.save(saved.folder.path()), Contains("a folder"));
 }
 
-TEST_CASE("what was chosen, and by what, is kept in files", "[scene]") {
+TEST_CASE("chosen dynamics and their reasons are saved in files", "[scene]") {
     const TemporaryFolder folder;
     World world;
     const auto steel = world.add_material({.young_modulus = 2e11});

@@ -156,7 +156,7 @@ TEST_CASE("a ragged conflicts with its offsets and its items", "[unit]") {
     REQUIRE(conflict(make(ragged), read(ragged.item)));
 }
 
-TEST_CASE("inputs and outputs declare what their bind asks for, whether it is wanted or not, and pass it", "[unit]") {
+TEST_CASE("inputs and outputs declare the arguments of bind, whether it is wanted or not, and pass it", "[unit]") {
     NodeTable nodes;
     nodes.for_each_column([](const char*, auto& column, ColumnRole) { column.resize(3); });
     bool flag = false;
@@ -193,7 +193,7 @@ TEST_CASE("inputs and outputs declare what their bind asks for, whether it is wa
     }
 }
 
-TEST_CASE("a value conflicts with nothing, a guard declares what it is given", "[unit]") {
+TEST_CASE("a value conflicts with nothing, and a guard declares its arguments", "[unit]") {
     Real number = 0;
     REQUIRE_FALSE(conflict(value(number), make(number)));
     REQUIRE(conflict(only_if([](Real x) { return x > 0; }, read(number)), make(number)));
@@ -295,7 +295,7 @@ TEST_CASE("a stage that touches a column it has not declared fails, and says whi
     }
 }
 
-TEST_CASE("a stage may touch what it has declared, and what is not watched", "[unit]") {
+TEST_CASE("a stage may use declared data, and unwatched data", "[unit]") {
     Column<Real> outside;
     outside.resize(1);
     for (const ExecutorChoice& choice : executor_choices({1, 2, 4})) {
@@ -325,7 +325,7 @@ TEST_CASE("a stage may touch what it has declared, and what is not watched", "[u
     }
 }
 
-TEST_CASE("a guard and inputs that take what they do not declare fail as well", "[unit]") {
+TEST_CASE("a guard and inputs that use undeclared data fail as well", "[unit]") {
     struct Secret {
         std::span<const Real> rows;
         static Secret bind(const Binder& binder, const Rows& rows) {
@@ -351,7 +351,7 @@ TEST_CASE("a guard and inputs that take what they do not declare fail as well", 
     REQUIRE_THROWS_WITH(guarded.run_inline(), Catch::Contains("the stage guarded reads rows.b"));
 }
 
-TEST_CASE("workers that help one stage and then another may touch what that one may", "[unit]") {
+TEST_CASE("workers that help several stages may use the data of each stage", "[unit]") {
     Rows rows;
     const auto fill = [](Executor& executor, Column<Real>& column) {
         parallel_for(executor, 64, 1, [&](std::size_t begin, std::size_t) { column[begin] += 1; });

@@ -73,7 +73,7 @@ TEST_CASE("every block runs exactly once", "[unit]") {
     }
 }
 
-TEST_CASE("what the blocks wrote is seen after run_blocks, run after run", "[unit]") {
+TEST_CASE("after run_blocks all results of its blocks are visible, run after run", "[unit]") {
     for (const ExecutorChoice& choice : executor_choices()) {
         CAPTURE(choice.text());
         const auto executor = choice.make();

@@ -193,7 +193,7 @@ TEST_CASE("inputs are bound when the stage starts", "[unit]") {
     REQUIRE(result[0] == 14);
 }
 
-TEST_CASE("what a stage takes as a value no stage may write", "[unit]") {
+TEST_CASE("a value argument of a stage cannot be written by other stages", "[unit]") {
     Column<Real> a;
     Real h = 1;
     TaskGraph graph;
@@ -204,7 +204,7 @@ TEST_CASE("what a stage takes as a value no stage may write", "[unit]") {
                         Catch::Contains("use reads as a constant value the data that the stage change writes"));
 }
 
-TEST_CASE("the graph tells what its stages declare, and which have a guard", "[unit]") {
+TEST_CASE("the graph lists the data declared by its stages, and the stages with a guard", "[unit]") {
     Column<Real> a, b;
     const bool go = true;
     TaskGraph graph;
@@ -260,7 +260,7 @@ TEST_CASE("a stage that returns false counts as skipped, any other as run", "[un
     REQUIRE(graph.stats()[0].name == std::string("maybe"));
 }
 
-TEST_CASE("a guard waits for what it reads and leaves its stage out when false", "[unit]") {
+TEST_CASE("a guard waits for its arguments and skips its stage when false", "[unit]") {
     int fault = 0;
     Column<Real> input, output;
     input.resize(1);

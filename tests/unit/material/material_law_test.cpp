@@ -194,7 +194,7 @@ TEST_CASE("stable neo-Hookean: energy and stress turn with the body, whatever th
     }
 }
 
-TEST_CASE("stable neo-Hookean: what is pressed together on all sides is pushed apart", "[unit]") {
+TEST_CASE("stable neo-Hookean: a compressed element is pushed apart", "[unit]") {
     // Without the logarithm F = 0 is a minimum. Below nu = -0.85, where a material resists shear much more than
     // pressure, the law as published has a second minimum at a half of the length.
     for (Real nu : {-0.84, -0.5, 0.0, 0.3, 0.4, 0.49, 0.4999}) {

@@ -38,7 +38,7 @@ Mat3 first_stress(const ViscousModuli& moduli, const Mat3& F) {
 
 }  // namespace
 
-TEST_CASE("the stress of what relaxes is the derivative of its energy", "[unit]") {
+TEST_CASE("the stress of relaxing springs is the derivative of their energy", "[unit]") {
     std::mt19937_64 random(1);
     const ViscousModuli moduli = some_moduli();
     for (int trial = 0; trial < 50; ++trial) {
@@ -56,7 +56,7 @@ TEST_CASE("the stress of what relaxes is the derivative of its energy", "[unit]"
     }
 }
 
-TEST_CASE("what relaxes does not see rotations, and gives no torque", "[unit]") {
+TEST_CASE("relaxing springs are independent of rotations, and give no torque", "[unit]") {
     std::mt19937_64 random(2);
     const ViscousModuli moduli = some_moduli();
     for (int trial = 0; trial < 20; ++trial) {
@@ -68,7 +68,7 @@ TEST_CASE("what relaxes does not see rotations, and gives no torque", "[unit]") 
     }
 }
 
-TEST_CASE("rates spread over a band lose what the loss factor says", "[unit]") {
+TEST_CASE("rates spread over a band give the loss factor", "[unit]") {
     for (const Real loss_factor : {0.01, 0.05, 0.2, 0.3})
         for (const Real over_lowest : {10.0, 30.0, 100.0, 300.0, 800.0}) {  // highest over lowest frequency of a body
             const Real span = std::max(rates_below * over_lowest, Real{100}), share = relaxing_share(loss_factor, span);

@@ -41,7 +41,7 @@ std::uint64_t hash_after_steps(World& world) {
 
 }  // namespace
 
-TEST_CASE("a recording has the stages, their loops and what lies between", "[unit]") {
+TEST_CASE("a recording has the stages, their loops and the time between them", "[unit]") {
     RecordingExecutor executor(64);
     CHECK(executor.worker_count() == 64);
     const std::array<Index, 3> offset{0, 1, 1};
@@ -130,7 +130,7 @@ TEST_CASE("a world that is recorded ends in the same state", "[unit]") {
     CHECK(recordings[0].critical_path() < recordings[0].work());
 }
 
-TEST_CASE("of several recordings each block takes what it took where it was not interrupted", "[unit]") {
+TEST_CASE("of several recordings each block has its time without interruptions", "[unit]") {
     std::vector<Recording> recordings(3, graph_of({{serial(1), loop({2, 3})}}, {}));
     recordings[0].seconds[1] = 100;  // this piece was interrupted
     recordings[2].seconds[2] = 50;

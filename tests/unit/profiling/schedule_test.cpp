@@ -62,7 +62,7 @@ TEST_CASE("stages that do not wait for each other run at the same time", "[unit]
     CHECK(fork.critical_path() / us == Approx(7));
 }
 
-TEST_CASE("blocks of a loop are shared, and what follows waits for the last", "[unit]") {
+TEST_CASE("blocks of a loop are shared, and later work waits for the last block", "[unit]") {
     const Recording recording = graph_of({{serial(us), loop(blocks(8, us)), serial(2 * us)}}, {});
     CHECK(free_us(recording, 1) == Approx(11));
     CHECK(free_us(recording, 3) == Approx(6));
@@ -120,7 +120,7 @@ TEST_CASE("phases wait for each other and are shared by who is free", "[unit]") 
     CHECK(recording.critical_path() / us == Approx(3));
 }
 
-TEST_CASE("cores share the bandwidth, and chiplets what they have written", "[unit]") {
+TEST_CASE("cores share the bandwidth, and chiplets share written data", "[unit]") {
     MachineModel machine = MachineModel::free_of_cost();
     const Recording recording = graph_of({{loop(blocks(4, us))}}, {});
     machine.bandwidth = 20e9;
@@ -198,7 +198,7 @@ TEST_CASE("costs of stages tell where the time goes", "[unit]") {
     }
 }
 
-TEST_CASE("what is between two graphs is done by one core", "[unit]") {
+TEST_CASE("one core does the work between two graphs", "[unit]") {
     Recording recording = graph_of({{loop(blocks(4, us))}}, {});
     Recording between;
     between.runs = {{no_index, {0, 1}}};

@@ -26,7 +26,7 @@ DenseBlock block_of(std::vector<Real>& numbers, Index rows, Index columns) {
 
 }  // namespace
 
-TEST_CASE("a dense factor that exchanges rows solves what Eigen solves", "[solver]") {
+TEST_CASE("a dense factor that exchanges rows agrees with Eigen", "[solver]") {
     const auto size = GENERATE(Index{1}, Index{3}, Index{8}, Index{9}, Index{30}, Index{77});
     const auto columns = GENERATE(Index{5}, Index{23});  // many columns are solved with inverses of triangles
     CAPTURE(size, columns);

@@ -122,7 +122,7 @@ TEST_CASE("hubs that meet are not side by side", "[unit][solver]") {
     CHECK(order.tail_size == 0);
 }
 
-TEST_CASE("what finds none of 64 colours goes to the tail", "[unit][solver]") {
+TEST_CASE("contacts without a free one of 64 colours go to the tail", "[unit][solver]") {
     // The 13 lines of the projective plane of order 3, each eight times. Any two lines share one of the 13 points, and
     // no point is in more than 32 of them.
     std::vector<ContactNodes> contact;
@@ -143,7 +143,7 @@ TEST_CASE("what finds none of 64 colours goes to the tail", "[unit][solver]") {
         REQUIRE(order.contact[place] > order.contact[place - 1]);
 }
 
-TEST_CASE("the order depends on the contacts alone, not on what the memory was used for", "[determinism][solver]") {
+TEST_CASE("the order depends on the contacts alone, not on earlier contents of the memory", "[determinism][solver]") {
     ColouringMemory memory;
     ColouredOrder order;
     for (const int length : {3000, 100, 2000, 3000}) {

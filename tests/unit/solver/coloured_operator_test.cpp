@@ -88,8 +88,7 @@ std::vector<Real> exercise(Op op) {
 
 }  // namespace
 
-TEST_CASE("a coloured operator does what a lumped one does in the same order, to the last bit",
-          "[determinism][solver]") {
+TEST_CASE("a coloured operator gives bitwise the result of a lumped one in the same order", "[determinism][solver]") {
     const ContactScene scene = rough_scene(45);
     for (const Friction friction : {Friction::cone, Friction::pyramid}) {
         LoadedScene twin(scene);

@@ -30,8 +30,7 @@ LoadSums sums_of(std::initializer_list<Vec4> velocities) {
 
 }  // namespace
 
-TEST_CASE("errors are measured against what contacts would have to stop, not against what moves along or apart",
-          "[unit][solver]") {
+TEST_CASE("the scale of errors is the motion that contacts must stop, not motion along or apart", "[unit][solver]") {
     const Real alone = error_scale(sums_of({{0, 0, -0.02, 0}}), gravity, h, tolerance);
     CHECK(alone == Approx(0.02));
     // projection onto the edge of the cone
@@ -40,7 +39,7 @@ TEST_CASE("errors are measured against what contacts would have to stop, not aga
     CHECK_FALSE(sums_of({{0, 0, -0.02, 0}, {0, 0, 50, 0}}).separating);
 }
 
-TEST_CASE("where next to nothing is to be stopped weight, motion and rounding are what errors are measured against",
+TEST_CASE("if next to nothing is to be stopped, weight, motion and rounding set the scale of errors",
           "[unit][solver]") {
     const LoadSums slow = sums_of({{0, 0, -1e-9, 0}}), apart = sums_of({{2, 0, 1, 0}});
     CHECK(apart.separating);

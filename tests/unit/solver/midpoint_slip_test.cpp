@@ -23,7 +23,7 @@ Vec3 half_turn_of(const Vec3& before, const Vec3& now, const Vec3& floor = Vec3:
 
 }  // namespace
 
-TEST_CASE("friction looks in the direction halfway through the kick", "[unit][solver]") {
+TEST_CASE("friction is directed by the slip halfway through the kick", "[unit][solver]") {
     const Vec3 before(2, 0.1, -0.3), now(1.9, 0.4, -0.5);
     const Vec3 middle = 0.5 * (before + now), seen = now - half_turn_of(before, now);
     const Vec3 along = Vec3(middle.x(), middle.y(), 0).normalized();
@@ -46,7 +46,7 @@ TEST_CASE("between a quarter and half of the speed the turn fades, without a jum
     CHECK(turned_by(0.5001) == 0);
 }
 
-TEST_CASE("what goes straight on, rests, stops or turns back keeps the law as it is", "[unit][solver]") {
+TEST_CASE("straight motion, rest, stops and reversals keep the friction law", "[unit][solver]") {
     CHECK(half_turn_of({2, 0, -1}, {1.5, 0, -2}).norm() == 0);
     CHECK(half_turn_of({1, 2, 0}, {1.25, 2.5, 0}).norm() < 1e-15);
     CHECK(half_turn_of({0, 0, 0}, {0.01, 0.02, -0.1}).norm() == 0);

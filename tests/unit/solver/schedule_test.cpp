@@ -120,7 +120,7 @@ TEST_CASE("tasks hold every region once, and are small enough to share", "[unit]
     CHECK(regions.id.empty());
 }
 
-TEST_CASE("what is remembered changes no bit of the result", "[determinism][solver]") {
+TEST_CASE("the use of remembered data changes no bit of the result", "[determinism][solver]") {
     ContactScene scene;
     for (int k = 0; k < 12; ++k) add_sheets(scene, 3 + k % 5, 0.5, static_cast<unsigned>(k));
     const std::vector<ContactKey> key = keys(scene.stencil.size());

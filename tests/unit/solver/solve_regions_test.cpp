@@ -86,7 +86,7 @@ TEST_CASE("a point mass sticks inside the cone and slides on it", "[unit][solver
     CHECK(sliding.regions.dissipated[0] == Approx(0.5 * 2 * (29 - 16)).epsilon(1e-13));
 }
 
-TEST_CASE("static friction holds what dynamic friction would not", "[unit][solver]") {
+TEST_CASE("static friction holds a contact that dynamic friction would not hold", "[unit][solver]") {
     ContactScene scene;
     scene.touch_floor(scene.add_node(1, Vec3(0.45, 0, -1)), 0.5);
     scene.dynamic_friction[0] = 0.2;
@@ -105,7 +105,7 @@ TEST_CASE("a gap may close within the step and no further", "[unit][solver]") {
     CHECK(scene.solve().impulse[0] == Vec3::Zero());
 }
 
-TEST_CASE("the velocity of a collider and of a kinematic node is what a contact sees", "[unit][solver]") {
+TEST_CASE("the velocities of a collider and of a kinematic node enter the contact velocity", "[unit][solver]") {
     ContactScene scene;
     const Index node = scene.add_node(1, Vec3(0, 0, 0));
     scene.touch_floor(node, 10);
@@ -415,7 +415,7 @@ TEST_CASE("regions whose bodies are all still are solved closer, each with the b
     CHECK(sheets.solve(asked).impulse == loose.impulse);
 }
 
-TEST_CASE("a still region that ends within the tolerance that was asked for has converged", "[unit][solver]") {
+TEST_CASE("a still region that reaches the requested tolerance has converged", "[unit][solver]") {
     const StillSheets sheets;
     SolverSettings settings;
     settings.still_tolerance = 1e-15;  // cannot be reached

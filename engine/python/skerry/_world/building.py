@@ -304,7 +304,8 @@ class Building(CavityBuilding):
         or to the world, and returns the tie.
 
         nodes: numbers within the body (j,), or a truth value for each node (n,). kind: "weld", or "slide" for nodes
-        that may move in the plane of the surface. break_force: force at which a node breaks off [N]. close_gap: True:
+        that may move in the plane of the surface, or "ball": only the mean point of all nodes, weighted by their
+        masses, is tied. break_force: force at which a node, or the ball, breaks off [N]. close_gap: True:
         the nodes move to the surface. bodies_touch: True: the two objects may collide while nodes are tied. SceneError:
         the body is rigid, or a value is out of range. BufferError: arrays of views() are in use."""
         given = Arguments(

@@ -22,7 +22,7 @@ void list_cables(WorldState& w, TaskGraph& g) {
             write(m.nodes.applied_force), if_forced);
 }
 
-void add_cable_rate(const Model& model, std::span<Real> of_body) {
+void add_cable_rate(Model& model, std::span<Real> of_body) {
     add_cable_rates(CableInputs::bind({}, model.cables, model.bodies, model.nodes, model.colliders, model.any_asleep),
                     of_body);
 }

@@ -4,7 +4,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <vector>
 
 #include "engine/world/step/seams.h"
 
@@ -26,11 +25,11 @@ void list_cavity_forces(WorldState& w, TaskGraph& g) {
 
 /// Bounds of the squared frequencies of the nodes of a body by the pressure of one cavity. `p`: pressure [Pa].
 /// `stiffness`: of the filling [Pa/m^3].
-Real rate_of_nodes(const Model& model, const CavityInputs& cavities, std::size_t c, Real p, Real stiffness,
+Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Real p, Real stiffness,
                    bool is_implicit) {
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(cavities.body[c])];
-    static thread_local std::vector<Vec3> area;
-    static thread_local std::vector<Real> edges;
+    Column<Vec3>& area = model.face_areas;
+    Column<Real>& edges = model.face_edges;
     area.assign(static_cast<std::size_t>(nodes.size()), Vec3::Zero());
     edges.assign(static_cast<std::size_t>(nodes.size()), 0);
     for (auto f = static_cast<std::size_t>(cavities.faces[c].begin);
@@ -70,7 +69,7 @@ Real rate_of_rigid(const Model& model, const CavityInputs& cavities, std::size_t
            (area.squaredNorm() / rigid.mass[r] + about_axes.cwiseAbs2().cwiseQuotient(rigid.moments[r]).sum());
 }
 
-void add_cavity_rate(const Model& model, std::span<Real> of_body) {
+void add_cavity_rate(Model& model, std::span<Real> of_body) {
     const CavityTable& table = model.cavities;
     const CavityInputs cavities = CavityInputs::bind({}, table, model.bodies, model.nodes);
     for (std::size_t c = 0; c < cavities.size(); ++c) {

@@ -54,7 +54,7 @@ void weigh_fibres(Model& model) {
     }
 }
 
-void add_fibre_rate(const Model& model, std::span<Real> of_body) {
+void add_fibre_rate(Model& model, std::span<Real> of_body) {
     const FibreTable& table = model.fibres;
     const FibreInputs fibres = fibres_of(model);
     for (std::size_t row = 0; row < table.size(); ++row) {

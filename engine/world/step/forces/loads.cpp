@@ -36,7 +36,7 @@ LoadInputs loads_of(const Model& model) {
     return LoadInputs::bind({}, model.loads, model.bodies, model.nodes, model.settings.gravity, {});
 }
 
-void add_traction_rates(const Model& model, std::span<Real> of_body) {
+void add_traction_rates(Model& model, std::span<Real> of_body) {
     const LoadInputs loads = loads_of(model);
     for (std::size_t load = 0; load < model.loads.size(); ++load) {
         if (!loads.is_on_present_area(load)) continue;

@@ -14,33 +14,33 @@ auto if_any_tie(const Model& m) {
     return only_if([](std::span<const std::uint32_t> slot) { return !slot.empty(); }, read(m.ties.slot));
 }
 
-bool prepare_tie_rows(const TieInputs& ties, const StepParameters& p, ContactTable& contacts, TieRowTable& rows) {
+bool prepare_tie_rows(const TieInputs& ties, const StepParameters& p, ContactTable& contacts, TieRowTable& rows,
+                      CableBlockTable& blocks) {
     const TieStep step{p.h, p.kick, p.solver.recovery_speed, p.solver.warm_start};
-    return prepare_ties(ties, step, contacts, rows);
+    return prepare_ties(ties, step, contacts, rows, blocks);
 }
 
-Index store(const TieRowTable& rows, std::span<const Range> body_implicit, Real start, const StepParameters& p,
-            TieTable& ties) {
-    return store_ties(rows, body_implicit, {start + p.h, p.h, p.kick}, ties);
+Index store(const TieRowTable& rows, const TiedMeans& means, Real start, const StepParameters& p, TieTable& ties) {
+    return store_ties(rows, means, {start + p.h, p.h, p.kick}, ties);
 }
 
 void list_tie_rows(WorldState& w, TaskGraph& g) {
     g.stage("contact/prepare_ties", prepare_tie_rows, tie_inputs(w.model), value(w.scratch.parameters),
-            make(w.scratch.contacts), make(w.scratch.ties), if_any_tie(w.model));
+            make(w.scratch.contacts), make(w.scratch.ties), make(w.scratch.cables), if_any_tie(w.model));
 }
 
 void list_taken_rows(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage_with_result("contact/take_tie_rows", w.scratch.findings.ties, take_tie_rows,
-                        inputs<TieWorkInputs>(m.nodes, m.bodies, m.rigid_bodies), make(w.scratch.contacts),
-                        make(w.scratch.ties), if_any_tie(m));
+                        inputs<TieWorkInputs>(m.nodes, m.bodies, m.rigid_bodies), read(w.scratch.cables),
+                        make(w.scratch.contacts), make(w.scratch.ties), if_any_tie(m));
 }
 
 void list_tie_memory(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage_with_result("contact/store_ties", w.scratch.findings.released_ties, store, read(w.scratch.ties),
-                        read(m.bodies.implicit), value(w.clock.time), value(w.scratch.parameters), make(m.ties),
-                        if_any_tie(m), if_taken(w));
+                        inputs<TiedMeans>(w.scratch.cables, m.bodies, m.nodes), value(w.clock.time),
+                        value(w.scratch.parameters), make(m.ties), if_any_tie(m), if_taken(w));
 }
 
 }  // namespace
