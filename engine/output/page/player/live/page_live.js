@@ -50,17 +50,17 @@ function make_live(page, has_view) {
   const link = make_link(receive, show_status), pull = make_pull(page, link), visuals = [];
   const lists = ["bodies", "visual_of_body", "visuals", "colliders", "lines"];
   const clear_run = () => lists.forEach((name) => { run[name] = []; });
-  let decoder = null, frame = null, row = null, sliders = null, controls = null;
-  let is_new = false;      // the frame has not been drawn
-  let aim = null;          // make_aim of the scene
+  let decoder = null, frame = null, sliders = null, controls = null;
+  let row_next = null, row = null;  // of the frame that comes next, and of `frame`
+  let is_new = false;               // the frame has not been drawn
+  let is_stale = false;             // the panel shows an older row
+  let aim = null;                   // make_aim of the scene
   let refreshed = 0, drawn = 0;
   page.scales = memory.scales;
   state.fields = ["speed"];
   clear_run();
   const run_plots = make_run_plots(find, rows, null);
   page.plots = run_plots;
-
-  // --- messages -----------------------------------------------------------------------------------------------------
 
   async function receive(data) {
     if (data instanceof ArrayBuffer) return take_frame(new Uint8Array(data));
@@ -79,10 +79,11 @@ function make_live(page, has_view) {
     decoder = decode.decoder(run.bodies, field_names, true);
     page.bodies = () => decoder.bodies;
     frame = null;
+    is_new = is_stale = false;
     if (page.scene) page.scene.clear();
     memory.clear();
     page.plots = [...run_plots, ...make_probe_plots(find("probe_plots"), plots, begin_rows(plots), rows.time)];
-    find("sliders").parentElement.hidden = movable.length === 0;
+    find("sliders").hidden = movable.length === 0;
     sliders = make_sliders(find("sliders"), movable, (number, value) => link.send({ do: "slider", number, value }));
     page.notice("");
     take_state(told);
@@ -97,14 +98,15 @@ function make_live(page, has_view) {
     if (page.scene && frame) (more.colliders || []).forEach(page.scene.colliders.add);
   }
   function take_row(told) {
-    row = told;
-    add_row(row);
-    memory.widen(row.top, performance.now() / 1000);
+    row_next = told;
+    add_row(told);
+    memory.widen(told.top, performance.now() / 1000);
   }
   function take_frame(bytes) {
-    const is_first = frame === null, count = run_size();
+    const is_first = frame === null;
     [frame] = decoder.add(bytes);
-    is_new = true;
+    row = row_next;
+    is_new = is_stale = true;
     if (!has_view) return;
     if (!page.scene) make_first_scene();
     const { bodies, colliders } = page.scene;
@@ -117,9 +119,7 @@ function make_live(page, has_view) {
     for (const [number, place] of frame.bodies)
       if (!bodies.list[number])
         bodies.add(number, decoder.bodies[number], visuals[run.visual_of_body[number]], place);
-    if (run_size() !== count) controls.show_legends();
   }
-  const run_size = () => Object.keys(decoder.bodies).length;
   function make_first_scene() {
     const box = measure_scene(run, decoder.bodies, [frame]);
     page.scene = make_scene(page, box, page.follow_changed, pull);
@@ -168,8 +168,6 @@ function make_live(page, has_view) {
     ask_for_fields();
   }
 
-  // --- pictures -----------------------------------------------------------------------------------------------------
-
   function show() {
     root.dataset.color = state.color;
     if (!frame || !page.scene) return;
@@ -197,17 +195,14 @@ function make_live(page, has_view) {
   }
   function tick(now) {
     requestAnimationFrame(tick);
-    const is_due = is_new;
     pull.tick();
     if (is_new) draw_new();
     else if (page.scene) page.scene.render();
-    stale = stale || is_due;
-    if (!stale || now - refreshed < 150) return;
-    stale = false;
+    if (!is_stale || now - refreshed < 150) return;
+    is_stale = false;
     refreshed = now;
     refresh();
   }
-  let stale = false;  // the panel shows an older row
   function start(made) {
     controls = made;
     controls.read_hash();
@@ -215,9 +210,7 @@ function make_live(page, has_view) {
     requestAnimationFrame(tick);
   }
 
-  // --- controls -----------------------------------------------------------------------------------------------------
-
-  const order = (name, more) => () => link.send({ do: name, ...more });
+  const order = (name) => () => link.send({ do: name });
   const toggle = () => link.send({ do: state.playing ? "pause" : "play" });
   const set_gravity = (on) => link.send({ do: "gravity", on });
   find("step").addEventListener("click", order("step"));
