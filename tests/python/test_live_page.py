@@ -26,6 +26,7 @@ WebSocket.prototype.send = function (text) { window.sent.push(JSON.parse(text));
 """
 
 
+DRAWN = "Number(document.documentElement.dataset.drawn)"
 PAUSED = "document.documentElement.dataset.playing === 'false'"
 
 
@@ -45,7 +46,7 @@ def running(tab: Tab, shown: sk.World | sk.Scene, **options: Any) -> Iterator[sk
     thread.start()
     try:
         tab.open(view.address)
-        tab.wait("Number(document.documentElement.dataset.drawn) > 5 || " + PAUSED)
+        tab.wait(f"document.documentElement.dataset.ready && ({PAUSED} || {DRAWN} > 5)")
         yield view
     finally:
         view.close()
