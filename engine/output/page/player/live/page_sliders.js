@@ -5,17 +5,18 @@
 // they are, but leaves those alone that somebody moves.
 function make_sliders(host, list, move) {
   const patience = 500;  // ms after the last movement
-  const rows = list.map(({ name, unit, low, high, value: initial }, number) => {
+  const rows = list.map(({ name, unit: given, low, high, value: initial }, number) => {
+    const unit = given === "1" ? "" : given;
     const label = document.createElement("label"), input = document.createElement("input");
     const about = document.createElement("span"), output = document.createElement("output");
     about.textContent = name;
     Object.assign(input, { id: "slider_" + number, type: "range", min: low, max: high, step: "any", value: initial,
-      title: "Double-click or Delete: back to " + text.si(initial, unit || "") });
+      title: "Double-click or Delete: back to " + text.si(initial, unit) });
     label.append(about, output, input);
     const row = { label, moved: -Infinity };
     row.set = (value) => {
       input.value = value;
-      output.textContent = text.si(value, unit || "");
+      output.textContent = text.si(value, unit);
       input.setAttribute("aria-valuetext", output.textContent);
     };
     const moved_to = (value) => {
