@@ -33,7 +33,7 @@ function make_colliders(scene, state, box) {
         object.quaternion.slerp(other_turn, blend);
       }
       if (object.userData.follow) {
-        // The part of an infinite plane around what is shown.
+        // Moves the drawn part of an infinite plane below the bodies.
         const back = object.quaternion.clone().inverse();
         object.userData.follow(box.center.clone().sub(object.position).applyQuaternion(back));
       }

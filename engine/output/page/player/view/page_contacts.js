@@ -1,5 +1,5 @@
-// The contacts: a dot each, and an arrow that grows with the root of the force, because impacts are a hundred times
-// stronger than what lies at rest.
+// Each contact is a dot and an arrow. The length of the arrow grows with the square root of the force, because forces
+// of impacts are a hundred times those of bodies at rest.
 "use strict";
 
 // A force of scales.force.top gets an arrow about as long as half a body is thick; dots leave room between vertices.
@@ -23,8 +23,7 @@ function make_contacts(scene, { size, spacing }, scales) {
       shown[name] = new Float32Array(2 * width * count);
   }
 
-  // What is between a frame and the next: contacts that both have move from one to the other, others stay until they
-  // are gone.
+  // Rows between a frame and the next. Contacts of both frames are interpolated, the others are those of the frame.
   function blend_rows(contacts, next, blend) {
     Object.assign(shown, { list: contacts, count: contacts.count });
     for (let i = 0; i < contacts.count; ++i) {

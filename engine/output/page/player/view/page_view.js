@@ -192,7 +192,7 @@ function make_view(host, up, box, is_coarse) {
       orbit.place = place;
       if (course.length > 1) place_camera();
     },
-    // The box that is shown while following, of a run that goes on.
+    // Sets the box that the camera shows while it follows a live run.
     aim: (shown) => {
       course[0] = fitted(shown);
       box.center.copy(course[0].center);
