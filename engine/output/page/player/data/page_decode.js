@@ -28,7 +28,7 @@ const decode = (() => {
       for (;;) {
         const byte = data[at++];
         value += (byte & 127) * scale;
-        if (!(byte & 128)) return value;  // also behind the end, where there is no byte
+        if (!(byte & 128)) return value;  // also behind the end of the data, where `byte` is undefined
         scale *= 128;
       }
     };

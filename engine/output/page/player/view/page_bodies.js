@@ -64,7 +64,7 @@ function make_bodies(scene, scales, redraw) {
           value += share * weights[k] * one;
           error = Math.max(error, half_code(one, frame.scale[field]));
         });
-      out[field] = { value: value < 1e-9 * scales[field].max ? 0 : value, error };  // less than that is a rounding error
+      out[field] = { value: value < 1e-9 * scales[field].max ? 0 : value, error };  // less is a rounding error
     }
     return out;
   }
