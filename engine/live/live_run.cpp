@@ -72,6 +72,7 @@ LiveRun::LiveRun(World& world, const LiveSettings& settings)
 }
 
 void LiveRun::sync(World& world) {
+    step_asked_ = false;
     if (!hub_.is_busy()) return;
     sample_probes(world);
     apply_commands(world);

@@ -208,6 +208,17 @@ def test_commands_change_the_world_and_all_clients_see_it(view: sk.View) -> None
         assert other.state["rate"] == 0.25 and not view.playing
 
 
+def test_a_single_step_lets_a_loop_advance_once(view: sk.View) -> None:
+    with connect(view) as client:
+        for command, playing in (("pause", False), ("step", True)):
+            client.send(command)
+            client.settle()
+            view.sync()
+            assert view.playing is playing
+        view.sync()
+        assert not view.playing
+
+
 def test_reset_goes_back_to_the_start(view: sk.View) -> None:
     world = view.world
     ball, start = world.bodies["ball"], world.state_hash

@@ -46,7 +46,7 @@ public:
     /// Ends all connections and stops the server. After it sync(), fail() and run() do nothing, and due() returns 0.
     void close();
     bool is_open() const;
-    bool playing() const;  // false if the view is paused
+    bool playing() const;  // false if the view is paused; true until the next sync() for a single step
     int clients() const;   // number of connected browsers
     std::uint64_t frames_sent() const;
     std::uint64_t frames_dropped() const;  // frames that a browser missed because it was still busy with earlier ones

@@ -54,8 +54,8 @@ class View:
 
     @property
     def playing(self) -> bool:
-        """False while the page pauses the run, and true for one call of sync() per single step. run() obeys it; a loop
-        of your own can call World.advance() only if it is true."""
+        """False while the page pauses the run. The button for a single step makes it true until the next sync(). run()
+        obeys it; a loop of your own can call World.advance() only if it is true."""
         return self._core.playing()
 
     @property
