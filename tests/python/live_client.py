@@ -95,7 +95,7 @@ class Client:
 
     @property
     def state(self) -> dict[str, Any]:
-        """What the page shows as state of the run."""
+        """The last state that the server has sent."""
         states = [message.get("state", message) for message in self.messages if message["type"] in ("begin", "state")]
         return states[-1] if states else {}
 

@@ -25,7 +25,7 @@ _RELOAD = 5.0  # time in which a page may connect again, for example after a rel
 
 
 class View:
-    """Shows a world in a browser while it runs. view() makes it, and describes its use."""
+    """A live view, which shows a world in a browser while it runs. view() makes it, and describes its use."""
 
     __slots__ = ("_closed", "_core", "_lock", "_resets", "_seen", "_slow", "_world")
 
@@ -74,9 +74,9 @@ class View:
         return self._core.frames_dropped()
 
     def sync(self) -> None:
-        """Does what users of the page asked for since the last call (pulls, sliders, gravity, reset), and shows the
-        present state if a page can take a frame. Never waits for a page, and drops frames instead. Call it after each
-        call of World.advance(). BufferError: arrays of views() are in use."""
+        """Carries out the commands of users of the page since the last call (pulls, sliders, gravity, reset), and shows
+        the present state if a page can take a frame. Never waits for a page, and drops frames instead. Call it after
+        each call of World.advance(). BufferError: arrays of views() are in use."""
         self._turn(self._core.sync)
 
     def run(self) -> None:
@@ -93,8 +93,8 @@ class View:
             self.close()
 
     def close(self) -> None:
-        """Ends the server, and run() of another thread. Pages keep their last picture. The end of the `with` block does
-        this."""
+        """Ends the server, and run() on another thread. Pages keep their last picture. The end of the `with` block calls
+        it."""
         self._closed = True
         with self._lock:
             self._core.close()

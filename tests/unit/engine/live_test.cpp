@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::chrono::seconds patience(20);  // far longer than any wait of a test that passes
 
-/// A browser that keeps what it gets.
+/// A browser that stores all messages.
 class Browser final : public LiveLink {
 public:
     bool send_text(std::string_view text) override {
