@@ -1,4 +1,4 @@
-"""A client of the live view, as a page is one, and requests by hand that a page would not make."""
+"""A client of the live view that behaves like a page, and requests that a page would not make."""
 
 from __future__ import annotations
 

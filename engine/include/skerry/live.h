@@ -68,8 +68,8 @@ public:
     bool between_steps(const World& world);
     /// Pauses the view, and shows the text to all browsers. For steps that failed.
     void fail(const std::string& text);
-    /// Advances the world as the browsers ask, in calls of at most 1/60 s, until `go_on` returns false, which is asked
-    /// before each step. A step that cannot be committed pauses the view; `failed` then gets its message.
+    /// Advances the world as the browsers ask, in calls of at most 1/60 s, until `go_on`, which is called before each
+    /// step, returns false. A step that cannot be committed pauses the view; `failed` then gets its message.
     void run(World& world, const std::function<bool()>& go_on,
              const std::function<void(const std::string&)>& failed = {});
 

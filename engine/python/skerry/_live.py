@@ -93,8 +93,7 @@ class View:
             self.close()
 
     def close(self) -> None:
-        """Ends the server, and run() on another thread. Pages keep their last picture. The end of the `with` block calls
-        it."""
+        """Ends the server, and run() on another thread. Pages keep their last picture. The `with` block ends by it."""
         self._closed = True
         with self._lock:
             self._core.close()
