@@ -267,7 +267,7 @@ RECORDING = """
 """
 
 
-# Replaces WebSocket by a server that sends the messages of live.json. `sent`: messages of the page.
+# A server in place of WebSocket, which sends the messages of live.json. `sent`: what the page has answered.
 SERVER = """
 const server = { sent: [], at: 0, refuses: false, served: true };
 window.fetch = async () => { if (!server.served) throw new TypeError("nobody answers"); return { ok: true }; };
