@@ -260,7 +260,7 @@ RECORDING = """
     while (!root.dataset.video) await wait(50);
     check(root.dataset.pictures === "31", "31 pictures of 2 s at twice the pace, not " + root.dataset.pictures);
     check(Number(root.dataset.video) > 10000, root.dataset.video + " bytes of video");
-    const video = document.createElement("video"), times = [];
+    const video = document.createElement("video");
     video.src = URL.createObjectURL(saved);
     await new Promise((resolve, reject) => { video.onloadedmetadata = resolve; video.onerror = reject; });
     check(Math.abs(video.duration - 31 / 30) < 0.01, "31 pictures last " + video.duration + " s");
