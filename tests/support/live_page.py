@@ -1,4 +1,4 @@
-"""Scripts that check_page.py puts into a live page: a server in the page itself, and what a user does."""
+"""Scripts that check_page.py puts into a live page: a server inside the page, and the actions of a user."""
 # Replaces WebSocket by a server that sends the messages of live.json. `sent`: messages of the page.
 SERVER = """
 const server = { sent: [], at: 0, refuses: false };
