@@ -182,7 +182,7 @@ function make_live(page, has_view) {
     if (page.scene) page.scene.render();
     link.send({ do: "seen", number: row.number });
     root.dataset.drawn = ++drawn;
-    Object.assign(root.dataset, { frame: row.number, number: row.number, time: row.time });
+    Object.assign(root.dataset, { number: row.number, time: row.time });
     root.dataset.ready = "true";
   }
   // Updates clock, plots, legends and sliders, less often than the picture.

@@ -1,4 +1,4 @@
-// The keyboard, and the card that tells what it does.
+// The keyboard, and the card that explains the keys.
 "use strict";
 
 // keys: rows of [keys, what they do, action(shift, key)]. `?` shows the rows; it and Escape hide them again.
