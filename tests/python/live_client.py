@@ -110,9 +110,16 @@ class Client:
 
 
 @contextmanager
+def open_socket(address: str) -> Iterator[Any]:
+    """A WebSocket to the view with this address."""
+    parts = urlsplit(address)
+    stream, origin = f"ws://{parts.netloc}/live?{parts.fragment}", f"http://{parts.netloc}"
+    with websockets.connect(stream, origin=origin, max_size=None, compression=None) as connection:
+        yield connection
+
+
+@contextmanager
 def connect(view: sk.View) -> Iterator[Client]:
     """A client of the view with the right token."""
-    port, token = place_of(view)
-    address, origin = f"ws://127.0.0.1:{port}/live?token={token}", f"http://127.0.0.1:{port}"
-    with websockets.connect(address, origin=origin, max_size=None, compression=None) as connection:
+    with open_socket(view.address) as connection:
         yield Client(view, connection)
