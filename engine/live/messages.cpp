@@ -66,11 +66,7 @@ std::string problem_text(const std::string& problem) {
 LiveEncoder::Messages LiveEncoder::pack(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client) {
     Messages messages;
     messages.changes = stream_.pack(snapshot.frame);
-    const PageCounts now{.bodies = stream_.bodies().size(),
-                         .visuals = stream_.visuals().materials().size(),
-                         .colliders = stream_.colliders().size(),
-                         .lines = stream_.lines().size()};
-    if (now != known_) {
+    if (const PageCounts now = counts_of(stream_); now != known_) {
         Json added = {{"type", "add"}};
         added.update(json_of_objects(stream_, known_));
         added["visual_stream"] =

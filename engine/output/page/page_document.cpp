@@ -216,6 +216,13 @@ void require_page_library(const std::filesystem::path& file) {
         .raise();
 }
 
+PageCounts counts_of(const PageStream& stream) {
+    return {.bodies = stream.bodies().size(),
+            .visuals = stream.visuals().materials().size(),
+            .colliders = stream.colliders().size(),
+            .lines = stream.lines().size()};
+}
+
 Json json_of_objects(const PageStream& stream, const PageCounts& first) {
     return {{"bodies", stream.body_names().subspan(first.bodies)},
             {"visual_of_body", stream.visual_numbers().subspan(first.bodies)},
