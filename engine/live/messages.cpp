@@ -96,7 +96,6 @@ Real LiveEncoder::usual(std::size_t field) {
 }
 
 std::string LiveEncoder::row_text(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client) {
-    const PageRow row = row_of(snapshot.frame);
     Json top = {{"speed", usual(0)}, {"stress", usual(stress_field)}, {"strain", usual(strain_field)}};
     values_.clear();
     for (const Contact& contact : snapshot.frame.contacts) values_.push_back(contact.force().norm());
@@ -108,22 +107,14 @@ std::string LiveEncoder::row_text(const Snapshot& snapshot, std::uint64_t frame,
     Json pull;
     const auto own = std::ranges::find(snapshot.pulls, client, &std::pair<std::uint64_t, PullState>::first);
     if (own != snapshot.pulls.end()) pull = {{"force", own->second.force}, {"length", own->second.length}};
-    return text_of({{"type", "row"},
-                    {"number", frame},
-                    {"time", row.time},
-                    {"kinetic", row.energy.kinetic},
-                    {"elastic", row.energy.elastic},
-                    {"potential", row.energy.potential},
-                    {"dissipated", row.energy.dissipated},
-                    {"contacts", row.contacts},
-                    {"stick", row.stick},
-                    {"slide", row.slide},
-                    {"regions", row.regions},
-                    {"top", top},
-                    {"probes", snapshot.probes},
-                    {"sliders", snapshot.sliders},
-                    {"pull", pull},
-                    {"speed", snapshot.speed}});
+    Json row = {{"type", "row"}, {"number", frame}};
+    row.update(json_of_row(row_of(snapshot.frame)));
+    row.update({{"top", top},
+                {"probes", snapshot.probes},
+                {"sliders", snapshot.sliders},
+                {"pull", pull},
+                {"speed", snapshot.speed}});
+    return text_of(row);
 }
 
 }  // namespace skerry
