@@ -43,8 +43,7 @@ Json json_of_plots(const std::vector<LivePlot>& plots) {
 }  // namespace
 
 std::string begin_text(const LiveRunInfo& info, const LiveState& state) {
-    Json run = {
-        {"schema", 3}, {"title", info.title}, {"gravity", {info.gravity.x(), info.gravity.y(), info.gravity.z()}}};
+    Json run = {{"title", info.title}, {"gravity", {info.gravity.x(), info.gravity.y(), info.gravity.z()}}};
     run.update(json_of_objects(PageStream{}, {}));
     return text_of({{"type", "begin"},
                     {"run", run},

@@ -1,4 +1,4 @@
-// The scene with what lies over it: names, the values under the pointer, and pictures of both.
+// The scene with its overlay of names, the tip at the pointer, and pictures of both.
 "use strict";
 
 // box: measure_scene. changed(follow): somebody moved the camera. pull: see page_pointers.js. Throws without WebGL.
@@ -57,7 +57,7 @@ function make_scene({ find, run, state, scales, is_coarse }, box, changed, pull)
     if (draw_over) draw_over(overlay_pen, ratio, ink());
   }
 
-  // What is under the pointer; looked up again when the picture has changed.
+  // The tip at the pointer, which is updated when the picture has changed.
   let pointer = null, pointed = true;
   const point_again = () => { pointed = pointer === null; };
   function point() {

@@ -1,4 +1,4 @@
-// Reads what page_data.h packed.
+// Reads the streams that page_stream.h and visual_stream.h write.
 "use strict";
 
 const decode = (() => {

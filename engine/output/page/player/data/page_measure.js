@@ -1,4 +1,4 @@
-// How large the scene is: what the camera shows, and how large arrows and dots are.
+// Size of the scene, from which follow the camera, and the sizes of arrows and dots.
 "use strict";
 
 // center, radius (m): around nearly all of where bodies go, with colliders that are not much larger; the few ends that

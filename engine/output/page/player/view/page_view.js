@@ -6,7 +6,7 @@
 function make_view(host, up, box, is_coarse) {
   const renderer = new THREE.WebGLRenderer({
     antialias: !is_coarse,
-    alpha: true,                  // the style sheet paints what is behind
+    alpha: true,                  // the style sheet paints the background
     preserveDrawingBuffer: true,  // unchanged pictures are not drawn again, and can be copied at any time
   });
   renderer.gammaOutput = true;
