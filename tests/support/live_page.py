@@ -140,9 +140,9 @@ LIVE = """
     server.refuses = true;
     server.socket.close();
     await wait(100);
-    check(root.dataset.live === "lost", "a lost connection is told, not " + root.dataset.live);
+    check(root.dataset.live === "lost", "a lost connection is shown, not " + root.dataset.live);
     while (root.dataset.live !== "refused") await wait(20);
-    check(/token/.test(find("notice").textContent), "a refusal is told");
+    check(/token/.test(find("notice").textContent), "a refusal is shown");
     server.refuses = false;
     while (root.dataset.live !== "open") await wait(20);
     await server.frame(1);

@@ -60,8 +60,8 @@ public:
     /// fail are reported to the browser that sent them, and change nothing.
     void sync(World& world);
     /// Calls sync() and returns the simulated time that is to be advanced now [s]; 0 if the view is paused or the world
-    /// is ahead of the wall clock. It then waits for commands, at most 20 ms. A caller that is told to advance has to
-    /// do so. For a single step the result is the length of one step.
+    /// is ahead of the wall clock. With the result 0 it waits for commands, at most 20 ms. The caller must advance the
+    /// world by the result. For a single step the result is the length of one step.
     Real due(World& world);
     /// For a callback of World::advance. Shows the world between two steps of a long call, and returns false if
     /// commands wait, so that the call ends and they are carried out soon.

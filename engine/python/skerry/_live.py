@@ -81,7 +81,7 @@ class View:
 
     def run(self) -> None:
         """Runs the world at the rate that the page shows, until the page is closed or Ctrl-C is pressed, then closes
-        the view. A step that fails pauses the run, and the page tells why. Recorders and films in their `with` blocks
+        the view. A step that fails pauses the run, and the page shows why. Recorders and films in their `with` blocks
         follow the run; so do functions of World.watch_steps()."""
         try:
             while self.is_open:

@@ -68,7 +68,7 @@ function make_live(page, has_view) {
     const handlers = { begin, add, row: take_row, state: take_state, problem: show_problem };
     if (handlers[message.type]) await handlers[message.type](message);
   }
-  async function begin({ run: described, state: told, sliders: movable, plots }) {
+  async function begin({ run: described, state: first_state, sliders: movable, plots }) {
     pull.forget();
     clear_run();
     visuals.length = 0;
@@ -86,7 +86,7 @@ function make_live(page, has_view) {
     find("sliders").hidden = movable.length === 0;
     sliders = make_sliders(find("sliders"), movable, (number, value) => link.send({ do: "slider", number, value }));
     page.notice("");
-    take_state(told);
+    take_state(first_state);
     ask_for_fields();
     controls.show_legends();
   }
@@ -97,10 +97,10 @@ function make_live(page, has_view) {
     visuals.forEach((visual, i) => { visual.materials = run.visuals[i]; });
     if (page.scene && frame) (more.colliders || []).forEach(page.scene.colliders.add);
   }
-  function take_row(told) {
-    row_next = told;
-    add_row(told);
-    memory.widen(told.top, performance.now() / 1000);
+  function take_row(received) {
+    row_next = received;
+    add_row(received);
+    memory.widen(received.top, performance.now() / 1000);
   }
   function take_frame(bytes) {
     const is_first = frame === null;
