@@ -90,7 +90,6 @@ class Tab:
         }
         self.call("Input.dispatchMouseEvent", type=f"mouse{kind}", x=x, y=y, **parameters)
 
-
     def press(self, key: str) -> None:
         """Presses a key, such as "a" or "Home"."""
         self.call("Input.dispatchKeyEvent", type="keyDown", key=key, **({"text": key} if len(key) == 1 else {}))
