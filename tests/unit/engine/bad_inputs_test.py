@@ -4,7 +4,6 @@ what was expected, with exit code 2 and nothing left behind.
 Called as: bad_inputs_test.py PROGRAM SOURCE_FOLDER
 """
 import copy
-import json
 import os
 import sys
 import unittest
