@@ -124,7 +124,12 @@ def test_a_film_records_only_in_its_block() -> None:
 def test_a_program_opens_a_page_in_the_browser(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     opened: list[str] = []
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setattr(webbrowser, "open", lambda address: not opened.append(address))
+
+    def open_page(address: str) -> bool:
+        opened.append(address)
+        return True
+
+    monkeypatch.setattr(webbrowser, "open", open_page)
     page = ball_world()[0].show(title="a ball")
     page.open()
     page.open(tmp_path / "a page.html")
