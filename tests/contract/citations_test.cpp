@@ -96,11 +96,9 @@ void judge_line(const std::string& path, const std::string& line, const std::str
             wrong.push_back("no decision " + number);
     if (!path.ends_with(".md")) return;
     for (std::sregex_iterator at(line.begin(), line.end(), link), end; at != end; ++at) {
-        const std::string place = (*at)[1];  // from the root of the project if it begins with a slash
-        const std::filesystem::path root = SKERRY_SOURCE_DIR;
-        const std::filesystem::path target =
-            place.starts_with('/') ? root / place.substr(1) : root / std::filesystem::path(path).parent_path() / place;
-        if (!std::filesystem::exists(target)) wrong.push_back("no file " + place);
+        const std::filesystem::path target = std::filesystem::path(path).parent_path() / (*at)[1].str();
+        if (!std::filesystem::exists(std::filesystem::path(SKERRY_SOURCE_DIR) / target))
+            wrong.push_back("no file " + (*at)[1].str());
     }
 }
 
