@@ -21,7 +21,7 @@ function make_plot(host, times, series, format, pick) {
   // Names of colours stand for different values in light and dark pages.
   const style = getComputedStyle(document.documentElement);
   const resolved = (color) => (color.startsWith("var(") ? style.getPropertyValue(color.slice(4, -1)).trim() : color);
-  const margin = { left: 0, right: 6, top: 6, bottom: 20 };
+  const margin = { left: 52, right: 6, top: 6, bottom: 20 };
   let frame = 0, ends, first, span;
   function measure() {
     ends = range_of(series);
@@ -76,15 +76,11 @@ function make_plot(host, times, series, format, pick) {
     pen.beginPath();
     pen.textAlign = "right";
     pen.textBaseline = "middle";
-    const levels = [];
-    for (let value = ends.low; value <= ends.high + 1e-9 * ends.step; value += ends.step)
-      levels.push([value, format(Math.abs(value) < 1e-9 * ends.step ? 0 : value)]);
-    margin.left = Math.max(52, ...levels.map(([, label]) => pen.measureText(label).width + 8));
-    for (const [value, label] of levels) {
-      const y = Math.round(y_of(value)) + 0.5;
+    for (let value = ends.low; value <= ends.high + 1e-9 * ends.step; value += ends.step) {
+      const y = Math.round(y_of(value)) + 0.5, shown = Math.abs(value) < 1e-9 * ends.step ? 0 : value;
       pen.moveTo(margin.left, y);
       pen.lineTo(canvas.clientWidth - margin.right, y);
-      pen.fillText(label, margin.left - 7, y);
+      pen.fillText(format(shown), margin.left - 7, y);
     }
     pen.stroke();
     if (times.length < 2) return;
