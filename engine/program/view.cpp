@@ -21,8 +21,12 @@ namespace {
 
 /// Opens an address in the browser of the user. Does nothing if there is no desktop or no program to open it.
 void open_browser(const std::string& address) {
+#ifdef __APPLE__
+    const char* const program = "open";
+#else
     const char* const program = "xdg-open";
     if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
+#endif
     posix_spawn_file_actions_t silence;
     posix_spawnattr_t own_group;  // so that Ctrl-C does not end the browser
     posix_spawn_file_actions_init(&silence);

@@ -25,7 +25,7 @@ _RELOAD = 5.0  # time in which a page may connect again, for example after a rel
 
 
 class View:
-    """A live view, which shows a world in a browser while it runs. view() makes it, and describes its use."""
+    """Shows a world in a browser while it runs. view() makes it, and describes its use."""
 
     __slots__ = ("_closed", "_core", "_lock", "_resets", "_seen", "_slow", "_world")
 
@@ -93,7 +93,8 @@ class View:
             self.close()
 
     def close(self) -> None:
-        """Ends the server, and run() on another thread. Pages keep their last picture. The `with` block ends by it."""
+        """Ends the server, and run() of another thread. Pages keep their last picture. The end of the `with` block does
+        this."""
         self._closed = True
         with self._lock:
             self._core.close()

@@ -1,5 +1,5 @@
-// Each contact is a dot and an arrow. The length of the arrow grows with the square root of the force, because forces
-// of impacts are a hundred times those of bodies at rest.
+// The contacts: a dot each, and an arrow that grows with the root of the force, because impacts are a hundred times
+// stronger than what lies at rest.
 "use strict";
 
 // A force of scales.force.top gets an arrow about as long as half a body is thick; dots leave room between vertices.
