@@ -16,17 +16,17 @@ import statistics
 import sys
 import time
 from multiprocessing.synchronize import Event
-from urllib.parse import urlsplit
 
 import skerry as sk
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests/python"))
 
 from browser import open_browser  # noqa: E402
+from live_client import open_socket  # noqa: E402
 
-WARM_UP, SECONDS = 5.0, 10.0  # durations before and of a measurement [s]
+WARM_UP, SECONDS = 5.0, 10.0  # duration before a measurement, and of a measurement [s]
 
-# Notes the times at which the page acknowledges frames, and the sizes of the frames.
+# Records the times at which the page acknowledges frames, and the sizes of the frames.
 WATCH = """
 (() => {
   const Plain = window.WebSocket;
@@ -109,16 +109,7 @@ def measure_browser(triangles: int) -> None:
 
 def read_frames(address: str, fields: list[str], ready: Event, done: Event) -> None:
     """A client that reads and acknowledges frames until `done`."""
-    from websockets.sync.client import connect
-    from websockets.typing import Origin
-
-    parts = urlsplit(address)
-    with connect(
-        f"ws://{parts.netloc}/live?{parts.fragment}",
-        origin=Origin(f"http://{parts.netloc}"),
-        max_size=None,
-        compression=None,
-    ) as socket:
+    with open_socket(address) as socket:
         socket.send(json.dumps({"do": "fields", "names": fields}))
         number = 0
         while not done.is_set():

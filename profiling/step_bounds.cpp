@@ -22,7 +22,7 @@ namespace {
 
 constexpr Real safety = 0.9;  // safety factor of stable_step: its result over the bound
 
-/// Lower estimate of the highest circular frequency at rest [rad/s], by power iteration. `body`: of the linear
+/// Lower estimate of the highest circular frequency at rest [rad/s], by power iteration. `body` has the linear
 /// material, whose forces are proportional to the displacements.
 Real highest_frequency(test::ElasticBody& body) {
     constexpr int iterations = 3000;

@@ -35,7 +35,7 @@ suppress_warnings = [
     "ref.python",  # a type such as `object` may also be the name of several members
 ]
 
-# Formulas: KaTeX, a system package, renders what the extension for MathJax marks.
+# Formulas: the extension for MathJax marks them, and KaTeX, a system package, renders them.
 mathjax_path = "katex.js"
 html_js_files = [("contrib/auto-render.js", {"defer": "defer"}), ("formulas.js", {"defer": "defer"})]
 

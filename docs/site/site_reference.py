@@ -81,7 +81,7 @@ class SchemaKeys(SphinxDirective):
 
 
 class CommandHelp(SphinxDirective):
-    """Shows what the program prints for `--help`, for each of its commands."""
+    """Shows the help texts of the program and of its commands."""
 
     def run(self) -> list[nodes.Node]:
         """A section for the program and for each command."""

@@ -122,13 +122,13 @@ void LiveHub::set_state(const LiveState& state) {
     changed_.notify_all();
 }
 
-void LiveHub::tell(std::uint64_t number, const std::string& problem) {
+void LiveHub::report(std::uint64_t number, const std::string& problem) {
     const std::lock_guard lock(mutex_);
     if (Client* client = find(number)) put_text(*client, problem_text(problem));
     changed_.notify_all();
 }
 
-void LiveHub::tell_all(const std::string& problem) {
+void LiveHub::report_to_all(const std::string& problem) {
     const std::lock_guard lock(mutex_);
     for (Client& client : clients_) put_text(client, problem_text(problem));
     changed_.notify_all();

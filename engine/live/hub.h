@@ -45,8 +45,8 @@ public:
 
     // For the threads of connections.
 
-    /// Adds a browser and returns its number. If there are too many, tells it so and returns 0. `link` must live until
-    /// leave().
+    /// Adds a browser and returns its number. If there are too many, sends it a problem and returns 0. `link` must live
+    /// until leave().
     std::uint64_t join(LiveLink& link);
     /// Removes a browser, and ends its pull. Waits for its thread.
     void leave(std::uint64_t client);
@@ -61,10 +61,11 @@ public:
     std::vector<LiveCommand> take_commands();
     /// Starts a new run. All browsers start new streams.
     void begin_run(const LiveRunInfo& info, const LiveState& state);
-    /// Tells all browsers the state, unless they know it already.
+    /// Sends the state to all browsers if it has changed.
     void set_state(const LiveState& state);
-    void tell(std::uint64_t client, const std::string& problem);
-    void tell_all(const std::string& problem);
+    /// Sends the text of a problem to a browser.
+    void report(std::uint64_t client, const std::string& problem);
+    void report_to_all(const std::string& problem);
     /// Notes that the world may differ from the last snapshot.
     void mark_changed();
 

@@ -72,6 +72,7 @@ LiveRun::LiveRun(World& world, const LiveSettings& settings)
 }
 
 void LiveRun::sync(World& world) {
+    step_asked_ = false;
     if (!hub_.is_busy()) return;
     sample_probes(world);
     apply_commands(world);
@@ -112,7 +113,7 @@ bool LiveRun::between_steps(const World& world) {
 void LiveRun::fail(const std::string& text) {
     failed_ = true;
     state_.playing = false;
-    hub_.tell_all(text);
+    hub_.report_to_all(text);
     hub_.set_state(state_);
 }
 
@@ -122,7 +123,7 @@ void LiveRun::apply_commands(World& world) {
         try {
             apply(command, world);
         } catch (const SceneError& error) {
-            hub_.tell(command.client, error.what());
+            hub_.report(command.client, error.what());
         }
     }
     hub_.set_state(state_);

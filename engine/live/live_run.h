@@ -21,7 +21,7 @@ public:
 
     LiveHub& hub() { return hub_; }
     std::uint64_t resets() const { return resets_; }
-
+    bool playing() const { return step_asked_ || hub_.state().playing; }
     void sync(World& world);
     Real due(World& world);
     bool between_steps(const World& world);
@@ -53,10 +53,10 @@ private:
     std::vector<PlottedProbe> probes_;
     World start_;  // state for a reset
     LiveState state_, first_state_;
-    Vec3 gravity_;                         // gravity while it is on [m/s^2]
-    std::map<std::uint64_t, Pull> pulls_;  // by number of the browser
-    bool step_asked_ = false;
-    bool failed_ = false;  // paused by fail()
+    Vec3 gravity_;                          // gravity while it is on [m/s^2]
+    std::map<std::uint64_t, Pull> pulls_;   // by number of the browser
+    std::atomic<bool> step_asked_ = false;  // until due() or the next sync()
+    bool failed_ = false;                   // paused by fail()
     std::atomic<std::uint64_t> resets_ = 0;
 
     SnapshotTaker taker_;

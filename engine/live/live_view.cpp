@@ -89,7 +89,7 @@ bool LiveView::is_open() const {
 }
 
 bool LiveView::playing() const {
-    return impl_->run.hub().state().playing;
+    return impl_->run.playing();
 }
 
 int LiveView::clients() const {

@@ -43,8 +43,7 @@ Json json_of_plots(const std::vector<LivePlot>& plots) {
 }  // namespace
 
 std::string begin_text(const LiveRunInfo& info, const LiveState& state) {
-    Json run = {
-        {"schema", 3}, {"title", info.title}, {"gravity", {info.gravity.x(), info.gravity.y(), info.gravity.z()}}};
+    Json run = {{"title", info.title}, {"gravity", {info.gravity.x(), info.gravity.y(), info.gravity.z()}}};
     run.update(json_of_objects(PageStream{}, {}));
     return text_of({{"type", "begin"},
                     {"run", run},
@@ -66,11 +65,7 @@ std::string problem_text(const std::string& problem) {
 LiveEncoder::Messages LiveEncoder::pack(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client) {
     Messages messages;
     messages.changes = stream_.pack(snapshot.frame);
-    const PageCounts now{.bodies = stream_.bodies().size(),
-                         .visuals = stream_.visuals().materials().size(),
-                         .colliders = stream_.colliders().size(),
-                         .lines = stream_.lines().size()};
-    if (now != known_) {
+    if (const PageCounts now = counts_of(stream_); now != known_) {
         Json added = {{"type", "add"}};
         added.update(json_of_objects(stream_, known_));
         added["visual_stream"] =
@@ -100,7 +95,6 @@ Real LiveEncoder::usual(std::size_t field) {
 }
 
 std::string LiveEncoder::row_text(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client) {
-    const PageRow row = row_of(snapshot.frame);
     Json top = {{"speed", usual(0)}, {"stress", usual(stress_field)}, {"strain", usual(strain_field)}};
     values_.clear();
     for (const Contact& contact : snapshot.frame.contacts) values_.push_back(contact.force().norm());
@@ -112,22 +106,14 @@ std::string LiveEncoder::row_text(const Snapshot& snapshot, std::uint64_t frame,
     Json pull;
     const auto own = std::ranges::find(snapshot.pulls, client, &std::pair<std::uint64_t, PullState>::first);
     if (own != snapshot.pulls.end()) pull = {{"force", own->second.force}, {"length", own->second.length}};
-    return text_of({{"type", "row"},
-                    {"number", frame},
-                    {"time", row.time},
-                    {"kinetic", row.energy.kinetic},
-                    {"elastic", row.energy.elastic},
-                    {"potential", row.energy.potential},
-                    {"dissipated", row.energy.dissipated},
-                    {"contacts", row.contacts},
-                    {"stick", row.stick},
-                    {"slide", row.slide},
-                    {"regions", row.regions},
-                    {"top", top},
-                    {"probes", snapshot.probes},
-                    {"sliders", snapshot.sliders},
-                    {"pull", pull},
-                    {"speed", snapshot.speed}});
+    Json row = {{"type", "row"}, {"number", frame}};
+    row.update(json_of_row(row_of(snapshot.frame)));
+    row.update({{"top", top},
+                {"probes", snapshot.probes},
+                {"sliders", snapshot.sliders},
+                {"pull", pull},
+                {"speed", snapshot.speed}});
+    return text_of(row);
 }
 
 }  // namespace skerry

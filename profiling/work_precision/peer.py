@@ -1,4 +1,4 @@
-"""What the runners of other engines share: their command line, repeated runs, and the file of the result."""
+"""Functions that the runners of other engines share: command line, repeated runs, and the file of the result."""
 import json
 import os
 

@@ -71,7 +71,7 @@ def failed_searches(folder):
 
 
 def main():
-    """Prints what is wrong with the site."""
+    """Prints the problems of the site."""
     folder = pathlib.Path(sys.argv[1]).resolve()
     problems = [*broken_links(folder), *failed_searches(folder)]
     print("\n".join(problems))

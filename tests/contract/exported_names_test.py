@@ -17,7 +17,7 @@ def names(*arguments):
 
 def main():
     public = re.compile(r"^((typeinfo|typeinfo name|vtable) for )?skerry::")
-    # What the library is made of inside.
+    # Internal names of the library.
     internal = re.compile(r"^skerry::(World(State|Access)|Executor|TaskGraph|Model|\(anonymous)|nlohmann|"
                           r"Eigen::(?!Matrix<double, 3, [13], 0, 3, [13]>)")
     failures = []

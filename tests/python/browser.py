@@ -90,10 +90,6 @@ class Tab:
         }
         self.call("Input.dispatchMouseEvent", type=f"mouse{kind}", x=x, y=y, **parameters)
 
-    def point(self, x: float, y: float) -> None:
-        """Moves the mouse without a button."""
-        self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y, pointerType="mouse")
-
     def press(self, key: str) -> None:
         """Presses a key, such as "a" or "Home"."""
         self.call("Input.dispatchKeyEvent", type="keyDown", key=key, **({"text": key} if len(key) == 1 else {}))

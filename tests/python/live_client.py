@@ -1,4 +1,4 @@
-"""A client of the live view, as a page is one, and requests by hand that a page would not make."""
+"""A client of the live view that behaves like a page, and requests that a page would not make."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class Client:
 
     @property
     def state(self) -> dict[str, Any]:
-        """What the page shows as state of the run."""
+        """The last state that the server has sent."""
         states = [message.get("state", message) for message in self.messages if message["type"] in ("begin", "state")]
         return states[-1] if states else {}
 
@@ -110,9 +110,16 @@ class Client:
 
 
 @contextmanager
+def open_socket(address: str) -> Iterator[Any]:
+    """A WebSocket to the view with this address."""
+    parts = urlsplit(address)
+    stream, origin = f"ws://{parts.netloc}/live?{parts.fragment}", f"http://{parts.netloc}"
+    with websockets.connect(stream, origin=origin, max_size=None, compression=None) as connection:
+        yield connection
+
+
+@contextmanager
 def connect(view: sk.View) -> Iterator[Client]:
     """A client of the view with the right token."""
-    port, token = place_of(view)
-    address, origin = f"ws://127.0.0.1:{port}/live?token={token}", f"http://127.0.0.1:{port}"
-    with websockets.connect(address, origin=origin, max_size=None, compression=None) as connection:
+    with open_socket(view.address) as connection:
         yield Client(view, connection)

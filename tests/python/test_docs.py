@@ -20,7 +20,7 @@ import skerry as sk
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = sorted([ROOT / "README.md", ROOT / "scenes/README.md", *(ROOT / "docs").rglob("*.md")])
 FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-CONTEXT = re.compile(r"<!-- declares: ([^\n]*) -->\n$")  # what a block of C++ uses from elsewhere
+CONTEXT = re.compile(r"<!-- declares: ([^\n]*) -->\n$")  # declarations for the next block of C++
 only_full = pytest.mark.skipif("SKERRY_FULL" not in os.environ, reason="SKERRY_FULL is not set")
 
 

@@ -1,4 +1,4 @@
-"""The live view as programs see it: what the server refuses, what it sends, and what clients may do."""
+"""The live view as programs see it: refusals of the server, its messages, and commands of clients."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def status_of(answer: bytes) -> int:
     return int(found[1])
 
 
-# Who is let in.
+# Requests that are refused.
 
 
 def test_the_page_is_served_without_secrets(shared: sk.View) -> None:
@@ -123,7 +123,7 @@ def test_nothing_but_the_page_is_served(shared: sk.View) -> None:
         assert status_of(answer_to(port, *lines)) >= 400, method
 
 
-# What clients get.
+# Messages to clients.
 
 
 def advance(client: Client, dt: float = 0.01) -> None:
@@ -206,6 +206,17 @@ def test_commands_change_the_world_and_all_clients_see_it(view: sk.View) -> None
         other.wait(lambda: other.state["playing"] is False)
         assert tuple(world.settings.gravity) == (0, 0, -9.81)
         assert other.state["rate"] == 0.25 and not view.playing
+
+
+def test_a_single_step_lets_a_loop_advance_once(view: sk.View) -> None:
+    with connect(view) as client:
+        for command, playing in (("pause", False), ("step", True)):
+            client.send(command)
+            client.settle()
+            view.sync()
+            assert view.playing is playing
+        view.sync()
+        assert not view.playing
 
 
 def test_reset_goes_back_to_the_start(view: sk.View) -> None:

@@ -55,7 +55,7 @@ def running(tab: Tab, shown: sk.World | sk.Scene, **options: Any) -> Iterator[sk
 
 
 def place_of(tab: Tab, text: str) -> tuple[float, float]:
-    """A place in the window where the page tells a text about what is under the pointer."""
+    """A place in the window where the tip at the pointer contains a text."""
     place = tab.evaluate(
         """(async () => {
         const canvas = document.querySelector("#view > canvas:not(#overlay)"), box = canvas.getBoundingClientRect();
@@ -68,7 +68,7 @@ def place_of(tab: Tab, text: str) -> tuple[float, float]:
         }
         })()""".replace("TEXT", json.dumps(text))
     )
-    assert place, f"nothing under the pointer tells {text!r}"
+    assert place, f"no tip contains {text!r}"
     return place[0], place[1]
 
 

@@ -4,7 +4,6 @@ import gc
 import html
 import os
 import re
-import shutil
 import subprocess
 import tempfile
 import urllib.parse
@@ -14,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import skerry as sk
+from browser import PROGRAM
 from worlds import ball_world
 
 
@@ -73,10 +73,7 @@ def test_a_film_leaves_no_files(monkeypatch: pytest.MonkeyPatch, tmp_path: Path)
     assert list(tmp_path.iterdir()) == []
 
 
-BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-
-
-@pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed")
+@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
 def test_a_browser_runs_the_page_inside_a_notebook(tmp_path: Path) -> None:
     world, _, _ = ball_world()
     with world.record() as film:
@@ -90,7 +87,7 @@ def test_a_browser_runs_the_page_inside_a_notebook(tmp_path: Path) -> None:
     (tmp_path / "notebook.html").write_text(f"<html><body>{listener}{page._repr_html_()}</body></html>", "utf-8")
     done = subprocess.run(
         [
-            BROWSER or "",
+            PROGRAM or "",
             "--headless",
             "--no-sandbox",
             "--use-gl=swiftshader",
@@ -127,7 +124,12 @@ def test_a_film_records_only_in_its_block() -> None:
 def test_a_program_opens_a_page_in_the_browser(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     opened: list[str] = []
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setattr(webbrowser, "open", lambda address: not opened.append(address))
+
+    def open_page(address: str) -> bool:
+        opened.append(address)
+        return True
+
+    monkeypatch.setattr(webbrowser, "open", open_page)
     page = ball_world()[0].show(title="a ball")
     page.open()
     page.open(tmp_path / "a page.html")

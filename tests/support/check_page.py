@@ -18,7 +18,7 @@ import zlib
 
 from live_page import LIVE, SERVER
 
-MAX_BYTES = 3_000_000  # of 120 frames of 5,000 surface vertices; 2.3 MB when this was written
+MAX_BYTES = 3_000_000  # limit for 120 frames of 5,000 surface vertices, which take 2.3 MB
 
 
 def chromium():
@@ -30,7 +30,7 @@ def chromium():
 
 
 def run_once(command, seconds):
-    """What the command prints, or None when it is not done after that many seconds: then all its processes end."""
+    """Output of a command, or None if it takes longer than that many seconds; then all its processes are killed."""
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
                           start_new_session=True) as process:
         try:
@@ -41,10 +41,10 @@ def run_once(command, seconds):
 
 
 def browse(page, fragment, picture=None, size=(720, 450), seconds=12):
-    """The page as the browser has it after that many seconds of its own time, and its picture if a name is given.
+    """The document after that many seconds of the browser's virtual time. Writes a picture if a name is given.
 
-    That time also passes while the page waits for its frames to be unpacked, and Chromium hangs if it asks for a
-    picture before there is one: it is started again, twice, with four times as many seconds.
+    Virtual time also passes while the page unpacks its frames, and Chromium hangs if it takes a picture too early.
+    Then it is started again, up to twice, with four times as many seconds.
     """
     for attempt in range(3):
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
@@ -95,7 +95,7 @@ def pixels(path):
 
 
 def colors_in_view(path):
-    """How many different colours the middle of the three-dimensional view has, and the share of the commonest."""
+    """Number of colours in the middle of the three-dimensional view, and the share of the commonest one."""
     rows = pixels(path)
     height, width = len(rows), len(rows[0])
     seen = {}
@@ -114,7 +114,7 @@ def check(folder, page, fragment, expected, picture, size=(720, 450)):
     return path
 
 
-# What the scripts below start with. `at` is where some body is on the canvas.
+# Frame of the scripts below: functions that act on the page, and marks for the result.
 ACTING = """
 (async () => {
   const root = document.documentElement, wait = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -260,7 +260,7 @@ RECORDING = """
     while (!root.dataset.video) await wait(50);
     check(root.dataset.pictures === "31", "31 pictures of 2 s at twice the pace, not " + root.dataset.pictures);
     check(Number(root.dataset.video) > 10000, root.dataset.video + " bytes of video");
-    const video = document.createElement("video"), times = [];
+    const video = document.createElement("video");
     video.src = URL.createObjectURL(saved);
     await new Promise((resolve, reject) => { video.onloadedmetadata = resolve; video.onerror = reject; });
     check(Math.abs(video.duration - 31 / 30) < 0.01, "31 pictures last " + video.duration + " s");
@@ -270,9 +270,9 @@ RECORDING = """
 
 
 def check_acting(folder, fragment, script, size=(900, 700), before="", page="page.html"):
-    """The marks of a page after `script` has acted on it; `before` runs ahead of all others.
+    """The marks of a page after `script` has acted on it. `before` runs before all other scripts.
 
-    What the browser does beside the page (a PNG, a video) may take longer than its own time lasts: then there is more.
+    The encoding of pictures and videos may take longer than the virtual time; then it is tried again with more time.
     """
     with open(os.path.join(folder, page), encoding="utf-8") as file:
         text = file.read()

@@ -1,13 +1,13 @@
-"""Scripts that check_page.py puts into a live page: a server in the page itself, and what a user does."""
-# A server in place of WebSocket, which sends the messages of live.json. `sent`: what the page has answered.
+"""Scripts that check_page.py puts into a live page: a server inside the page, and the actions of a user."""
+# Replaces WebSocket by a server that sends the messages of live.json. `sent`: messages of the page.
 SERVER = """
-const server = { sent: [], at: 0, refuses: false, served: true };
-window.fetch = async () => { if (!server.served) throw new TypeError("nobody answers"); return { ok: true }; };
+const server = { sent: [], at: 0, refuses: false };
+window.fetch = async () => ({ ok: true });
 window.WebSocket = class extends EventTarget {
   static OPEN = 1;
   constructor(url) {
     super();
-    Object.assign(server, { url, socket: this, tries: (server.tries || 0) + 1 });
+    Object.assign(server, { url, socket: this });
     this.readyState = 0;
     setTimeout(() => (server.refuses ? this.close() : this.open()), 10);
   }
@@ -140,9 +140,9 @@ LIVE = """
     server.refuses = true;
     server.socket.close();
     await wait(100);
-    check(root.dataset.live === "lost", "a lost connection is told, not " + root.dataset.live);
+    check(root.dataset.live === "lost", "a lost connection is shown, not " + root.dataset.live);
     while (root.dataset.live !== "refused") await wait(20);
-    check(/token/.test(find("notice").textContent), "a refusal is told");
+    check(/token/.test(find("notice").textContent), "a refusal is shown");
     server.refuses = false;
     while (root.dataset.live !== "open") await wait(20);
     await server.frame(1);

@@ -46,7 +46,7 @@ public:
     /// Ends all connections and stops the server. After it sync(), fail() and run() do nothing, and due() returns 0.
     void close();
     bool is_open() const;
-    bool playing() const;  // false if the view is paused
+    bool playing() const;  // false if the view is paused; true until the next sync() for a single step
     int clients() const;   // number of connected browsers
     std::uint64_t frames_sent() const;
     std::uint64_t frames_dropped() const;  // frames that a browser missed because it was still busy with earlier ones
@@ -60,16 +60,16 @@ public:
     /// fail are reported to the browser that sent them, and change nothing.
     void sync(World& world);
     /// Calls sync() and returns the simulated time that is to be advanced now [s]; 0 if the view is paused or the world
-    /// is ahead of the wall clock. It then waits for commands, at most 20 ms. A caller that is told to advance has to
-    /// do so. For a single step the result is the length of one step.
+    /// is ahead of the wall clock. With the result 0 it waits for commands, at most 20 ms. The caller must advance the
+    /// world by the result. For a single step the result is the length of one step.
     Real due(World& world);
     /// For a callback of World::advance. Shows the world between two steps of a long call, and returns false if
     /// commands wait, so that the call ends and they are carried out soon.
     bool between_steps(const World& world);
     /// Pauses the view, and shows the text to all browsers. For steps that failed.
     void fail(const std::string& text);
-    /// Advances the world as the browsers ask, in calls of at most 1/60 s, until `go_on` returns false, which is asked
-    /// before each step. A step that cannot be committed pauses the view; `failed` then gets its message.
+    /// Advances the world as the browsers ask, in calls of at most 1/60 s, until `go_on`, which is called before each
+    /// step, returns false. A step that cannot be committed pauses the view; `failed` then gets its message.
     void run(World& world, const std::function<bool()>& go_on,
              const std::function<void(const std::string&)>& failed = {});
 

@@ -12,7 +12,7 @@ namespace skerry {
 
 namespace {
 
-/// Compares two texts in a time that depends on their lengths only, so that the time of a refusal tells nothing about
+/// Compares two texts in a time that depends on their lengths only, so that the time of a refusal does not depend on
 /// the token.
 bool equal_texts(std::string_view a, std::string_view b) {
     if (a.size() != b.size()) return false;

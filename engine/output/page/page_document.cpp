@@ -83,20 +83,12 @@ Json json_of_lines(std::span<const PageLine> lines) {
 
 /// Plotted quantities as JSON: one array per quantity, with one value per frame.
 Json json_of_rows(const PageData& data) {
-    Json rows;
-    const auto column = [&](const char* name, auto&& value) {
-        Json& list = rows[name] = Json::array();
-        for (const PageRow& row : data.rows()) list.push_back(value(row));
-    };
-    column("time", [](const PageRow& row) { return row.time; });
-    column("kinetic", [](const PageRow& row) { return row.energy.kinetic; });
-    column("elastic", [](const PageRow& row) { return row.energy.elastic; });
-    column("potential", [](const PageRow& row) { return row.energy.potential; });
-    column("dissipated", [](const PageRow& row) { return row.energy.dissipated; });
-    column("contacts", [](const PageRow& row) { return row.contacts; });
-    column("stick", [](const PageRow& row) { return row.stick; });
-    column("slide", [](const PageRow& row) { return row.slide; });
-    column("regions", [](const PageRow& row) { return row.regions; });
+    Json rows = json_of_row({});
+    for (Json& column : rows) column = Json::array();
+    for (const PageRow& row : data.rows()) {
+        const Json values = json_of_row(row);
+        for (const auto& [name, value] : values.items()) rows[name].push_back(value);
+    }
     return rows;
 }
 
@@ -216,12 +208,31 @@ void require_page_library(const std::filesystem::path& file) {
         .raise();
 }
 
+PageCounts counts_of(const PageStream& stream) {
+    return {.bodies = stream.bodies().size(),
+            .visuals = stream.visuals().materials().size(),
+            .colliders = stream.colliders().size(),
+            .lines = stream.lines().size()};
+}
+
 Json json_of_objects(const PageStream& stream, const PageCounts& first) {
     return {{"bodies", stream.body_names().subspan(first.bodies)},
             {"visual_of_body", stream.visual_numbers().subspan(first.bodies)},
             {"visuals", json_of_visuals(std::span(stream.visuals().materials()).subspan(first.visuals))},
             {"colliders", json_of_colliders(stream.colliders().subspan(first.colliders))},
             {"lines", json_of_lines(stream.lines().subspan(first.lines))}};
+}
+
+Json json_of_row(const PageRow& row) {
+    return {{"time", row.time},
+            {"kinetic", row.energy.kinetic},
+            {"elastic", row.energy.elastic},
+            {"potential", row.energy.potential},
+            {"dissipated", row.energy.dissipated},
+            {"contacts", row.contacts},
+            {"stick", row.stick},
+            {"slide", row.slide},
+            {"regions", row.regions}};
 }
 
 std::string text_of(const Json& json) {

@@ -181,7 +181,7 @@ def seconds(value: SupportsFloat, object: str, name: str, *, zero: bool = True) 
 
 
 def checked(value: Checked, name: str, *kinds: type) -> Checked:
-    """The same object. Raises TypeError unless its class is one of the given ones."""
+    """Returns the object. Raises TypeError unless its class is one of the given ones."""
     if not isinstance(value, kinds):
         expected = " or ".join(f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}" for kind in kinds)
         raise TypeError(f"{name}: found {_shortened(value)}, expected {expected}")
@@ -213,7 +213,7 @@ def require_attributes(value: object, name: str, expected: str, *attributes: str
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
-    """The same array, which from now on refuses changes."""
+    """Returns the array, which from now on refuses changes."""
     array.flags.writeable = False
     return array
 

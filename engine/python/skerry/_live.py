@@ -54,8 +54,8 @@ class View:
 
     @property
     def playing(self) -> bool:
-        """False while the page pauses the run, and true for one call of sync() per single step. run() obeys it; a loop
-        of your own can call World.advance() only if it is true."""
+        """False while the page pauses the run. The button for a single step makes it true until the next sync(). run()
+        obeys it; a loop of your own can call World.advance() only if it is true."""
         return self._core.playing()
 
     @property
@@ -74,14 +74,14 @@ class View:
         return self._core.frames_dropped()
 
     def sync(self) -> None:
-        """Does what users of the page asked for since the last call (pulls, sliders, gravity, reset), and shows the
-        present state if a page can take a frame. Never waits for a page, and drops frames instead. Call it after each
-        call of World.advance(). BufferError: arrays of views() are in use."""
+        """Carries out the commands of users of the page since the last call (pulls, sliders, gravity, reset), and shows
+        the present state if a page can take a frame. Never waits for a page, and drops frames instead. Call it after
+        each call of World.advance(). BufferError: arrays of views() are in use."""
         self._turn(self._core.sync)
 
     def run(self) -> None:
         """Runs the world at the rate that the page shows, until the page is closed or Ctrl-C is pressed, then closes
-        the view. A step that fails pauses the run, and the page tells why. Recorders and films in their `with` blocks
+        the view. A step that fails pauses the run, and the page shows why. Recorders and films in their `with` blocks
         follow the run; so do functions of World.watch_steps()."""
         try:
             while self.is_open:

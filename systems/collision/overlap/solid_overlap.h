@@ -31,7 +31,7 @@ struct PlacedSolid {
 std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance);
 
 /// Finds a point of a solid that touches the back of an open surface: its distance is at most `tolerance` [m]. At such
-/// a distance contacts cannot tell on which side of the surface the solid is.
+/// a distance contacts cannot detect the side of the surface on which the solid is.
 std::optional<Overlap> find_touch_of_back(const PlacedSolid& solid, const PlacedSolid& surface, Real tolerance);
 
 }  // namespace skerry

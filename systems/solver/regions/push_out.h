@@ -100,8 +100,8 @@ private:
 
     void sweep(Real asked) {
         if (sweep_rows(region_.tolerance * region_.tolerance * asked, false)) return;
-        // Joints and ties can hold a contact that asks for a push. They take precedence: an error in their positions
-        // would ask the next velocity solve for a motion that the contact forbids.
+        // Joints and ties can hold a contact that needs a push. They take precedence: with an error in their positions
+        // the next velocity solve would demand a motion that the contact forbids.
         constexpr Real rounding = 1e-24;  // squared
         sweep_rows(rounding * asked, true);
     }

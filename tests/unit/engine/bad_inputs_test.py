@@ -4,7 +4,6 @@ what was expected, with exit code 2 and nothing left behind.
 Called as: bad_inputs_test.py PROGRAM SOURCE_FOLDER
 """
 import copy
-import json
 import os
 import sys
 import unittest
@@ -204,7 +203,7 @@ COMMANDS = [
 ]
 
 
-# What a scene may say, and no step can be taken of: exit code 1, the figures so far, and whose fault it is.
+# Values of a valid scene with which no step is possible: exit code 1, statistics so far, and a message with the cause.
 STEPS = [
     ("a velocity beyond all numbers", "bodies.0.velocity", [1e308, 0, 0], ["body 'block'", "velocity"]),
     ("a place beyond all digits", "bodies.0.position", [1e300, 0, 0], ["body 'block'", "far from the origin"]),

@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::chrono::seconds patience(20);  // far longer than any wait of a test that passes
 
-/// A browser that keeps what it gets.
+/// A browser that stores all messages.
 class Browser final : public LiveLink {
 public:
     bool send_text(std::string_view text) override {
@@ -262,7 +262,7 @@ TEST_CASE("the memory of a live stream does not grow with its length", "[unit][l
         visit.browser.wait_for_frames(frame);
         visit.acknowledge(frame);
     }
-    // One is filled, one is the latest, and one may be with the browser.
+    // One snapshot is filled, one is the latest, and one may be in use for the browser.
     CHECK(used.size() <= 3);
 }
 

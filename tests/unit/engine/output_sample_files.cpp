@@ -152,10 +152,7 @@ int main(int argc, char** argv) {
                         {"node", json_of(frame.bodies.front().position[1])},
                         {"points", json_of(points)},
                         {"forces", json_of(forces)}});
-        known = {.bodies = stream.body_names().size(),
-                 .visuals = stream.visuals().materials().size(),
-                 .colliders = stream.colliders().size(),
-                 .lines = stream.lines().size()};
+        known = counts_of(stream);
     }
     std::ofstream(folder / "live.json") << sent;
 }

@@ -1,4 +1,4 @@
-"""What tests of the program from outside share. Called as: TEST PROGRAM SOURCE_FOLDER"""
+"""Base of the tests that run the program. Called as: TEST PROGRAM SOURCE_FOLDER"""
 import json
 import pathlib
 import subprocess

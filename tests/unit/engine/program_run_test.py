@@ -1,4 +1,4 @@
-"""What a run says while it lasts, how it ends, and what becomes of its outputs and of inputs beyond all numbers.
+"""Runs of the program: progress, exit codes, outputs, and inputs with huge numbers.
 
 Called as: program_run_test.py PROGRAM SOURCE_FOLDER
 """
@@ -13,8 +13,7 @@ import unittest
 
 from program_case import PROGRAM, ROOT, SCENE, ProgramCase
 
-# One step after the other: no frame and no sample ends for a day.
-# What is put to rest would be over at once.
+# A run of a day within its first frame. Sleeping bodies would end it at once.
 SLOW = {**SCENE, "seconds": 1e5, "frame_step": 1e5, "probe_step": 1e5, "settings": {"sleep": False}}
 
 

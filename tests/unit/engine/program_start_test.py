@@ -1,4 +1,4 @@
-"""What the program says and does about bodies that begin in each other. Called as: TEST PROGRAM SOURCE_FOLDER"""
+"""Bodies that overlap at the start: messages and results of the program. Called as: TEST PROGRAM SOURCE_FOLDER"""
 import json
 import subprocess
 import sys

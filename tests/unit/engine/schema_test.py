@@ -1,4 +1,4 @@
-"""Every scene that ships is valid by the published schema, which refuses what the reader refuses, and every key has an
+"""Every shipped scene is valid by the published schema, which refuses the same values as the reader. Every key has an
 example in a scene. Skipped without python3-jsonschema."""
 import copy
 import json

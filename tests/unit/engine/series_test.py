@@ -119,8 +119,8 @@ class SeriesTest(ProgramCase):
                 self.assertAlmostEqual(time, probe_step * i, places=12)
             # impulses between rows include the calls of advance that end between them
             checkpoint, again = self.folder / "run.skerry", self.folder / "again.csv"
-            whole = self.skerry("run", scene, "--stats", self.folder / "whole.json", "--probes", again,
-                                "--checkpoint", checkpoint, "--every", 0.03, "--seconds", seconds)
+            self.skerry("run", scene, "--stats", self.folder / "whole.json", "--probes", again,
+                        "--checkpoint", checkpoint, "--every", 0.03, "--seconds", seconds)
             self.skerry("run", "--restart", checkpoint, "--probes", again, "--seconds", seconds + 0.05)
             longer = read_csv(again)
             for i, time in enumerate(longer["time [s]"]):

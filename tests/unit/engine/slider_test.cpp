@@ -68,7 +68,7 @@ std::string refusal_of(const std::string& slider) {
     return message_of([&] { (void)yard_with(slider); });
 }
 
-/// Sets a slider half a second's change away, and requires that its value is halfway there after half of that time.
+/// Sets a slider to a value that it reaches after 0.5 s, and requires that it has changed by half after 0.25 s.
 void check_course(Scene& scene, const Slider& slider, const char* unit, Real start) {
     INFO(slider.name);
     CHECK(slider.unit == unit);

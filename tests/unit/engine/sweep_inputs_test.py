@@ -8,7 +8,7 @@ import sys
 import unittest
 
 sys.dont_write_bytecode = True
-from program_case import SCENE, ProgramCase
+from program_case import ProgramCase
 
 MU = "materials.rubber.mu"
 

@@ -7,8 +7,8 @@ const initial_state = {
   recording: false, fields: field_names,
 };
 
-// page: {find, run, state, scales, scene, plots}; scene may be null. player: what differs between recorded and live
-// runs: show() draws, toggle() plays or pauses, set_rate(rate), colored(color), keys, read(asked).
+// page: {find, run, state, scales, scene, plots}; scene may be null. player: the functions that differ between recorded
+// and live runs: show() draws, toggle() plays or pauses, set_rate(rate), colored(color), keys, read(asked).
 function make_controls(page, player) {
   const { find, run, state, scales } = page, root = document.documentElement;
   const modes = { color: [...field_names, "body"], contacts: ["off", "motion", "region"] };

@@ -11,7 +11,7 @@ function is_without_gpu(gl) {
   const root = document.documentElement;
 
   function notice(message) {
-    if (root.dataset.error) return;  // whose notice stays
+    if (root.dataset.error) return;  // the message about the error stays
     find("notice").textContent = message;
     find("notice").hidden = !message;
   }

@@ -9,7 +9,7 @@ function make_recorded(page, frames) {
 
   const clock_text = () => (times.length ? state.time.toFixed(3) + " s" : "");
   const shown = { frame: -1, time: NaN };
-  // Draws what is between the frame and the next, and says where that is.
+  // Draws the state at state.time, between two frames, and shows the time in the clock and on the timeline.
   function show() {
     const next = Math.min(state.frame + 1, last), width = times[next] - times[state.frame];
     const blend = width > 0 ? Math.min(Math.max((state.time - times[state.frame]) / width, 0), 0.9999) : 0;
@@ -27,7 +27,7 @@ function make_recorded(page, frames) {
     root.dataset.color = state.color;
   }
 
-  // `place` in frames, between two of them what is between.
+  // place: number of a frame; a fraction is a state between two frames.
   function go_to(place) {
     set_playing(false);
     const kept = Math.min(Math.max(Number(place) || 0, 0), Math.max(last, 0));
@@ -56,7 +56,7 @@ function make_recorded(page, frames) {
     show();
   }
 
-  // All of the run, at the pace that is set, 30 pictures a second; a second click gives up.
+  // Records the run as a video of 30 pictures a second, at the present playback speed. A second click stops it.
   async function record_run() {
     if (state.recording) {
       state.recording = false;
@@ -105,7 +105,7 @@ function make_recorded(page, frames) {
     return ["frame", "time", "play"].some((name) => asked.has(name));
   }
 
-  // At the end the picture stands for a moment, then begins again.
+  // At its end the run rests for this time, then starts again.
   const pause = 0.8;  // s
   let then = null, rested = 0;
   function tick(now) {

@@ -1,4 +1,4 @@
-// The scene with what lies over it: names, the values under the pointer, and pictures of both.
+// The scene with its overlay of names, the tip at the pointer, and pictures of both.
 "use strict";
 
 // box: measure_scene. changed(follow): somebody moved the camera. pull: see page_pointers.js. Throws without WebGL.
@@ -26,7 +26,7 @@ function make_scene({ find, run, state, scales, is_coarse }, box, changed, pull)
     });
   });
 
-  // Names are on a canvas of their own, as is what `draw_over` draws.
+  // Names, and the drawing of `draw_over`, have a canvas of their own.
   const overlay = find("overlay"), overlay_pen = overlay.getContext("2d");
   let draw_over = null;
   function draw_names(pen, width, height, ratio, covered = []) {
@@ -57,7 +57,7 @@ function make_scene({ find, run, state, scales, is_coarse }, box, changed, pull)
     if (draw_over) draw_over(overlay_pen, ratio, ink());
   }
 
-  // What is under the pointer; looked up again when the picture has changed.
+  // The tip at the pointer, which is updated when the picture has changed.
   let pointer = null, pointed = true;
   const point_again = () => { pointed = pointer === null; };
   function point() {
@@ -100,12 +100,13 @@ function make_scene({ find, run, state, scales, is_coarse }, box, changed, pull)
 
   return {
     view, picture, bodies, colliders, clear,
-    // draw(pen, ratio, ink) draws over the picture from now on; null: nothing.
+    // Draws draw(pen, ratio, ink) over each picture from now on; null: nothing.
     set_over: (draw) => {
       draw_over = draw;
       show_overlay();
     },
-    // What is `blend` of the way from a frame to `then`, the next. place: of the view, in frames.
+    // Draws the state between two frames: `blend` is 0 at `frame` and 1 at `then`. place: number of the frame for the
+    // camera, with a fraction between two frames.
     show: (frame, then, blend, place) => {
       root.dataset.bodies = bodies.show(frame, then, blend, state.color, state.visual);
       contacts.show(frame.contacts, then.contacts, blend, state.contacts);

@@ -37,7 +37,7 @@ class PlacedRobot:
         self.motor_names = robot.motor_names
 
     def in_copy(self, world: World) -> Self:
-        """The same robot in a copy of its world."""
+        """Returns this robot in a copy of its world."""
         return type(self)(
             self.robot,
             {name: body.in_copy(world) for name, body in self.links.items()},

@@ -39,7 +39,7 @@ class WorldObject:
         return bool(self._core.alive(self._given_handle))
 
     def in_copy(self, world: World) -> Self:
-        """The same object in a copy of its world, also in a loaded one. SceneError: the copy does not have it."""
+        """Returns this object in a copy of its world, also in a loaded one. SceneError: the copy does not have it."""
         from .world import World
 
         twin = copy.copy(self)

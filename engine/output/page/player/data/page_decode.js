@@ -1,4 +1,4 @@
-// Reads what page_data.h packed.
+// Reads the streams that page_stream.h and visual_stream.h write.
 "use strict";
 
 const decode = (() => {
@@ -28,7 +28,7 @@ const decode = (() => {
       for (;;) {
         const byte = data[at++];
         value += (byte & 127) * scale;
-        if (!(byte & 128)) return value;  // also behind the end, where there is no byte
+        if (!(byte & 128)) return value;  // also behind the end of the data, where `byte` is undefined
         scale *= 128;
       }
     };
@@ -106,7 +106,8 @@ const decode = (() => {
   // An array of an earlier frame if it can be used again, otherwise a new one.
   const room = (Type, length, old) => (old instanceof Type && old.length === length ? old : new Type(length));
 
-  // Codes of the positions, from the least of each axis on: base[3] and what is added to it. `old`: to be overwritten.
+  // Reads the positions of a body. Returns the least coordinates [m], the extent of the body [m], and `offset`: codes
+  // of the vertices above the least code of each axis. `old.offset` is overwritten if it has the right size.
   function positions(take, body, old) {
     const { vertices, now, before } = body, base = [0, 0, 0], top = [0, 0, 0], continues = body.frames > 1;
     for (let axis = 0; axis < 3; ++axis) {

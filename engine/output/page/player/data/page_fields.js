@@ -1,4 +1,4 @@
-// What is known at the vertices, as page_data.h packs it, in that order.
+// The fields of values at vertices, in the order in which page_stream.h packs them.
 "use strict";
 
 const fields = {

@@ -1,4 +1,4 @@
-// How large the scene is: what the camera shows, and how large arrows and dots are.
+// Size of the scene, from which follow the camera, and the sizes of arrows and dots.
 "use strict";
 
 // center, radius (m): around nearly all of where bodies go, with colliders that are not much larger; the few ends that
@@ -33,8 +33,9 @@ function measure_scene(run, bodies, frames) {
   };
 }
 
-// The box that the camera shows of a run that goes on, by frame: all of where bodies have been, or, when that is much
-// more than at first, where they are. It moves smoothly. first: box of the first frame.
+// Returns a function from a frame of a live run to the box that the camera shows: the union of all frames so far, or
+// the present frame if the union is much larger than the first frame. The box moves smoothly. first: box of the first
+// frame.
 function make_aim(first, share = 0.05) {
   const whole = first.clone(), shown = first.clone();
   return (frame) => {

@@ -3,20 +3,20 @@
 
 const scale_names = [...field_names, "force", "line_force"];
 
-// Scales of a recorded run, whose values are all known: by name the end of the scale, the largest value of
-// the frames shown and of the run, and words for the former.
+// Scales of a recorded run by name. top: upper end of the scale; max, peak: largest value of the run; about: words that
+// describe `max` in legends.
 const recorded_scales = (run) => Object.fromEntries(scale_names.map((name) => {
   const { usual, max } = run[name];
   return [name, { top: fields[name] ? text.round_up(usual) : usual || 1, max, peak: max, about: "largest force" }];
 }));
 
-// Scales of a run that goes on. They widen at once, and narrow `patience` after the last value above half of a scale
-// [s], so that legends do not flicker. Values far below the largest of the run are rounding and do not count.
+// Scales of a live run. They widen at once, and narrow `patience` [s] after the last value above half of a scale, so
+// that legends do not flicker. Values below `smallest_share` of the largest value of the run are rounding errors.
 function make_live_scales(patience = 3, smallest_share = 1e-3) {
   const scales = Object.fromEntries(scale_names.map((name) => [name, {}]));
   const clear = () => Object.values(scales).forEach((scale) =>
     Object.assign(scale, { top: 1, max: 0, peak: 0, largest: 0, since: 0, about: "99\u202f% of the forces below" }));
-  // tops: by name the value below which 99 % of a frame are; now: time of the clock on the wall [s].
+  // tops: by name the value below which 99 % of the values of a frame lie; now: wall time [s].
   function widen(tops, now) {
     for (const name of scale_names) {
       const scale = scales[name], value = Math.max(tops[name] || 0, smallest_share * scale.peak);

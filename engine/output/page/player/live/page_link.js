@@ -13,13 +13,13 @@ function take_token() {
   return sessionStorage.getItem("token") || "";
 }
 
-// receive(data) gets messages in their order, one after the other although it may take its time. status(name, seconds):
-// "connecting", "open", "lost" or "refused", with the time until the next try [s].
+// receive(data) gets the messages in their order; each call waits for the promise of the previous one. status(name,
+// seconds): "connecting", "open", "lost" or "refused", with the time until the next try [s].
 function make_link(receive, status) {
   const token = take_token(), shortest_pause = 0.5, longest_pause = 15;  // s
   let socket = null, pause = shortest_pause;
 
-  // The program serves the page but not the socket if it refuses it; a browser does not tell.
+  // A program that refuses the socket still serves the page. The browser reports both failures alike.
   async function is_served() {
     try {
       return (await fetch("/", { cache: "no-store" })).ok;

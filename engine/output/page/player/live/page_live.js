@@ -1,7 +1,7 @@
-// Shows a run that goes on, and steers it.
+// Shows and controls a run that is being simulated.
 "use strict";
 
-// Rows of the plots: columns by name, of the last `kept` rows.
+// Columns of the plots by name. They have the values of the last `kept` rows.
 const live_columns = ["time", "kinetic", "elastic", "potential", "dissipated", "contacts", "stick", "slide", "regions"];
 
 function make_live_rows(kept = 600) {
@@ -51,7 +51,7 @@ function make_live(page, has_view) {
   const lists = ["bodies", "visual_of_body", "visuals", "colliders", "lines"];
   const clear_run = () => lists.forEach((name) => { run[name] = []; });
   let decoder = null, frame = null, sliders = null, controls = null;
-  let row_next = null, row = null;  // of the frame that comes next, and of `frame`
+  let row_next = null, row = null;  // rows of the frame that will arrive next, and of `frame`
   let is_new = false;               // the frame has not been drawn
   let is_stale = false;             // the panel shows an older row
   let aim = null;                   // make_aim of the scene
@@ -68,7 +68,7 @@ function make_live(page, has_view) {
     const handlers = { begin, add, row: take_row, state: take_state, problem: show_problem };
     if (handlers[message.type]) await handlers[message.type](message);
   }
-  async function begin({ run: described, state: told, sliders: movable, plots }) {
+  async function begin({ run: described, state: first_state, sliders: movable, plots }) {
     pull.forget();
     clear_run();
     visuals.length = 0;
@@ -86,21 +86,21 @@ function make_live(page, has_view) {
     find("sliders").hidden = movable.length === 0;
     sliders = make_sliders(find("sliders"), movable, (number, value) => link.send({ do: "slider", number, value }));
     page.notice("");
-    take_state(told);
+    take_state(first_state);
     ask_for_fields();
     controls.show_legends();
   }
-  // What is new: rows of the lists of the run, and visual surfaces.
+  // Appends new objects to the lists of the run. more: the members of a message "add".
   async function add(more) {
     for (const name of lists) run[name].push(...(more[name] || []));
     if (more.visual_stream) visuals.push(...decode.visuals(await decode.inflate(more.visual_stream)));
     visuals.forEach((visual, i) => { visual.materials = run.visuals[i]; });
     if (page.scene && frame) (more.colliders || []).forEach(page.scene.colliders.add);
   }
-  function take_row(told) {
-    row_next = told;
-    add_row(told);
-    memory.widen(told.top, performance.now() / 1000);
+  function take_row(received) {
+    row_next = received;
+    add_row(received);
+    memory.widen(received.top, performance.now() / 1000);
   }
   function take_frame(bytes) {
     const is_first = frame === null;
@@ -182,10 +182,10 @@ function make_live(page, has_view) {
     if (page.scene) page.scene.render();
     link.send({ do: "seen", number: row.number });
     root.dataset.drawn = ++drawn;
-    Object.assign(root.dataset, { frame: row.number, number: row.number, time: row.time });
+    Object.assign(root.dataset, { number: row.number, time: row.time });
     root.dataset.ready = "true";
   }
-  // Clock, plots, legends and sliders, which need not keep up with the pictures.
+  // Updates clock, plots, legends and sliders, less often than the picture.
   function refresh() {
     const pace = row.speed > 0 ? "  " + text.average(row.speed) + "\u00d7 real time" : "";
     show_clock(find, row.time.toFixed(3) + " s", pace);

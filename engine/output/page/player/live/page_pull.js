@@ -1,9 +1,9 @@
 // Pulls bodies with the pointer.
 "use strict";
 
-// link: page_link.js. The end of the spring moves in the plane that faces the camera and contains the point taken.
+// link: page_link.js. The target of the pull moves in the plane that faces the camera and contains the grabbed point.
 function make_pull(page, link) {
-  let held = null;  // what is held: {body, weights, vertices, plane, to, moved}
+  let held = null;  // the grabbed point: {body, weights, vertices, plane, to, moved, force}
 
   function grab(x, y) {
     const { view, bodies } = page.scene, { origin, direction } = view.ray(x, y);
@@ -29,7 +29,7 @@ function make_pull(page, link) {
   }
   // pull: that of a new row, or null.
   const measured = (pull) => { if (held) held.force = pull ? pull.force : 0; };
-  // Called at each turn of the loop: sends the last movement.
+  // Sends the last movement. The loop of the page calls it.
   function tick() {
     if (!held) return;
     if (!page.scene.bodies.list[held.body]) return drop();

@@ -1,8 +1,8 @@
 // Sliders of the scene, which move colliders, cables and other things.
 "use strict";
 
-// list: {name, unit, low, high, value}; move(number, value) is called when somebody moves one. show(values) shows where
-// they are, but leaves those alone that somebody moves.
+// list: {name, unit, low, high, value}. move(number, value) is called when the user moves a slider. show(values) sets
+// all sliders that the user is not moving.
 function make_sliders(host, list, move) {
   const patience = 500;  // ms after the last movement
   const rows = list.map(({ name, unit: given, low, high, value: initial }, number) => {

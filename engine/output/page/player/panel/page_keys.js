@@ -1,7 +1,7 @@
-// The keyboard, and the card that tells what it does.
+// The keyboard, and the card that explains the keys.
 "use strict";
 
-// keys: rows of [keys, what they do, action(shift, key)]. `?` shows the rows; it and Escape hide them again.
+// keys: rows of [keys, description, action(shift, key)]. `?` shows the rows; it and Escape hide them again.
 function listen_to_keys(find, keys) {
   const help = find("help"), list = help.querySelector("dl"), spoken = { " ": "Space", ArrowLeft: "\u2190",
     ArrowRight: "\u2192" };
@@ -11,7 +11,7 @@ function listen_to_keys(find, keys) {
     if (on) help.focus();
   };
   const bound = new Map();
-  for (const [names, what, action] of keys) {
+  for (const [names, description, action] of keys) {
     const term = document.createElement("dt"), about = document.createElement("dd");
     for (const name of names) {
       const key = document.createElement("kbd");
@@ -19,10 +19,10 @@ function listen_to_keys(find, keys) {
       term.append(key);
       bound.set(name, action);
     }
-    about.textContent = what;
+    about.textContent = description;
     list.append(term, about);
   }
-  // The same keys with Shift, or without.
+  // Characters of these keys with Shift, or without.
   for (const [other, key] of [["{", "["], ["}", "]"], ["=", "+"], ["_", "-"]]) bound.set(other, bound.get(key));
   bound.set("?", () => show_help(help.hidden));
   bound.set("Escape", () => show_help(false));

@@ -1,4 +1,4 @@
-// What colours and arrows mean.
+// Legends of colours, arrows and tubes.
 "use strict";
 
 // The ends and the middle of a field's colours, as text.

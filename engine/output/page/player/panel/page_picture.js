@@ -1,7 +1,7 @@
-// The view as a still and as a video: the scene with its names, legend and time.
+// Pictures of the view with its names, legend and time.
 "use strict";
 
-// draw(pen, width, height, ratio) draws over the scene. Even sizes, which video formats ask for.
+// draw(pen, width, height, ratio) draws over the scene. Width and height are even, as video formats require.
 function make_picture(view, draw) {
   const canvas = document.createElement("canvas"), pen = canvas.getContext("2d", { alpha: false });
   return {

@@ -18,7 +18,7 @@ function make_plot(host, times, series, format, pick) {
   const canvas = document.createElement("canvas");
   host.append(keys, canvas);
   const pen = canvas.getContext("2d");
-  // Colours by name follow the light.
+  // Names of colours stand for different values in light and dark pages.
   const style = getComputedStyle(document.documentElement);
   const resolved = (color) => (color.startsWith("var(") ? style.getPropertyValue(color.slice(4, -1)).trim() : color);
   const margin = { left: 52, right: 6, top: 6, bottom: 20 };
@@ -164,8 +164,8 @@ function range_of(series) {
   return { low: Math.floor(low / step + 1e-9) * step, high: Math.ceil(high / step - 1e-9) * step, step };
 }
 
-// Mean time of each stage by step, with its share of all stages. Stages side by side count both. Those with less than
-// half a percent are added up.
+// Mean time of each stage per step, with its share of the sum over all stages. Stages with less than half a percent are
+// added up.
 function show_stages(host, report) {
   const element = (name, content) => {
     const made = document.createElement("div");

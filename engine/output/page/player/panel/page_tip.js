@@ -1,8 +1,8 @@
 // The values under the pointer.
 "use strict";
 
-// hit: of pick_body or null; contact: of make_contacts.at() or null; joining: of make_lines.at() or null. `place` in
-// pixels of the host; fields: those with values.
+// hit: result of pick_body; contact: of make_contacts.at(); joining: of make_lines.at(). Each may be null. place: in
+// pixels of the host. fields: names of the fields that have values.
 function show_tip(tip, host, place, { hit, fields: known, values, body, color, contact, joining, name_of }) {
   tip.hidden = !hit && !contact && !joining;
   if (tip.hidden) return;

@@ -3,9 +3,8 @@
 
 const can_record = () => typeof VideoEncoder !== "undefined";
 
-// Records `count` pictures of the canvas, which draw(i) composes, `rate` a second of the video. Each picture has its
-// time, so a slow machine records what a fast one does. progress(share) returns false to give up; then the result is
-// null.
+// Records `count` pictures of the canvas, which draw(i) composes, with `rate` pictures per second of the video. The
+// video does not depend on the speed of the machine. progress(share) returns false to stop; then the result is null.
 async function record(canvas, count, rate, draw, progress) {
   const chunks = [], turn = () => new Promise((resolve) => setTimeout(resolve, 0));
   let error = null;

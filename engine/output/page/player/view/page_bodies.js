@@ -53,7 +53,7 @@ function make_bodies(scene, scales, redraw) {
       if (visual) visual.show_edges(wire && drawn === visual);
     });
   }
-  // What is at a point of a triangle: {field: {value, error}}.
+  // Values at a point of a triangle: {field: {value, error}}.
   function values_at({ body, vertices, weights }) {
     const out = {};
     for (const field of field_names) {
@@ -64,7 +64,7 @@ function make_bodies(scene, scales, redraw) {
           value += share * weights[k] * one;
           error = Math.max(error, half_code(one, frame.scale[field]));
         });
-      out[field] = { value: value < 1e-9 * scales[field].max ? 0 : value, error };  // below it is rounding of the run
+      out[field] = { value: value < 1e-9 * scales[field].max ? 0 : value, error };  // less is a rounding error
     }
     return out;
   }

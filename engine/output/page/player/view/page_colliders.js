@@ -33,7 +33,7 @@ function make_colliders(scene, state, box) {
         object.quaternion.slerp(other_turn, blend);
       }
       if (object.userData.follow) {
-        // The part of an infinite plane around what is shown.
+        // Moves the drawn part of an infinite plane below the bodies.
         const back = object.quaternion.clone().inverse();
         object.userData.follow(box.center.clone().sub(object.position).applyQuaternion(back));
       }
@@ -69,7 +69,7 @@ function plane_object(radius, cell) {
         gl_FragColor = vec4(mix(ground, ink, share), fade);
       }`,
   });
-  // Seen from above only: from below a plane would hide what lies on it.
+  // Planes are visible from above only, because from below they would hide the objects on them.
   const surface = new THREE.Mesh(new THREE.PlaneBufferGeometry(size, size), grid);
   surface.renderOrder = -2;
   const shadow = new THREE.Mesh(new THREE.PlaneBufferGeometry(size, size),

@@ -23,8 +23,7 @@ function make_contacts(scene, { size, spacing }, scales) {
       shown[name] = new Float32Array(2 * width * count);
   }
 
-  // What is between a frame and the next: contacts that both have move from one to the other, others stay until they
-  // are gone.
+  // Rows between a frame and the next. Contacts of both frames are interpolated, the others are those of the frame.
   function blend_rows(contacts, next, blend) {
     Object.assign(shown, { list: contacts, count: contacts.count });
     for (let i = 0; i < contacts.count; ++i) {

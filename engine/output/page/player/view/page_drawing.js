@@ -71,7 +71,6 @@ function make_drawing(group, surface, points, nodes, redraw) {
   const mesh = new THREE.Mesh(geometry, plain);
   mesh.castShadow = mesh.receiveShadow = true;
   mesh.frustumCulled = false;  // its bounds change with every frame
-
   group.add(mesh);
 
   let edges = null;
@@ -99,7 +98,7 @@ function make_drawing(group, surface, points, nodes, redraw) {
       material.dispose();
     }
   };
-  let is_plain = false;  // in the colour of the body, or its materials
+  let is_plain = false;  // true if the surface has the colour of the body, or its materials
   drawing.place = (of_vertices) => {
     const attribute = geometry.getAttribute("position"), out = attribute.array, at = nodes.positions(of_vertices);
     for (let row = 0; row < source.length; ++row) {

@@ -1,9 +1,8 @@
-// Dots and shafts in great numbers, such as the arrows of all contacts.
+// Draws many dots and shafts, such as the arrows of all contacts.
 "use strict";
 
 // Each copy has a colour and two shapes with a place each: a dot, and a shaft, which goes from 0 to 1 along its y axis.
-// Everything is drawn twice: plainly where it is in sight, and faintly where a body hides it. Very many copies would be
-// slow and in each other's way, so they are drawn as points and lines.
+// More than `most_solid` copies would be slow and hide each other, so they are drawn as points and lines.
 function make_instances(scene, dot, shaft) {
   const most_solid = 1000;
   let capacity = 0, sets = [];
@@ -18,7 +17,7 @@ function make_instances(scene, dot, shaft) {
       : [vertex_set(scene, THREE.Points, THREE.PointsMaterial, size, 1),
         vertex_set(scene, THREE.LineSegments, THREE.LineBasicMaterial, size, 2)];
   }
-  // Shows the first `count` copies, which are then set, and after that uploaded.
+  // Shows the first `count` copies. After it, set_color() and set_place() set each copy, and upload() ends the update.
   function show(count) {
     if (count > capacity) {
       const is_solid = count <= most_solid;
@@ -38,7 +37,7 @@ function make_instances(scene, dot, shaft) {
   return { show, set_color, set_place, upload };
 }
 
-// What is in sight, and what a body hides.
+// Two meshes of the same shape: one for visible parts, and a faint one for parts behind bodies.
 function drawn_twice(scene, Material, make) {
   const faint = { transparent: true, opacity: 0.5, depthFunc: THREE.GreaterDepth, depthWrite: false };
   return [{}, faint].map((look, pass) => {

@@ -1,9 +1,9 @@
 // Names of bodies and colliders over the picture.
 "use strict";
 
-// Draws each name above its body, the nearest first; one that would cover another is left out, and one that would be
-// below a card of the page is moved under it. covered: rectangles of these cards. Sizes in pixels of the page, `ratio`
-// of the pen's own to one of them.
+// Draws each name above its body, beginning with the nearest body. A name that would cover another name is left out. A
+// name that a card of the page would cover is moved to below the card. covered: rectangles of the cards. Sizes are in
+// pixels of the page; ratio: pixels of the pen per pixel of the page.
 function draw_labels(pen, named, camera, { width, height, covered }, ratio, style) {
   const point = new THREE.Vector3(), places = [];
   for (const { name, box } of named) {

@@ -1,5 +1,5 @@
-// Joints, ties, cables and springs: a dot at each point, and a tube along each segment. Tubes and dots grow with the
-// root of the force.
+// Joints, ties, cables and springs: a dot at each point, and a tube along each segment. Their radius grows with the
+// square root of the force.
 "use strict";
 
 // run.lines: {name, kind} by number. A force of scales.line_force.top gets a tube of the full radius.

@@ -6,9 +6,9 @@ const pace_levels = [
   { shadows: false, share: 0.5 },
 ];
 
-// next(is_changed) is called before each turn of the loop, and returns the level of the picture: a coarser one while
-// turns with pictures take too long, and all pixels once the picture stands. share: of the pixels of a row. Shadows do
-// not come back, because switching them takes the time of many pictures.
+// next(is_changed) is called before each turn of the loop, and returns the level of detail: a coarser one while turns
+// with new pictures take too long, and all pixels once the picture stands still. share: drawn pixels per pixel of a
+// row. Shadows do not come back, because switching them takes the time of many pictures.
 function make_pace(is_coarse) {
   const slow = 40, rest = 400;  // ms of a turn, and after the last picture
   let level = is_coarse ? 1 : 0, late = 0, drew = false, turned = 0, changed = 0, chosen = 0, trial = 10000;  // ms

@@ -1,8 +1,8 @@
-// What lies under the pointer.
+// Objects under the pointer.
 "use strict";
 
-// The nearest triangle that a ray (origin, unit direction) meets of the bodies shown: {distance, point, body, triangle,
-// vertices, weights}, vertices of the body on which values at the point depend; null if it meets none.
+// Returns the nearest triangle of the shown bodies on a ray (origin, unit direction): {distance, point, body, triangle,
+// vertices, weights}, or null. Values at the point are means of the values at these vertices with these weights.
 function pick_body(bodies, origin, direction) {
   const ray = new THREE.Ray(origin, direction), hit = new THREE.Vector3();
   const corners = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()];
@@ -57,7 +57,7 @@ function pick_line(shown, camera, { width, height }, { x, y }, reach) {
 }
 
 // The contact whose dot is nearest to a place of the picture (pixels), within `reach` of it; -1 if there is none.
-// Those between bodies are seen through them, so what is in front of them does not hide them here either.
+// Contacts behind bodies are included, because their dots show through the bodies.
 function pick_contact(shown, camera, { width, height }, { x, y }, reach) {
   const point = new THREE.Vector3();
   let best = -1, nearest = reach;

@@ -1,9 +1,10 @@
-// Mouse: left turns, right or with Shift moves, wheel zooms to what is under the pointer. Touch: one finger turns, two
-// move and zoom, a tap shows values. Live, the left button and one finger pull bodies.
+// Mouse: the left button turns the view, the right button or Shift moves it, the wheel zooms to the pointer. Touch: one
+// finger turns, two fingers move and zoom, a tap shows values. In a live view the left button and one finger pull
+// bodies.
 "use strict";
 
-// Places are in pixels of the canvas. hover(x, y) is called when the pointer rests on the picture, leave() when not.
-// pull: null, or {grab(x, y), which returns whether it took hold of a body, drag(x, y), drop()}.
+// Places are in pixels of the canvas. hover(x, y) is called while the pointer moves over the picture without a button,
+// leave() when this ends. pull: null, or {grab(x, y), drag(x, y), drop()}. grab returns true if a body is at the place.
 function listen_to_pointers(canvas, { turn, pan, zoom, reset, hover, leave, pull }) {
   const down = new Map();
   let moved = 0, pulling = null;  // pulling: number of the pointer

@@ -1,13 +1,13 @@
 // The three-dimensional view: renderer, light, and a camera that turns about a point.
 "use strict";
 
-// `up` is a unit vector, `box` is what measure_scene gives. The camera shows the box of the frame, until somebody moves
-// it or zooms. is_coarse: drawn without smooth edges, and without shadows at first.
+// `up` is a unit vector, `box` the result of measure_scene. The camera shows the box of the frame until the user moves
+// or zooms it. is_coarse: the view is drawn without smooth edges, and without shadows at first.
 function make_view(host, up, box, is_coarse) {
   const renderer = new THREE.WebGLRenderer({
     antialias: !is_coarse,
-    alpha: true,                  // the style sheet paints what is behind
-    preserveDrawingBuffer: true,  // only what changed is drawn again, and a screenshot may come any time
+    alpha: true,                  // the style sheet paints the background
+    preserveDrawingBuffer: true,  // unchanged pictures are not drawn again, and can be copied at any time
   });
   renderer.gammaOutput = true;
   renderer.gammaFactor = 2.2;
@@ -46,8 +46,8 @@ function make_view(host, up, box, is_coarse) {
   fill.position.copy(direction(-1, 0.6, 0.3));
   scene.add(sky, key, key.target, fill);
 
-  // Camera: angles about `up`; distance, in units of what shows the whole box, and target, beside the box's center.
-  // `place`, in frames, says whose box; while `follow` it is that of the frame shown.
+  // Camera: angles about `up`; distance as a multiple of the one that shows the whole box; offset of the target from
+  // the center of the box. place: number of the frame whose box counts; while `follow` that of the shown frame.
   const home = { turn: -1.05, lift: 0.38, distance: 1, place: 0, follow: true };
   const orbit = { ...home, offset: new THREE.Vector3() };
   const course = box.course.map(fitted);
@@ -119,7 +119,7 @@ function make_view(host, up, box, is_coarse) {
     caster.setFromCamera({ x: 2 * x / host.clientWidth - 1, y: 1 - 2 * y / host.clientHeight }, camera);
     return caster.ray;
   }
-  // The whole arrangement of camera and target shrinks about what is under the pointer, so that this stays where it is.
+  // Camera and target are scaled about the point under the pointer, so that this point stays in its place.
   function zoom(factor, x = host.clientWidth / 2, y = host.clientHeight / 2) {
     const { center } = course_at(orbit.place), target = center.clone().add(orbit.offset);
     const { origin, direction: way } = ray(x, y);
@@ -174,25 +174,25 @@ function make_view(host, up, box, is_coarse) {
 
   return {
     scene, camera, canvas: renderer.domElement, ray, turn, zoom, reset, render, render_fine,
-    // What turns and zooms with pointers asks: pick(origin, direction) gives {distance} or null.
+    // Connects the pointers. picker(origin, direction) returns the {distance} of the first body on a ray, or null.
     attach: (picker, hover, leave, pull) => {
       pick = picker;
       listen_to_pointers(renderer.domElement, { turn, pan, zoom, reset, hover, leave, pull });
     },
-    // changed(follow) is called after each movement that somebody made.
+    // changed(follow) is called after each movement of the camera by the user.
     watch: (changed) => { on_change = changed; },
     look: (turn_to, lift_to, distance) => {
       Object.assign(orbit, { turn: turn_to, lift: lift_to, distance });
       moved();
     },
-    // The place in frames that is shown.
+    // Shows the box of this frame while following. place: number of the frame, with a fraction between two frames.
     go_to: (place) => {
       shown_place = place;
       if (!orbit.follow || orbit.place === place) return;
       orbit.place = place;
       if (course.length > 1) place_camera();
     },
-    // The box that is shown while following, of a run that goes on.
+    // Sets the box that the camera shows while it follows a live run.
     aim: (shown) => {
       course[0] = fitted(shown);
       box.center.copy(course[0].center);
