@@ -39,7 +39,9 @@ function make_plot(host, times, series, format, pick) {
     canvas.height = Math.round(canvas.clientHeight * ratio);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.font = "11px system-ui, 'DejaVu Sans', sans-serif";
-    draw_axes();
+    const ticks = ticks_of(ends).map((value) => ({ value, label: format(value) }));
+    margin.left = Math.max(52, ...ticks.map(({ label }) => Math.ceil(pen.measureText(label).width) + 9));
+    draw_axes(ticks);
     pen.lineJoin = "round";
     pen.lineWidth = 1.6;
     for (const { color, values } of series) {
@@ -69,28 +71,31 @@ function make_plot(host, times, series, format, pick) {
       pen.fill();
     }
   }
-  function draw_axes() {
+  function draw_axes(ticks) {
     pen.strokeStyle = resolved("var(--line)");
     pen.fillStyle = resolved("var(--muted)");
     pen.lineWidth = 1;
     pen.beginPath();
     pen.textAlign = "right";
     pen.textBaseline = "middle";
-    for (let value = ends.low; value <= ends.high + 1e-9 * ends.step; value += ends.step) {
-      const y = Math.round(y_of(value)) + 0.5, shown = Math.abs(value) < 1e-9 * ends.step ? 0 : value;
+    for (const { value, label } of ticks) {
+      const y = Math.round(y_of(value)) + 0.5;
       pen.moveTo(margin.left, y);
       pen.lineTo(canvas.clientWidth - margin.right, y);
-      pen.fillText(format(shown), margin.left - 7, y);
+      pen.fillText(label, margin.left - 7, y);
     }
     pen.stroke();
     if (times.length < 2) return;
     const step = text.tick(span, 4);
     pen.textBaseline = "top";
+    pen.textAlign = "left";
+    let free = 0;  // left end of the space for the next label
     for (let i = Math.ceil(first / step); i * step <= first + span * 1.000001; ++i) {
-      const x = x_of(i * step);
-      pen.textAlign = x > canvas.clientWidth - 24 ? "right" : "center";
-      pen.fillText(text.si(i * step, "s"), Math.min(x, canvas.clientWidth - 1),
-        canvas.clientHeight - margin.bottom + 6);
+      const label = text.si(i * step, "s"), wide = pen.measureText(label).width;
+      const left = Math.min(x_of(i * step) - wide / 2, canvas.clientWidth - 1 - wide);
+      if (left < free) continue;
+      pen.fillText(label, left, canvas.clientHeight - margin.bottom + 6);
+      free = left + wide + 6;
     }
   }
   function show(number) {
@@ -148,6 +153,12 @@ function make_run_plots(find, rows, pick) {
     energy.update();
   };
   return [{ ...energy, update }, contact];
+}
+
+// Values at the lines across a plot; ends: see range_of.
+function ticks_of({ low, high, step }) {
+  const count = Math.round((high - low) / step) + 1;
+  return Array.from({ length: count }, (_, i) => Math.round(low / step + i) * step);
 }
 
 // Ends at ticks around all finite values and zero.
