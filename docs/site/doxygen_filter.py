@@ -5,6 +5,8 @@
 - A comment behind a member describes this member.
 - A comment above a member, without an empty line before it, describes this member too.
 - A comment after an empty line or `public:` in a class is the title of the members that follow.
+- The members of one declaration become one declaration each, with the same comment.
+- A function without a comment, below a function of the same name, gets the comment of that function.
 """
 
 import re
@@ -12,6 +14,9 @@ import sys
 
 COMMENT = re.compile(r"( *)//(?!/) ?(.*)")
 BEHIND = re.compile(r"(.*[^\s/].*?)\s+//(?!/) (.*)")
+MEMBER = r"\w+(?:\{\}| = [^,;(){}]+(?:\(\))?)?"
+MEMBERS = re.compile(rf"( +)([\w:]+(?:<[^;]*>)?) ({MEMBER}(?:, {MEMBER})+);( +///< .*)?")
+FUNCTION = re.compile(r" *(?:[\w:]+(?:<[^;()]*>)?[&*]? )+[&*]?(\w+)\(")
 
 
 def docstrings_of(lines: list[str]) -> list[str]:
@@ -47,6 +52,36 @@ def docstrings_of(lines: list[str]) -> list[str]:
     return result
 
 
+def with_shared_docstrings(lines: list[str]) -> list[str]:
+    """Repeats docstrings that describe several members."""
+    result: list[str] = []
+    above: list[str] = []  # docstring above the present line
+    last, described = "", []  # name and docstring of the function before this line
+    starts = True  # true if a declaration may start in this line
+    for line in lines:
+        if re.match(r" */// (?!@)", line):
+            above.append(line)
+            result.append(line)
+            continue
+        members, function = MEMBERS.fullmatch(line), FUNCTION.match(line) if starts else None
+        if members and (above or members[4]):
+            for number, member in enumerate(members[3].split(", ")):
+                result += above if number else []
+                result.append(f"{members[1]}{members[2]} {member};{members[4] or ''}")
+        else:
+            if function:
+                behind = re.search(r"///<( .*)", line)
+                own = above or ([f"    ///{behind[1]}"] if behind else [])
+                result += described if not own and function[1] == last else []
+                last, described = function[1], own or (described if function[1] == last else [])
+            elif starts:
+                last, described = "", []
+            result.append(line)
+        above = []
+        starts = bool(re.search(r"([;{}:>]|^|///.*)$", line))
+    return result
+
+
 if __name__ == "__main__":
     with open(sys.argv[1], encoding="utf-8") as header:
-        print("\n".join(docstrings_of(header.read().splitlines())))
+        print("\n".join(with_shared_docstrings(docstrings_of(header.read().splitlines()))))

@@ -40,12 +40,15 @@ def complete_page(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] = (pathlib.Path(app.srcdir) / "README.md").read_text("utf-8") + source[0]
     if page == "docs/methods/README":
         source[0] += "\n```{toctree}\n:glob:\n:hidden:\n\n*\n```\n"
+    # The links of a page that scripts/site moves count from its place in the repository.
+    moved = page.startswith("reference/") and (pathlib.Path(app.srcdir) / f"docs/site/pages/{page}.md").exists()
+    folder = pathlib.PurePosixPath("docs/site/pages" if moved else "", page).parent
 
     def redirected(link: re.Match[str]) -> str:
-        target = os.path.normpath(pathlib.PurePosixPath(page).parent / link[1])
-        if target not in PAGE_OF:
+        target = os.path.normpath(folder / link[1])
+        if target not in PAGE_OF and not moved:
             return link[0]
-        return f"](/{PAGE_OF[target]}{link[2] or ''})"
+        return f"](/{PAGE_OF.get(target, target)}{link[2] or ''})"
 
     source[0] = LINK.sub(redirected, source[0])
 

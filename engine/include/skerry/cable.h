@@ -31,6 +31,7 @@ struct CableSettings {
     Real friction = 0;
 };
 
+/// Present state of a cable.
 struct CableState {
     std::vector<Anchor> points;      // the points of the settings, at their present positions [m]
     std::vector<Real> tension;       // tension of each segment in the last step [N]
@@ -50,6 +51,7 @@ public:
 
     /// Adds a cable. All bodies of a cable that has friction, or whose length is prescribed, are in one contact region.
     CableHandle add(const CableSettings& cable);
+    /// Points, tensions, length and work of a cable after the last step.
     CableState state(CableHandle cable) const;
     /// Settings of an equal cable that is added now: points have their present positions.
     CableSettings settings(CableHandle cable) const;

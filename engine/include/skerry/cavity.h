@@ -74,6 +74,7 @@ struct PipeSettings {
     TimeTable pressure{};                  // pressure of the reservoir above ambient; 0: the atmosphere [Pa]
 };
 
+/// Present state of a pipe.
 struct PipeState {
     CavityHandle first{};
     std::optional<CavityHandle> second{};
@@ -91,16 +92,22 @@ public:
 
     /// Adds a cavity. Removing it also removes its pipes.
     CavityHandle add(const CavitySettings& cavity);
+    /// Adds a pipe. Both cavities must contain the same gas.
     PipeHandle add(const PipeSettings& pipe);
     using ObjectView::alive;
     using ObjectView::remove;
+    /// Removes a pipe.
     void remove(PipeHandle pipe) { ObjectView<PipeHandle>(*world_).remove(pipe); }
+    /// True if the pipe is in the world, false if it was removed.
     bool alive(PipeHandle pipe) const { return ObjectView<PipeHandle>(*world_).alive(pipe); }
     std::vector<PipeHandle> pipes() const { return ObjectView<PipeHandle>(*world_).all(); }  // in the order added
+    /// Pressure, volume, mass and energy of a cavity after the last step.
     CavityState state(CavityHandle cavity) const;
+    /// Cavities, conductance and flow of a pipe.
     PipeState state(PipeHandle pipe) const;
     /// Settings of an equal cavity that is added now: pressure and volume of a filling are those of the present.
     CavitySettings settings(CavityHandle cavity) const;
+    /// Settings of an equal pipe that is added now.
     PipeSettings settings(PipeHandle pipe) const;
 
     /// Sets a prescribed pressure above ambient [Pa].
@@ -109,6 +116,7 @@ public:
     void set_inflow(CavityHandle cavity, const TimeTable& inflow);
     /// Sets the volume of a liquid at ambient pressure [m^3].
     void set_liquid_volume(CavityHandle cavity, const TimeTable& volume);
+    /// Sets the conductance of a pipe, >= 0 [kg/(s Pa)].
     void set_conductance(PipeHandle pipe, Real conductance);
     /// Sets the pressure of a reservoir above ambient [Pa].
     void set_reservoir(PipeHandle pipe, const TimeTable& pressure);

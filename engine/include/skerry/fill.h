@@ -20,6 +20,7 @@ struct FillLimits {
     Real bytes = 8e9;    // memory of the mesher and the processes that it started [bytes]
 };
 
+/// Settings of fill().
 struct FillSettings {
     // Edge length of the new tetrahedra and of their surface, > 0 [m]. If it is not given, the triangles of a clean
     // surface are kept, and other surfaces get a twentieth of the diagonal of their bounding box.
@@ -45,6 +46,7 @@ struct SurfaceDistance {
     Real greatest() const { return from_first > from_second ? from_first : from_second; }
 };
 
+/// Result of fill(): the mesh, its distance from the given surface, and notes.
 struct FilledMesh {
     Mesh mesh;
     std::string mesher;          // "Netgen", "fTetWild", or "fTetWild and Netgen"

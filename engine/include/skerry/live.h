@@ -14,6 +14,7 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
+/// Settings of a live view.
 struct LiveSettings {
     std::string title = "Skerry";
     int port = 0;         // TCP port from 0 to 65535; 0: a free port

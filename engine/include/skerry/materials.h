@@ -10,11 +10,13 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
+/// A number from the literature, with its source.
 struct SourcedValue {
     Real value;
     std::string_view source;  // citation, and the way in which the value was derived from it
 };
 
+/// A material of named_materials(). Its values are typical; measure those that decide your result.
 struct NamedMaterial {
     std::string_view name;       // for named_material() and for the key "like" of scene files
     std::string_view title;      // description for people
@@ -34,6 +36,7 @@ struct KnownFriction {
 
 /// All materials, in groups from soft to stiff.
 std::span<const NamedMaterial> named_materials();
+/// All pairs of materials with known friction coefficients (without unit). A pair is listed once, in either order.
 std::span<const KnownFriction> known_frictions();
 
 /// Settings of the material called `name`. `friction` is the dynamic friction of two surfaces of this material if

@@ -194,6 +194,8 @@ struct MeshReport {
     // numbers of nodes, faces and tetrahedra of each set
     std::map<std::string, std::array<std::size_t, 3>> sets;
 };
+/// Counts and measures the tetrahedra of a mesh. Throws SceneError if a tetrahedron uses a node twice or a node that
+/// does not exist, or if a position is not finite.
 MeshReport inspect(const Mesh& mesh);
 
 }  // namespace skerry

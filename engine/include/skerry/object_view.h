@@ -23,10 +23,12 @@ public:
 
     /// Removes an object, and wakes its bodies.
     void remove(HandleType object);
+    /// True if the object is in the world, false if it was removed.
     bool alive(HandleType object) const;
     std::vector<HandleType> all() const;  // in the order added
     /// Name of an object for users and files, by default KIND_SLOT, such as "cable_0". It affects no step.
     std::string name(HandleType object) const;
+    /// Sets the name of an object. Names need not differ, but find() needs a name that occurs once.
     void set_name(HandleType object, const std::string& name);
     /// Returns the object of a name. Throws SceneError if there is none, or more than one.
     HandleType find(const std::string& name) const;

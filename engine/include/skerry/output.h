@@ -77,6 +77,7 @@ struct EnumNames<FilmColor> {
     }};
 };
 
+/// Settings of a film in USD format.
 struct FilmSettings {
     Real frame_step = 1.0 / 60;  // time between two frames, which have consecutive numbers in the film [s]
     FilmColor color = FilmColor::none;

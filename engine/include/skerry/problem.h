@@ -30,9 +30,11 @@ struct ContactProblem {
     // was local from the start.
     Index freedoms = 0;
 
+    /// Number of contacts.
     Index contacts() const { return static_cast<Index>(q.size()); }
 };
 
+/// Settings of solve_problem().
 struct ProblemSettings {
     SolverMethod method = SolverMethod::automatic;
     Friction friction = Friction::cone;
@@ -42,6 +44,7 @@ struct ProblemSettings {
     Real relaxation = 1;
 };
 
+/// Result of solve_problem(): the impulses, their errors and the effort of the solver.
 struct ProblemSolution {
     std::vector<Vec3> reaction;  // impulses in the contact frames of the problem [N s]
     Index regions = 0;
@@ -89,6 +92,8 @@ struct ProblemError {
     Real absolute, relative, over_q;  // see error_absolute, error and error_over_q of ProblemSolution
     Real energy_gap;                  // see ProblemSolution::energy_gap [J]
 };
+/// Computes the errors of given reactions, one vector per contact. Throws SceneError if their number differs from the
+/// number of contacts.
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction);
 
 /// Nodes with a coupled mass matrix: an impulse on one node changes the velocities of all these nodes.

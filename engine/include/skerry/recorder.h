@@ -103,6 +103,7 @@ struct NodesProbe {
     BodyHandle body{};
 };
 
+/// A named quantity that a Recorder samples.
 struct RecordedProbe {
     std::string name;  // unique and not empty; not "." or "time"; without '/' and control characters
     std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, JointProbe, CableProbe,

@@ -13,6 +13,7 @@ namespace skerry {
 
 class World;
 
+/// Settings of relax().
 struct RelaxSettings {
     // Largest out-of-balance force of a body at rest, relative to the sum of the forces that act on it, > 0 and < 1.
     Real tolerance = 1e-3;
@@ -23,6 +24,7 @@ struct RelaxSettings {
     int load_steps = 1;
 };
 
+/// Result of relax(): whether an equilibrium was found, and the body that is farthest from it.
 struct RelaxReport {
     bool converged = false;
     Real load = 0;  // share of the loads in the last equilibrium that was found: 1 if converged

@@ -205,6 +205,7 @@ struct DynamicsEstimate {
     Real damped_above = 0;
 };
 
+/// The kind that was chosen for a body added as `automatic`, and the estimate behind the choice.
 struct DynamicsChoice {
     BodyHandle body{};
     std::string name;

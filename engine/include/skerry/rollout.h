@@ -63,11 +63,13 @@ struct RolloutControl {
     std::span<const Real> values;
 };
 
+/// Progress of a rollout, for RolloutSettings::go_on.
 struct RolloutProgress {
     std::size_t worlds_done = 0, worlds = 0;
     std::size_t intervals_done = 0;  // number of completed intervals of all worlds
 };
 
+/// Settings of rollout(): number and duration of the intervals, the controls, and the recorded quantities.
 struct RolloutSettings {
     std::size_t intervals = 1;  // number of control intervals, >= 1
     Real dt = 0;                // duration of an interval, > 0 [s]
@@ -105,6 +107,7 @@ struct RolloutStatus {
     std::string message() const { return error.empty() ? report.message() : error; }
 };
 
+/// Result of rollout(). The rows of a world that stopped early end with NaN; `status` gives the reason.
 struct RolloutResult {
     std::vector<Real> time;  // simulated time at the end of each interval, in the order (world, interval) [s]
     std::vector<RolloutSeries> series;  // one entry for each entry of RolloutSettings::record

@@ -24,10 +24,12 @@ public:
     explicit Sets(World& world) : world_(&world) {}
 
     std::vector<std::string> names(BodyHandle body) const;  // in alphabetical order
+    /// Nodes, faces and tetrahedra of a set as they were listed. The reference is valid until sets or bodies change.
     const MeshSet& get(BodyHandle body, const std::string& name) const;
     /// Adds a set. Sorts the numbers and drops repeated ones. Throws SceneError if the body already has a set of this
     /// name, if the set or its name is empty, or if a number is out of range.
     void add(BodyHandle body, const std::string& name, MeshSet set);
+    /// Removes a set. Objects that were made from its numbers do not change.
     void remove(BodyHandle body, const std::string& name);
 
     /// Numbers of the nodes, faces and tetrahedra of a set, as mesh::nodes_of, faces_of and tetrahedra_of find them.

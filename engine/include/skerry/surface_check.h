@@ -76,6 +76,7 @@ struct SurfaceShell {
     Index around = no_index;
 };
 
+/// Result of mesh::check_surface: sizes, faults and shells of a surface, and the repaired surface.
 struct SurfaceReport {
     std::size_t nodes = 0, triangles = 0;             // of the given surface
     Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // bounding box [m]

@@ -13,6 +13,7 @@ namespace skerry {
 
 class World;
 
+/// Colour, opacity and texture of triangles of a visual surface.
 struct VisualMaterial {
     std::string name;
     std::array<Real, 3> color{0.8, 0.8, 0.8};  // red, green and blue of sRGB, each in [0, 1]
@@ -69,6 +70,7 @@ public:
     /// Gives a body a visual surface, which replaces an earlier one. Throws SceneError that names the field if an index
     /// is out of range or a position is not finite.
     VisualFit set(BodyHandle body, VisualSurface surface);
+    /// Removes the visual surface of a body, which is then drawn by its own surface.
     void remove(BodyHandle body);
     /// Returns nullptr if the body has no visual surface. The pointer is valid until the surface is set or removed.
     const VisualSurface* get(BodyHandle body) const;

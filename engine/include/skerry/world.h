@@ -64,7 +64,9 @@ public:
     // Building the world; allowed between calls of advance. In callbacks of advance these functions throw SceneError.
     // Handles to all other objects stay valid. The cost of a change depends on the size of the changed object only.
     // Consecutive removals are carried out together when the tables are needed next.
+    /// Adds a material, which bodies name in BodySettings::material.
     MaterialHandle add_material(const MaterialSettings& material);
+    /// Adds a body from a mesh of tetrahedra. The mesh is copied. Overlaps are found later, by settle_start().
     BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
     /// Adds a rigid body from the triangles of its surface; `body.dynamics` must be rigid. The surface consists of one
     /// or several closed shells, for example one for each convex part of a robot link. A shell that is inside out
@@ -81,6 +83,8 @@ public:
     /// Adds a rigid cylinder with flat ends and sharp rims. The rules for a sphere apply, see add_body() above. The
     /// axis is z of the cylinder's frame, and the first node is the centre (mesh::cylinder_picture).
     BodyHandle add_body(const Cylinder& cylinder, const BodySettings& body);
+    /// Adds a collider: a rigid shape that stands still or moves as prescribed, and that no force moves. A collider has
+    /// no mass. It touches bodies, and no other collider.
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Prescribes the motion of some nodes of a body (numbers within the body). From now on the nodes stay in place or
     /// follow `motion`. Constant angular velocities rotate the nodes about `pivot`. Keys of a motion are poses at
@@ -97,9 +101,11 @@ public:
     /// a held direction (docs/methods/sets_and_rollers.md).
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
                             const Vec3& pivot = Vec3::Zero(), const std::vector<Vec3>& directions = {});
+    /// Removes an object, and with it the joints, ties and other objects that name it.
     void remove(BodyHandle body);
     void remove(ColliderHandle collider);
     void remove(AttachmentHandle attachment);
+    /// True if the object is in this world, false if it was removed. Throws no error for a stale handle.
     bool alive(BodyHandle body) const;
     bool alive(ColliderHandle collider) const;
     bool alive(AttachmentHandle attachment) const;
@@ -123,6 +129,7 @@ public:
     /// velocities. If `look` throws an exception, the call of advance ends between two steps and rethrows it. Pass an
     /// empty function to end the calls.
     void watch_steps(std::function<void(const StepReport&)> look);
+    /// Simulated time since the world was made [s].
     Real time() const;
     const Settings& settings() const;
     /// Stable step of the stiffest body [s], which is the longest step that advance() takes. If all bodies are rigid or
@@ -198,6 +205,7 @@ public:
     // SceneError. A change costs only the update of the changed object; data derived from the whole world stay valid.
     // Setting an equal value again changes no bit of the state. A refused value changes nothing, and the SceneError
     // names it.
+    /// Sets the acceleration of gravity [m/s^2]. Sleeping bodies wake.
     void set_gravity(const Vec3& gravity);
     /// Sets the velocities at which a collider, or the nodes of an attachment, move from now on [m/s, rad/s about the
     /// origin of the pose]. They apply until they are set again. An earlier script or target is dropped.
@@ -291,7 +299,9 @@ public:
     /// Contacts of the last step and contacts between sleeping bodies, in a fixed order. Contacts of objects that were
     /// removed since are omitted. Empty if the last step was refused.
     std::span<const Contact> contacts() const;
+    /// Counters of the run and measures of the present state. The computation takes a pass over all tables.
     WorldReport report() const;
+    /// Kinetic, elastic and potential energy of all bodies now, and the energy dissipated since the start [J].
     Energy energy() const;
     /// Switches the measurement of forces on or off. While it is on, each call of advance sums the forces of contacts
     /// and attachments, with moments about `moment_point` (fixed in the world, [m]). Results of steps do not change. A
