@@ -275,7 +275,7 @@ public:
     /// Returns the values that were set for the object. Other values are missing.
     SurfaceSettings surface_properties(BodyHandle body) const;
     SurfaceSettings surface_properties(ColliderHandle collider) const;
-    /// Replaces the values that were set for an object. SurfaceSettings says what missing values mean.
+    /// Replaces the surface properties that were set for an object. See SurfaceSettings for missing values.
     void set_surface_properties(BodyHandle body, const SurfaceSettings& surface);
     void set_surface_properties(ColliderHandle collider, const SurfaceSettings& surface);
     /// See BodySettings::collision_group.
