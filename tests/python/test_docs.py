@@ -47,7 +47,8 @@ def pages_with(language: str) -> Any:
 
 
 def run(command: list[str], folder: pathlib.Path, **environment: str) -> None:
-    """Runs a command, which must succeed."""
+    """Runs a command, which must succeed and can import the package."""
+    environment["PYTHONPATH"] = str(pathlib.Path(sk.__file__).parents[1])
     done = subprocess.run(
         command, cwd=folder, env=os.environ | environment, capture_output=True, text=True, timeout=300
     )

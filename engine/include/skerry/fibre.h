@@ -47,10 +47,13 @@ public:
 
     /// Adds fibres. Stiff fibres shorten the step of the world.
     FibreHandle add(const FibreSettings& fibres);
+    /// The body of the fibres.
     BodyHandle body(FibreHandle fibres) const;
+    /// Stretch, tension and energy of the fibres after the last step.
     FibreState state(FibreHandle fibres) const;
     /// Settings of the fibres, with a direction for each tetrahedron.
     FibreSettings settings(FibreHandle fibres) const;
+    /// Sets the active tension [Pa].
     void set_tension(FibreHandle fibres, const TimeTable& tension);
 };
 

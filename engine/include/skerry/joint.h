@@ -127,8 +127,11 @@ public:
     void set_mimic(JointHandle joint, const std::optional<JointMimic>& mimic);
     /// Return the present settings.
     std::optional<JointMimic> mimic(JointHandle joint) const;
+    /// The motor of a joint; empty if it has none.
     std::optional<JointMotor> motor(JointHandle joint) const;
+    /// The limits of the joint coordinate.
     JointLimits limits(JointHandle joint) const;
+    /// Spring, damper and friction of a joint.
     JointPassive passive(JointHandle joint) const;
 };
 

@@ -46,9 +46,11 @@ public:
     std::string address() const;
     /// Ends all connections and stops the server. After it sync(), fail() and run() do nothing, and due() returns 0.
     void close();
+    /// False after close().
     bool is_open() const;
     bool playing() const;  // false if the view is paused; true until the next sync() for a single step
     int clients() const;   // number of connected browsers
+    /// Number of frames sent to browsers.
     std::uint64_t frames_sent() const;
     std::uint64_t frames_dropped() const;  // frames that a browser missed because it was still busy with earlier ones
     std::uint64_t resets() const;          // number of resets of the world

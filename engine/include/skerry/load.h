@@ -92,7 +92,9 @@ public:
     LoadHandle add(const AccelerationField& field);
     LoadHandle add(const GravityScale& factor);
     LoadHandle add(const DragField& drag);
+    /// Kind and present values of a load.
     LoadState state(LoadHandle load) const;
+    /// Settings of a load.
     AnyLoad settings(LoadHandle load) const;
     /// Replaces the scale of a load. Setting an equal scale changes no bit of the state.
     void set_scale(LoadHandle load, const TimeTable& scale);

@@ -38,6 +38,7 @@ public:
     /// Sets the names of the materials, in the order in which the materials were added. The default name is "material
     /// NUMBER". Must be called before the first frame.
     void name_materials(std::vector<std::string> names);
+    /// Writes the present state as the next frame.
     void write_frame(const World& world);
     /// Writes the index file NAME.pvd. The files of single frames can be opened without the index.
     void close();
@@ -54,8 +55,10 @@ private:
 /// body's extent, and values are stored as square roots in 11 bits (docs/decisions/0016-page-stream.md).
 class PageWriter {
 public:
+    /// Writes to `file` when the page is closed.
     PageWriter(const std::filesystem::path& file, const std::string& title);
     ~PageWriter();
+    /// Adds the present state as a frame.
     void add_frame(const World& world);
     /// Writes the page, with the report of the whole run. Throws SceneError if the page cannot be written.
     void close(const World& world);

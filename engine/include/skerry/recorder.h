@@ -137,7 +137,9 @@ public:
     /// Takes a sample, which may become a row. Must be called after every call of advance, so that no impulse is
     /// missed. A call before the first step records the initial state, with NaN as forces.
     void sample(const World& world);
+    /// The columns, beginning with the time.
     const std::vector<SeriesColumn>& columns() const;
+    /// Number of recorded rows.
     std::size_t row_count() const;
     /// Returns the values of a row, one per column. The span is valid until the next sample.
     std::span<const Real> row(std::size_t number) const;

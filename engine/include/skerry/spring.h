@@ -44,6 +44,7 @@ public:
 
     /// Adds a spring. Stiff springs on light bodies shorten the step of the world.
     SpringHandle add(const SpringSettings& spring);
+    /// Ends, length and force of a spring after the last step.
     SpringState state(SpringHandle spring) const;
     /// Settings of an equal spring that is added now: anchors have their present positions.
     SpringSettings settings(SpringHandle spring) const;
@@ -51,8 +52,11 @@ public:
     /// Moves the second anchor of a spring. The rest length does not change. With `strength`, this drags a body to a
     /// point that moves, for example with a mouse.
     void set_second(SpringHandle spring, const Anchor& anchor);
+    /// Sets the rest length [m].
     void set_rest_length(SpringHandle spring, const TimeTable& rest_length);
+    /// Sets the stiffness [N/m].
     void set_stiffness(SpringHandle spring, Real stiffness);
+    /// Sets the damping [N s/m].
     void set_damping(SpringHandle spring, Real damping);
 };
 

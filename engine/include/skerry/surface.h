@@ -36,12 +36,15 @@ public:
     void set(MaterialHandle first, MaterialHandle second, const SurfaceSettings& surface);
     /// Removes the properties of a pair. Without such properties, does nothing.
     void remove(MaterialHandle first, MaterialHandle second);
+    /// Properties of a pair, in either order; empty if none were set.
     std::optional<SurfaceSettings> surface(MaterialHandle first, MaterialHandle second) const;
+    /// All pairs whose properties were set.
     std::vector<MaterialPair> all() const;
 
     /// Gives a collider a material, or none. The collider then has the friction and restitution of this material unless
     /// it has its own, and takes part in the pairs of this material.
     void set_material(ColliderHandle collider, std::optional<MaterialHandle> material);
+    /// The material of a collider; empty if it has none.
     std::optional<MaterialHandle> material(ColliderHandle collider) const;
 
 private:
@@ -77,6 +80,7 @@ public:
     /// like the property of a body. For two surfaces with directions, the geometric mean of both friction tensors
     /// applies.
     SurfaceSetHandle add(const SurfaceSetSettings& set);
+    /// Settings of a set.
     SurfaceSetSettings settings(SurfaceSetHandle set) const;
     /// Changes the properties of a set, and wakes its body. `friction_across` needs a set with a direction.
     void set_surface(SurfaceSetHandle set, const SurfaceSettings& surface, std::optional<Real> friction_across = {});

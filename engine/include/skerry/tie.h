@@ -65,7 +65,9 @@ public:
 
     /// Ties nodes of a body.
     TieHandle add(const TieSettings& tie);
+    /// Nodes and forces of a tie after the last step.
     TieState state(TieHandle tie) const;
+    /// Settings of a tie.
     TieSettings settings(TieHandle tie) const;
     /// Sets the force at which a node breaks off [N]. Nodes that have broken off stay so.
     void set_break_force(TieHandle tie, Real force);

@@ -41,6 +41,7 @@ struct LoadSettings {
 /// range, or if the world was moved from.
 class World {
 public:
+    /// Makes an empty world.
     explicit World(const Settings& settings = {});
     ~World();
     World(World&&) noexcept;
@@ -50,6 +51,7 @@ public:
     // world, bit by bit, on any number of threads. Handles of this world name the same objects in the copy, and the
     // report() of the copy covers the whole run. Not copied are the functions of watch_steps() and
     // watch_contact_problems(), recorded traces and the computing times of stages.
+    /// Returns a copy of this world.
     World clone(const LoadSettings& settings = {}) const;
     /// Saves the world. The file is written under another name and then renamed, so an existing file is replaced
     /// completely or not at all. If writing fails, throws SceneError that names the cause; the world is unchanged.
@@ -131,6 +133,7 @@ public:
     void watch_steps(std::function<void(const StepReport&)> look);
     /// Simulated time since the world was made [s].
     Real time() const;
+    /// Settings of this world, with the gravity of set_gravity().
     const Settings& settings() const;
     /// Stable step of the stiffest body [s], which is the longest step that advance() takes. If all bodies are rigid or
     /// implicit: the step length that advance() uses.
@@ -163,10 +166,12 @@ public:
     /// have a longer one, because elements at the same node share its mass. To lengthen the stable step, repair the
     /// tetrahedra with the shortest step.
     std::vector<Real> tetrahedron_steps(BodyHandle body) const;
+    /// Name of a body (BodySettings::name).
     const std::string& name(BodyHandle body) const;
     /// Returns the kind of the elements of a body. For a body added as `smoothed` it is the kind that was chosen; if
     /// the choice depends on the material, it is edge_node_smoothed.
     ElementKind element(BodyHandle body) const;
+    /// Present kind of a body. For a body added with `automatic` it is the kind that was chosen.
     BodyDynamics dynamics(BodyHandle body) const;
     /// For a body added with `automatic`: the cost estimate behind the choice. For all other bodies `reason` is
     /// `given`.
@@ -188,6 +193,7 @@ public:
     /// Present pose of the moving frame to which the nodes are attached. At the time of attaching, this frame was at
     /// the pivot without rotation, or at the pose of the keys.
     MotionKey pose(AttachmentHandle attachment) const;
+    /// Shape of a collider in its own frame.
     const Shape& shape(ColliderHandle collider) const;
     const std::string& name(ColliderHandle collider) const;
     std::vector<AttachmentHandle> attachments() const;            // in the order added
@@ -225,6 +231,7 @@ public:
     /// held at their new positions. Settings::start_overlaps applies to new overlaps. Throws SceneError if an element
     /// would be inverted.
     void set_positions(BodyHandle body, std::span<const Vec3> position);
+    /// Sets the velocities of all nodes of a body [m/s].
     void set_velocities(BodyHandle body, std::span<const Vec3> velocity);
     /// set_pose() moves a body in its present shape to another pose. set_velocity() gives all nodes the velocities of a
     /// rigid motion about the centre of mass [m/s, rad/s]. For a rigid body, set_positions() accepts only positions
@@ -261,17 +268,20 @@ public:
     /// bodies has no stable step. The kind of smoothed elements stays as chosen by Poisson's ratio when the body was
     /// added.
     MaterialSettings material(MaterialHandle material) const;
+    /// Replaces the settings of a material, with the effects and errors above.
     void set_material(MaterialHandle material, const MaterialSettings& settings);
     std::vector<MaterialHandle> materials() const;   // in the order added
     MaterialHandle material(BodyHandle body) const;  // BodySettings::material
     /// Returns the values that were set for the object. Other values are missing.
     SurfaceSettings surface_properties(BodyHandle body) const;
     SurfaceSettings surface_properties(ColliderHandle collider) const;
+    /// Replaces the surface properties that were set for an object. See SurfaceSettings for missing values.
     void set_surface_properties(BodyHandle body, const SurfaceSettings& surface);
     void set_surface_properties(ColliderHandle collider, const SurfaceSettings& surface);
     /// See BodySettings::collision_group.
     CollisionGroups collision_groups(BodyHandle body) const;
     CollisionGroups collision_groups(ColliderHandle collider) const;
+    /// Sets the groups of an object, and the groups with which it collides.
     void set_collision_groups(BodyHandle body, std::uint32_t group, std::uint32_t mask);
     void set_collision_groups(ColliderHandle collider, std::uint32_t group, std::uint32_t mask);
     /// Switches the collision of a pair on or off. Initially it is on for all pairs that the collision groups admit.
@@ -307,6 +317,7 @@ public:
     /// and attachments, with moments about `moment_point` (fixed in the world, [m]). Results of steps do not change. A
     /// clone continues to measure, a loaded world does not.
     void measure_forces(bool on, const Vec3& moment_point = Vec3::Zero());
+    /// True while forces are measured.
     bool measures_forces() const;
     /// Forces over the last call of advance. Throws SceneError if forces are not measured.
     Forces forces() const;
