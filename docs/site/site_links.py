@@ -13,6 +13,7 @@ import shutil
 import subprocess
 
 from docutils import nodes
+from gallery_commands import commands_of
 from sphinx.addnodes import pending_xref
 from sphinx.application import Sphinx
 from sphinx.transforms import SphinxTransform
@@ -30,8 +31,6 @@ PAGE_OF = {
 }
 LINK = re.compile(r"\]\(([^()\s#:]+)(#[^()\s]*)?\)")
 PAGE = re.compile(r"docs/[\w/-]+\.md")
-# A command of the gallery, and the state in which its page opens.
-RUN = re.compile(r"^skerry run (.+) --page (\w+\.html) +# \w+\.html(#\S+)", re.MULTILINE)
 
 
 def complete_page(app: Sphinx, page: str, source: list[str]) -> None:
@@ -99,15 +98,15 @@ class Players(SphinxTransform):
         films.mkdir(parents=True, exist_ok=True)
         for block in list(self.document.findall(nodes.literal_block)):
             players = []
-            for run in RUN.finditer(block.astext()):
-                written = pathlib.Path(os.environ["SKERRY_SITE_RESULTS"]) / run[2]
+            for run in commands_of(block.astext()):
+                written = pathlib.Path(os.environ["SKERRY_SITE_RESULTS"]) / run.page
                 if not written.exists():
-                    command = [os.environ["SKERRY_PROGRAM"], "run", *run[1].split(), "--page", str(written), "--quiet"]
-                    subprocess.run(command, cwd=self.app.srcdir, check=True, stdout=subprocess.DEVNULL)
+                    call = [os.environ["SKERRY_PROGRAM"], *run.arguments, "--page", str(written), "--quiet"]
+                    subprocess.run(call, cwd=self.app.srcdir, check=True, stdout=subprocess.DEVNULL)
                 shutil.copy(written, films)
-                film = relative_uri(self.app.builder.get_target_uri(self.env.docname), f"films/{run[2]}")
-                address = html.escape(f"{film}{run[3]}&panel=0")
-                frame = f'<iframe class="run" loading="lazy" src="{address}" title="{run[2]}"></iframe>'
+                film = relative_uri(self.app.builder.get_target_uri(self.env.docname), f"films/{run.page}")
+                address = html.escape(f"{film}#{run.state}&panel=0")
+                frame = f'<iframe class="run" loading="lazy" src="{address}" title="{run.page}"></iframe>'
                 players.append(nodes.raw("", frame, format="html"))
             if players:
                 block.parent.insert(block.parent.index(block) + 1, players)
