@@ -230,6 +230,23 @@ def test_reset_goes_back_to_the_start(view: sk.View) -> None:
         advance(client)
 
 
+def test_a_reset_is_refused_while_a_recorder_is_active(view: sk.View) -> None:
+    world = view.world
+    with connect(view) as client:
+        client.wait(lambda: client.frames)
+        with world.recorder({"energy": sk.EnergyProbe()}, every=0.01) as recorder:
+            advance(client, 0.02)
+            client.send("reset")
+            client.wait(lambda: client.of_type("problem"))
+            assert "a recorder of 'energy' in its `with` block" in client.of_type("problem")[0]["text"]
+            assert world.time > 0 and len(client.of_type("begin")) == 1
+            advance(client, 0.01)
+        assert list(recorder.table()["time"]) == pytest.approx([0, 0.01, 0.02, 0.03], abs=1e-9)
+        client.send("reset")
+        client.wait(lambda: len(client.of_type("begin")) == 2)
+        assert world.time == 0
+
+
 def test_a_pulled_ball_follows_a_critically_damped_spring(view: sk.View) -> None:
     """The surface point is pulled along the line through the centre, without gravity: 1 - (1 + w t) exp(-w t)."""
     world = view.world

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from . import _core
 from ._arrays import checked, counted, flag, name_text, real
+from ._errors import SceneError
 from ._scene import Scene
 from ._world import World
 from ._world.probes import Probe, recorded_probes
@@ -76,7 +77,8 @@ class View:
     def sync(self) -> None:
         """Carries out the commands of users of the page since the last call (pulls, sliders, gravity, reset), and shows
         the present state if a page can take a frame. Never waits for a page, and drops frames instead. Call it after
-        each call of World.advance(). BufferError: arrays of views() are in use."""
+        each call of World.advance(). A reset is refused while a recorder is in its `with` block. BufferError: arrays of
+        views() are in use."""
         self._turn(self._core.sync)
 
     def run(self) -> None:
@@ -101,6 +103,7 @@ class View:
 
     def _turn(self, function: Callable[[_core.World], float | None]) -> float | None:
         with self._lock:
+            self._core.refuse_resets(self._reset_refusal())
             result = function(self._world._core)
         if self._core.clients():
             self._seen = time.monotonic()
@@ -108,6 +111,15 @@ class View:
             self._resets = self._core.resets()
             self._world._forget_objects()
         return result
+
+    def _reset_refusal(self) -> str:
+        """Reason why the world must not go back in time, for example an active recorder; empty if it may."""
+        try:
+            for follower in self._world._followers:
+                follower.require_no_jump()
+        except SceneError as error:
+            return str(error)
+        return ""
 
     def _advance(self, dt: float) -> None:
         begun = time.monotonic()
