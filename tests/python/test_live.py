@@ -416,6 +416,17 @@ def test_a_port_in_use_is_an_error() -> None:
             sk.view(ball_world()[0], port=port, open=False)
 
 
+def test_a_long_step_does_not_close_a_view_with_a_page(view: sk.View, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("skerry._live._RELOAD", 0.05)
+    with connect(view) as client:
+        client.wait(lambda: client.frames)
+        time.sleep(0.1)  # as long as a step could take
+        assert view.is_open
+    wait_for_clients(view, 0)
+    time.sleep(0.1)
+    assert not view.is_open
+
+
 def test_a_view_that_is_closed_frees_its_port(view: sk.View) -> None:
     port, _ = place_of(view)
     view.close()

@@ -51,6 +51,7 @@ class View:
     @property
     def is_open(self) -> bool:
         """False after close(), and when all pages that were open have been closed for 5 s."""
+        self._note_pages()
         return not self._closed and (self._seen is None or time.monotonic() - self._seen < _RELOAD)
 
     @property
@@ -105,12 +106,18 @@ class View:
         with self._lock:
             self._core.refuse_resets(self._reset_refusal())
             result = function(self._world._core)
-        if self._core.clients():
-            self._seen = time.monotonic()
+        self._note_pages()
         if self._core.resets() != self._resets:
             self._resets = self._core.resets()
             self._world._forget_objects()
         return result
+
+    def _note_pages(self) -> bool:
+        """Notes the time if a page is connected."""
+        connected = self._core.clients() > 0
+        if connected:
+            self._seen = time.monotonic()
+        return connected
 
     def _reset_refusal(self) -> str:
         """Reason why the world must not go back in time, for example an active recorder; empty if it may."""
@@ -123,8 +130,12 @@ class View:
 
     def _advance(self, dt: float) -> None:
         begun = time.monotonic()
+        connected = self._note_pages()
         report = self._world.try_advance(dt, check=self._show if self._slow else None)
-        self._slow = time.monotonic() - begun > _LONG_CALL
+        ended = time.monotonic()
+        self._slow = ended - begun > _LONG_CALL
+        if connected:
+            self._seen = ended  # a page that was closed during a long call may be loading again
         if report.status not in ("ok", "stopped"):
             with self._lock:
                 self._core.fail(report.message)
