@@ -12,6 +12,7 @@ import re
 import resource
 import socket
 import struct
+import threading
 import time
 import zlib
 from pathlib import Path
@@ -425,6 +426,19 @@ def test_a_long_step_does_not_close_a_view_with_a_page(view: sk.View, monkeypatc
     wait_for_clients(view, 0)
     time.sleep(0.1)
     assert not view.is_open
+
+
+def test_a_step_that_is_refused_pauses_run() -> None:
+    world = sk.World(threads=1, start_overlaps="refuse")
+    for x in (0, 0.01):
+        world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(x, 0, 0))
+    with sk.view(world, open=False) as view, connect(view) as client:
+        thread = threading.Thread(target=view.run)
+        thread.start()
+        client.wait(lambda: client.state.get("playing") is False, sync=False)
+        assert view.is_open and client.of_type("problem")
+        view.close()
+        thread.join()
 
 
 def test_a_view_that_is_closed_frees_its_port(view: sk.View) -> None:

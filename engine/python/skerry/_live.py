@@ -131,14 +131,18 @@ class View:
     def _advance(self, dt: float) -> None:
         begun = time.monotonic()
         connected = self._note_pages()
-        report = self._world.try_advance(dt, check=self._show if self._slow else None)
+        try:
+            report = self._world.try_advance(dt, check=self._show if self._slow else None)
+            problem = "" if report.status in ("ok", "stopped") else report.message
+        except SceneError as error:  # for example overlaps that the settings of the world refuse
+            problem = str(error)
         ended = time.monotonic()
         self._slow = ended - begun > _LONG_CALL
         if connected:
             self._seen = ended  # a page that was closed during a long call may be loading again
-        if report.status not in ("ok", "stopped"):
+        if problem:
             with self._lock:
-                self._core.fail(report.message)
+                self._core.fail(problem)
 
     def _show(self, _: StepReport) -> bool:
         """Shows the world between two steps of a long call. False: a page has sent a command, so that the call ends."""
