@@ -23,6 +23,7 @@ bool LiveView::between_steps(const World&) {
     return true;
 }
 void LiveView::fail(const std::string&) {}
+void LiveView::refuse_resets(const std::string&) {}
 void LiveView::run(World&, const std::function<bool()>&, const std::function<void(const std::string&)>&) {}
 void LiveView::close() {}
 bool LiveView::is_open() const {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/world/complaint.h"
+#include "skerry/error.h"
 
 namespace skerry {
 
@@ -190,6 +191,7 @@ void LiveRun::set_gravity(World& world, bool on) {
 }
 
 void LiveRun::reset(World& world) {
+    if (!reset_refusal_.empty()) throw SceneError(reset_refusal_);
     world.reset(start_);
     pulls_.clear();
     probes_ = tracked_probes(world);

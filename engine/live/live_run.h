@@ -26,6 +26,7 @@ public:
     Real due(World& world);
     bool between_steps(const World& world);
     void fail(const std::string& text);
+    void refuse_resets(const std::string& reason) { reset_refusal_ = reason; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -57,6 +58,7 @@ private:
     std::map<std::uint64_t, Pull> pulls_;   // by number of the browser
     std::atomic<bool> step_asked_ = false;  // until due() or the next sync()
     bool failed_ = false;                   // paused by fail()
+    std::string reset_refusal_;             // reason why resets are refused; empty if they are allowed
     std::atomic<std::uint64_t> resets_ = 0;
 
     SnapshotTaker taker_;

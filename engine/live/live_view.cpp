@@ -59,6 +59,10 @@ void LiveView::fail(const std::string& text) {
     if (is_open()) impl_->run.fail(text);
 }
 
+void LiveView::refuse_resets(const std::string& reason) {
+    impl_->run.refuse_resets(reason);
+}
+
 void LiveView::run(World& world, const std::function<bool()>& go_on,
                    const std::function<void(const std::string&)>& failed) {
     while (is_open() && go_on()) {

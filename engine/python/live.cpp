@@ -35,6 +35,7 @@ void bind_live(nb::module_& module) {
         .def("frames_dropped", &LiveView::frames_dropped)
         .def("resets", &LiveView::resets)
         .def("fail", &LiveView::fail)
+        .def("refuse_resets", &LiveView::refuse_resets)
         .def("close", [](LiveView& view) { without_gil([&] { view.close(); }); })
         .def("sync",
              [](LiveView& view, WorldObject& object) {

@@ -12,6 +12,7 @@ import re
 import resource
 import socket
 import struct
+import threading
 import time
 import zlib
 from pathlib import Path
@@ -230,6 +231,23 @@ def test_reset_goes_back_to_the_start(view: sk.View) -> None:
         advance(client)
 
 
+def test_a_reset_is_refused_while_a_recorder_is_active(view: sk.View) -> None:
+    world = view.world
+    with connect(view) as client:
+        client.wait(lambda: client.frames)
+        with world.recorder({"energy": sk.EnergyProbe()}, every=0.01) as recorder:
+            advance(client, 0.02)
+            client.send("reset")
+            client.wait(lambda: client.of_type("problem"))
+            assert "a recorder of 'energy' in its `with` block" in client.of_type("problem")[0]["text"]
+            assert world.time > 0 and len(client.of_type("begin")) == 1
+            advance(client, 0.01)
+        assert list(recorder.table()["time"]) == pytest.approx([0, 0.01, 0.02, 0.03], abs=1e-9)
+        client.send("reset")
+        client.wait(lambda: len(client.of_type("begin")) == 2)
+        assert world.time == 0
+
+
 def test_a_pulled_ball_follows_a_critically_damped_spring(view: sk.View) -> None:
     """The surface point is pulled along the line through the centre, without gravity: 1 - (1 + w t) exp(-w t)."""
     world = view.world
@@ -397,6 +415,30 @@ def test_a_port_in_use_is_an_error() -> None:
         port = taken.getsockname()[1]
         with pytest.raises(sk.SceneError, match=rf"port: found {port}, which cannot be opened"):
             sk.view(ball_world()[0], port=port, open=False)
+
+
+def test_a_long_step_does_not_close_a_view_with_a_page(view: sk.View, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("skerry._live._RELOAD", 0.05)
+    with connect(view) as client:
+        client.wait(lambda: client.frames)
+        time.sleep(0.1)  # as long as a step could take
+        assert view.is_open
+    wait_for_clients(view, 0)
+    time.sleep(0.1)
+    assert not view.is_open
+
+
+def test_a_step_that_is_refused_pauses_run() -> None:
+    world = sk.World(threads=1, start_overlaps="refuse")
+    for x in (0, 0.01):
+        world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(x, 0, 0))
+    with sk.view(world, open=False) as view, connect(view) as client:
+        thread = threading.Thread(target=view.run)
+        thread.start()
+        client.wait(lambda: client.state.get("playing") is False, sync=False)
+        assert view.is_open and client.of_type("problem")
+        view.close()
+        thread.join()
 
 
 def test_a_view_that_is_closed_frees_its_port(view: sk.View) -> None:

@@ -71,6 +71,9 @@ public:
     bool between_steps(const World& world);
     /// Pauses the view, and shows the text to all browsers. For steps that failed.
     void fail(const std::string& text);
+    /// Refuses resets by browsers with this text, for example while a recorder could not continue at an earlier time.
+    /// An empty text allows them again.
+    void refuse_resets(const std::string& reason);
     /// Advances the world as the browsers ask, in calls of at most 1/60 s, until `go_on`, which is called before each
     /// step, returns false. A step that cannot be committed pauses the view; `failed` then gets its message.
     void run(World& world, const std::function<bool()>& go_on,

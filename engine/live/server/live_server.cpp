@@ -34,18 +34,24 @@ public:
     bool send_text(std::string_view text) override { return send(MG_WEBSOCKET_OPCODE_TEXT, text); }
     bool send_bytes(std::string_view bytes) override { return send(MG_WEBSOCKET_OPCODE_BINARY, bytes); }
     void close() override {
-        send(MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, {});
+        if (!broken_) send(MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, {});
         mg_close_connection(connection_);
     }
 
     std::uint64_t client = 0;  // number of the browser at the hub
 
 private:
+    /// The library returns the number of bytes that it has sent when the time for a request is over. After a part of a
+    /// message nothing more can be sent, because the browser would read it as the rest of the message.
     bool send(int opcode, std::string_view bytes) {
-        return mg_websocket_write(connection_, opcode, bytes.data(), bytes.size()) > 0;
+        constexpr std::size_t header = 2;  // length of a message without data, for which the library returns it
+        const int sent = mg_websocket_write(connection_, opcode, bytes.data(), bytes.size());
+        broken_ = sent < 0 || static_cast<std::size_t>(sent) != (bytes.empty() ? header : bytes.size());
+        return !broken_;
     }
 
     mg_connection* connection_;
+    bool broken_ = false;  // a message was not sent as a whole
 };
 
 /// Calls a function for the C library, which no exception may enter. Returns `otherwise` if the function throws.

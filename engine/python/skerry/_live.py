@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from . import _core
 from ._arrays import checked, counted, flag, name_text, real
+from ._errors import SceneError
 from ._scene import Scene
 from ._world import World
 from ._world.probes import Probe, recorded_probes
@@ -50,6 +51,7 @@ class View:
     @property
     def is_open(self) -> bool:
         """False after close(), and when all pages that were open have been closed for 5 s."""
+        self._note_pages()
         return not self._closed and (self._seen is None or time.monotonic() - self._seen < _RELOAD)
 
     @property
@@ -76,7 +78,8 @@ class View:
     def sync(self) -> None:
         """Carries out the commands of users of the page since the last call (pulls, sliders, gravity, reset), and shows
         the present state if a page can take a frame. Never waits for a page, and drops frames instead. Call it after
-        each call of World.advance(). BufferError: arrays of views() are in use."""
+        each call of World.advance(). A reset is refused while a recorder is in its `with` block. BufferError: arrays of
+        views() are in use."""
         self._turn(self._core.sync)
 
     def run(self) -> None:
@@ -101,21 +104,45 @@ class View:
 
     def _turn(self, function: Callable[[_core.World], float | None]) -> float | None:
         with self._lock:
+            self._core.refuse_resets(self._reset_refusal())
             result = function(self._world._core)
-        if self._core.clients():
-            self._seen = time.monotonic()
+        self._note_pages()
         if self._core.resets() != self._resets:
             self._resets = self._core.resets()
             self._world._forget_objects()
         return result
 
+    def _note_pages(self) -> bool:
+        """Notes the time if a page is connected."""
+        connected = self._core.clients() > 0
+        if connected:
+            self._seen = time.monotonic()
+        return connected
+
+    def _reset_refusal(self) -> str:
+        """Reason why the world must not go back in time, for example an active recorder; empty if it may."""
+        try:
+            for follower in self._world._followers:
+                follower.require_no_jump()
+        except SceneError as error:
+            return str(error)
+        return ""
+
     def _advance(self, dt: float) -> None:
         begun = time.monotonic()
-        report = self._world.try_advance(dt, check=self._show if self._slow else None)
-        self._slow = time.monotonic() - begun > _LONG_CALL
-        if report.status not in ("ok", "stopped"):
+        connected = self._note_pages()
+        try:
+            report = self._world.try_advance(dt, check=self._show if self._slow else None)
+            problem = "" if report.status in ("ok", "stopped") else report.message
+        except SceneError as error:  # for example overlaps that the settings of the world refuse
+            problem = str(error)
+        ended = time.monotonic()
+        self._slow = ended - begun > _LONG_CALL
+        if connected:
+            self._seen = ended  # a page that was closed during a long call may be loading again
+        if problem:
             with self._lock:
-                self._core.fail(report.message)
+                self._core.fail(problem)
 
     def _show(self, _: StepReport) -> bool:
         """Shows the world between two steps of a long call. False: a page has sent a command, so that the call ends."""
