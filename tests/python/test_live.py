@@ -220,6 +220,17 @@ def test_a_single_step_lets_a_loop_advance_once(view: sk.View) -> None:
         assert not view.playing
 
 
+def test_steps_follow_the_rate_and_end_with_the_view() -> None:
+    world = ball_world()[0]
+    with sk.view(world, rate=0.5, open=False) as view:
+        begun = time.monotonic()
+        for dt in view.steps():
+            world.advance(dt)
+            if world.time > 0.1:
+                view.close()
+        assert time.monotonic() - begun > 0.15 and 0.1 < world.time < 0.25
+
+
 def test_reset_goes_back_to_the_start(view: sk.View) -> None:
     world = view.world
     ball, start = world.bodies["ball"], world.state_hash

@@ -110,6 +110,7 @@ try:
     with sk.view(world, open=False) as view:
         opened: sk.View = view
         opened.sync()
+        duration: float = next(opened.steps())
 except sk.SceneError as without_server:
     assert "live view" in str(without_server)
 color: sk.FilmColor = "speed"

@@ -6,7 +6,7 @@ import sys
 import threading
 import time
 import webbrowser
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from . import _core
@@ -87,13 +87,19 @@ class View:
         the view. A step that fails pauses the run, and the page shows why. Recorders and films in their `with` blocks
         follow the run; so do functions of World.watch_steps()."""
         try:
-            while self.is_open:
-                if dt := self._turn(self._core.due):
-                    self._advance(dt)
+            for dt in self.steps():
+                self._advance(dt)
         except KeyboardInterrupt:
             pass
         finally:
             self.close()
+
+    def steps(self) -> Iterator[float]:
+        """Durations by which a loop of your own has to advance the world [s], until the page is closed. They follow the
+        page: its rate, pauses and single steps. While there is nothing to advance, the iterator waits."""
+        while self.is_open:
+            if dt := self._turn(self._core.due):
+                yield dt
 
     def close(self) -> None:
         """Ends the server, and run() of another thread. Pages keep their last picture. The end of the `with` block does
@@ -176,10 +182,9 @@ def view(
 
         skerry.view(world).run()  # until the page is closed or Ctrl-C is pressed
 
-        with skerry.view(world) as view:  # with a loop of your own
-            while view.is_open:
-                world.advance(1 / 60)
-                view.sync()
+        with skerry.view(world) as view:  # with a loop of your own, at the rate that the page shows
+            for dt in view.steps():
+                world.advance(dt)
 
         skerry.view(skerry.load_scene("scenes/finger.json")).run()  # with its sliders and probes
 
