@@ -244,6 +244,19 @@ def test_a_pulled_ball_follows_a_critically_damped_spring(view: sk.View) -> None
     assert len(world.springs) == 0
 
 
+def test_the_scale_of_arrows_is_not_exceeded_by_one_of_few_forces() -> None:
+    world = sk.World(threads=1)
+    world.add_collider(sk.Plane())
+    for place, size in ((0.0, 0.1), (1.0, 0.02)):
+        world.add_body(sk.Mesh.ball(size, 4), sk.Material(), dynamics="rigid", position=(place, 0, size))
+    world.advance(0.1)
+    with sk.view(world, open=False) as view, connect(view) as client:
+        advance(client, 0.01)
+        forces = np.linalg.norm(world.contacts["force"], axis=1)
+        assert 1 < np.count_nonzero(forces) < 100
+        assert client.rows[-1]["top"]["force"] == pytest.approx(forces.max(), rel=0.01)
+
+
 MALFORMED = [
     "",
     "{",
