@@ -22,7 +22,9 @@ import pytest
 
 import skerry as sk
 from live_client import Client, answer_to, connect, place_of, upgrade
-from worlds import RUBBER, ball_world
+from worlds import RUBBER, ball_world, skip_without_live_view
+
+skip_without_live_view()
 
 
 @pytest.fixture
