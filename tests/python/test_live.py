@@ -259,6 +259,29 @@ def test_the_scale_of_arrows_is_not_exceeded_by_one_of_few_forces() -> None:
         assert client.rows[-1]["top"]["force"] == pytest.approx(forces.max(), rel=0.01)
 
 
+def test_a_slider_of_a_removed_object_does_not_end_the_run() -> None:
+    scene = sk.load_scene(
+        {
+            "settings": {"threads": 1},
+            "materials": {"rubber": {"E": 2e5, "nu": 0.4, "rho": 1000}},
+            "bodies": [{"name": "ball", "mesh": {"ball": {"radius": 0.05, "resolution": 2}}, "material": "rubber"}],
+            "colliders": [{"name": "wall", "shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "position": [0.5, 0, 0]}],
+            "sliders": [{"name": "push", "collider": "wall", "along": [1, 0, 0], "low": -0.1, "high": 0.1}],
+        }
+    )
+    with sk.view(scene, open=False) as view, connect(view) as client:
+        client.wait(lambda: client.rows)
+        assert client.rows[-1]["sliders"] == pytest.approx([0], abs=1e-12)
+        scene.world.colliders["wall"].remove()
+        advance(client)
+        client.wait(lambda: client.rows[-1]["sliders"] == [None])
+        client.send("slider", number=0, value=0.05)
+        client.wait(lambda: client.of_type("problem"))
+        assert "removed" in client.of_type("problem")[-1]["text"]
+        advance(client)
+        assert view.playing
+
+
 MALFORMED = [
     "",
     "{",
