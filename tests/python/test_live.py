@@ -11,8 +11,11 @@ import random
 import re
 import resource
 import socket
+import stat
 import struct
 import time
+import urllib.parse
+import webbrowser
 import zlib
 from pathlib import Path
 from typing import Any
@@ -280,6 +283,18 @@ def test_a_slider_of_a_removed_object_does_not_end_the_run() -> None:
         assert "removed" in client.of_type("problem")[-1]["text"]
         advance(client)
         assert view.playing
+
+
+def test_the_browser_is_opened_without_the_token_in_its_arguments(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr(webbrowser, "open", lambda address: not opened.append(address))
+    with sk.view(ball_world()[0]) as view:
+        token = place_of(view)[1]
+        assert len(opened) == 1 and token not in opened[0]
+        file = Path(urllib.parse.unquote(urllib.parse.urlparse(opened[0]).path))
+        assert view.address in file.read_text(encoding="utf-8")
+        assert [stat.S_IMODE(path.stat().st_mode) for path in (file, file.parent)] == [0o600, 0o700]
+    assert not file.parent.exists()
 
 
 MALFORMED = [
