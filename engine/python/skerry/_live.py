@@ -9,8 +9,8 @@ import sys
 import tempfile
 import threading
 import time
-import webbrowser
 import weakref
+import webbrowser
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
@@ -108,8 +108,8 @@ class View:
             self._forget_page()
 
     def _open_page(self) -> bool:
-        """Opens the page by a file that leads to it. Other users of the computer can read the arguments of programs, but
-        not this file, so that the token in the address stays secret."""
+        """Opens the page by a file that leads to it. Other users of the computer can read the arguments of programs,
+        but not this file, so that the token in the address stays secret."""
         folder = pathlib.Path(tempfile.mkdtemp(prefix="skerry-view-"))
         self._forget_page = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
         file = folder / "view.html"

@@ -240,8 +240,10 @@ class ProgramTest(ProgramCase):
         opener.write_text(f'#!/bin/sh\n{{ echo "$@"; stat -c %a "$1"; cat "$1"; }} > "{told}.part"\n'
                           f'mv "{told}.part" "{told}"\n')
         opener.chmod(0o755)
-        own = {**os.environ, "DISPLAY": ":0", "PATH": f"{opener.parent}:{os.environ['PATH']}", "TMPDIR": str(self.folder)}
-        with subprocess.Popen([PROGRAM, "view", self.scene, "--paused"], stdout=subprocess.PIPE, text=True, env=own) as view:
+        own = {**os.environ, "DISPLAY": ":0", "PATH": f"{opener.parent}:{os.environ['PATH']}",
+               "TMPDIR": str(self.folder)}
+        with subprocess.Popen([PROGRAM, "view", self.scene, "--paused"], stdout=subprocess.PIPE, text=True,
+                              env=own) as view:
             address = re.search(r"http\S+", view.stdout.readline())[0]
             end = time.monotonic() + 10
             while not told.exists() and time.monotonic() < end:
