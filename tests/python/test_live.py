@@ -287,7 +287,12 @@ def test_a_slider_of_a_removed_object_does_not_end_the_run() -> None:
 
 def test_the_browser_is_opened_without_the_token_in_its_arguments(monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
-    monkeypatch.setattr(webbrowser, "open", lambda address: not opened.append(address))
+
+    def note(address: str) -> bool:
+        opened.append(address)
+        return True
+
+    monkeypatch.setattr(webbrowser, "open", note)
     with sk.view(ball_world()[0]) as view:
         token = place_of(view)[1]
         assert len(opened) == 1 and token not in opened[0]
