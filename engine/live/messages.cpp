@@ -77,12 +77,14 @@ LiveEncoder::Messages LiveEncoder::pack(const Snapshot& snapshot, std::uint64_t 
     return messages;
 }
 
-/// Returns the value below which 99 % of the positive values in `values_` lie, so that a single extreme value does not
-/// stretch a legend. Returns 0 if there are none. Changes the order of the values.
+/// Returns a value that 99 % of the positive values in `values_` do not exceed, so that few extreme values among many
+/// do not stretch a legend. Of at most 100 values it is the largest. Returns 0 if there are none. Changes the order of
+/// the values.
 Real LiveEncoder::usual() {
     std::erase_if(values_, [](Real value) { return !(value > 0) || !std::isfinite(value); });
     if (values_.empty()) return 0;
-    const auto place = values_.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<Real>(values_.size() - 1));
+    const Real rank = std::ceil(0.99 * static_cast<Real>(values_.size() - 1));
+    const auto place = values_.begin() + static_cast<std::ptrdiff_t>(rank);
     std::ranges::nth_element(values_, place);
     return *place;
 }

@@ -1,10 +1,13 @@
 #include <fcntl.h>
 #include <spawn.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string>
 
 #include "engine/program/commands.h"
@@ -19,14 +22,55 @@ namespace skerry {
 
 namespace {
 
-/// Opens an address in the browser of the user. Does nothing if there is no desktop or no program to open it.
-void open_browser(const std::string& address) {
+/// A page that leads a browser to an address. Other users of the machine can read the arguments of programs, but not
+/// this file, so that the token in the address stays secret. The destructor removes the file.
+class LeadingPage {
+public:
+    explicit LeadingPage(const std::string& address) {
+        std::error_code error;
+        const std::filesystem::path temporary = std::filesystem::temp_directory_path(error);
+        std::string folder = (temporary / "skerry-view-XXXXXX").string();
+        if (error || !mkdtemp(folder.data())) return;
+        folder_ = folder;
+        const std::string page =
+            "<!doctype html><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"0; url=" + address + "\">\n";
+        const int file = ::open(path().c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
+        if (file < 0) return;
+        const ssize_t written = ::write(file, page.data(), page.size());
+        is_complete_ = ::close(file) == 0 && written == static_cast<ssize_t>(page.size());
+    }
+    ~LeadingPage() {
+        if (folder_.empty()) return;
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
+    LeadingPage(const LeadingPage&) = delete;
+    LeadingPage& operator=(const LeadingPage&) = delete;
+
+    bool is_complete() const { return is_complete_; }
+    std::string path() const { return (folder_ / "view.html").string(); }
+
+private:
+    std::filesystem::path folder_;
+    bool is_complete_ = false;
+};
+
 #ifdef __APPLE__
-    const char* const program = "open";
+constexpr const char* opening_program = "open";
 #else
-    const char* const program = "xdg-open";
-    if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
+constexpr const char* opening_program = "xdg-open";
 #endif
+
+bool has_desktop() {
+#ifdef __APPLE__
+    return true;
+#else
+    return std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
+#endif
+}
+
+/// Opens a file in the browser of the user. Does nothing if there is no program to open it.
+void open_in_browser(const std::string& path) {
     posix_spawn_file_actions_t silence;
     posix_spawnattr_t own_group;  // so that Ctrl-C does not end the browser
     posix_spawn_file_actions_init(&silence);
@@ -34,10 +78,10 @@ void open_browser(const std::string& address) {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         posix_spawn_file_actions_addopen(&silence, stream, "/dev/null", O_RDWR, 0);
     posix_spawnattr_setflags(&own_group, POSIX_SPAWN_SETPGROUP);
-    std::string name = program, argument = address;
+    std::string name = opening_program, argument = path;
     char* const arguments[] = {name.data(), argument.data(), nullptr};
     pid_t process = 0;
-    static_cast<void>(posix_spawnp(&process, program, &silence, &own_group, arguments, environ));
+    static_cast<void>(posix_spawnp(&process, opening_program, &silence, &own_group, arguments, environ));
     posix_spawn_file_actions_destroy(&silence);
     posix_spawnattr_destroy(&own_group);
 }
@@ -57,8 +101,9 @@ int view(const ViewOptions& options) {
                                 .sliders = scene.sliders,
                                 .probes = scene.recorded});
     std::cout << scene.name << ": open " << live.address() << " in a browser; Ctrl-C ends" << std::endl;
-    if (options.open) open_browser(live.address());
     const SignalGuard guard;
+    std::optional<LeadingPage> page;
+    if (options.open && has_desktop() && page.emplace(live.address()).is_complete()) open_in_browser(page->path());
     const Stopwatch watch;
     Real simulated = 0, before = scene.world.time();
     const auto go_on = [&] {

@@ -11,9 +11,12 @@ import random
 import re
 import resource
 import socket
+import stat
 import struct
 import threading
 import time
+import urllib.parse
+import webbrowser
 import zlib
 from pathlib import Path
 from typing import Any
@@ -23,7 +26,9 @@ import pytest
 
 import skerry as sk
 from live_client import Client, answer_to, connect, place_of, upgrade
-from worlds import RUBBER, ball_world
+from worlds import RUBBER, ball_world, skip_without_live_view
+
+skip_without_live_view()
 
 
 @pytest.fixture
@@ -282,6 +287,59 @@ def test_a_pulled_ball_follows_a_critically_damped_spring(view: sk.View) -> None
         client.send("release")
         client.wait(lambda: client.rows[-1]["pull"] is None)
     assert len(world.springs) == 0
+
+
+def test_the_scale_of_arrows_is_not_exceeded_by_one_of_few_forces() -> None:
+    world = sk.World(threads=1)
+    world.add_collider(sk.Plane())
+    for place, size in ((0.0, 0.1), (1.0, 0.02)):
+        world.add_body(sk.Mesh.ball(size, 4), sk.Material(), dynamics="rigid", position=(place, 0, size))
+    world.advance(0.1)
+    with sk.view(world, open=False) as view, connect(view) as client:
+        advance(client, 0.01)
+        forces = np.linalg.norm(world.contacts["force"], axis=1)
+        assert 1 < np.count_nonzero(forces) < 100
+        assert client.rows[-1]["top"]["force"] == pytest.approx(forces.max(), rel=0.01)
+
+
+def test_a_slider_of_a_removed_object_does_not_end_the_run() -> None:
+    scene = sk.load_scene(
+        {
+            "settings": {"threads": 1},
+            "materials": {"rubber": {"E": 2e5, "nu": 0.4, "rho": 1000}},
+            "bodies": [{"name": "ball", "mesh": {"ball": {"radius": 0.05, "resolution": 2}}, "material": "rubber"}],
+            "colliders": [{"name": "wall", "shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "position": [0.5, 0, 0]}],
+            "sliders": [{"name": "push", "collider": "wall", "along": [1, 0, 0], "low": -0.1, "high": 0.1}],
+        }
+    )
+    with sk.view(scene, open=False) as view, connect(view) as client:
+        client.wait(lambda: client.rows)
+        assert client.rows[-1]["sliders"] == pytest.approx([0], abs=1e-12)
+        scene.world.colliders["wall"].remove()
+        advance(client)
+        client.wait(lambda: client.rows[-1]["sliders"] == [None])
+        client.send("slider", number=0, value=0.05)
+        client.wait(lambda: client.of_type("problem"))
+        assert "removed" in client.of_type("problem")[-1]["text"]
+        advance(client)
+        assert view.playing
+
+
+def test_the_browser_is_opened_without_the_token_in_its_arguments(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[str] = []
+
+    def note(address: str) -> bool:
+        opened.append(address)
+        return True
+
+    monkeypatch.setattr(webbrowser, "open", note)
+    with sk.view(ball_world()[0]) as view:
+        token = place_of(view)[1]
+        assert len(opened) == 1 and token not in opened[0]
+        file = Path(urllib.parse.unquote(urllib.parse.urlparse(opened[0]).path))
+        assert view.address in file.read_text(encoding="utf-8")
+        assert [stat.S_IMODE(path.stat().st_mode) for path in (file, file.parent)] == [0o600, 0o700]
+    assert not file.parent.exists()
 
 
 MALFORMED = [

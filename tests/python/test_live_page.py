@@ -16,7 +16,9 @@ import pytest
 
 import skerry as sk
 from browser import Tab, open_browser
-from worlds import ball_world
+from worlds import ball_world, skip_without_live_view
+
+skip_without_live_view()
 
 # Keeps the messages that the page sends.
 KEEP_SENT = """

@@ -13,6 +13,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 import skerry as sk
 
 RUBBER = sk.Material(young_modulus=2e5, poisson_ratio=0.4, density=1000, friction=0.5)
@@ -24,6 +26,16 @@ def ball_world(**settings: Any) -> tuple[sk.World, sk.Body, sk.Collider]:
     floor = world.add_collider(sk.Plane(), name="floor")
     ball = world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(0, 0, 0.06), name="ball")
     return world, ball, floor
+
+
+def skip_without_live_view() -> None:
+    """Skips the tests of a module if this build has no live view."""
+    try:
+        sk.view(sk.World(threads=1), open=False).close()
+    except sk.SceneError as error:
+        if "SKERRY_LIVE=OFF" not in str(error):
+            raise
+        pytest.skip("this build has no live view", allow_module_level=True)
 
 
 @contextlib.contextmanager

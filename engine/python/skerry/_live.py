@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import os
+import pathlib
+import shutil
 import sys
+import tempfile
 import threading
 import time
+import weakref
 import webbrowser
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
@@ -28,7 +33,7 @@ _RELOAD = 5.0  # time in which a page may connect again, for example after a rel
 class View:
     """Shows a world in a browser while it runs. view() makes it, and describes its use."""
 
-    __slots__ = ("_closed", "_core", "_lock", "_resets", "_seen", "_slow", "_world")
+    __slots__ = ("__weakref__", "_closed", "_core", "_forget_page", "_lock", "_resets", "_seen", "_slow", "_world")
 
     def __init__(self, world: World, core: _core.LiveView) -> None:
         self._world, self._core = world, core
@@ -37,6 +42,7 @@ class View:
         self._slow = False  # the last call of advance() was long
         self._resets = 0
         self._seen: float | None = None  # time at which a page was connected last [s]
+        self._forget_page: Callable[[], object] | None = None  # removes the file of _open_page()
 
     @property
     def world(self) -> World:
@@ -107,6 +113,19 @@ class View:
         self._closed = True
         with self._lock:
             self._core.close()
+        if self._forget_page:
+            self._forget_page()
+
+    def _open_page(self) -> bool:
+        """Opens the page by a file that leads to it. Other users of the computer can read the arguments of programs,
+        but not this file, so that the token in the address stays secret."""
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="skerry-view-"))
+        self._forget_page = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        file = folder / "view.html"
+        refresh = f'<meta http-equiv="refresh" content="0; url={self.address}">'
+        with os.fdopen(os.open(file, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w", encoding="utf-8") as out:
+            out.write(f'<!doctype html><meta charset="utf-8">{refresh}\n')
+        return webbrowser.open(file.as_uri())
 
     def _turn(self, function: Callable[[_core.World], float | None]) -> float | None:
         with self._lock:
@@ -207,6 +226,6 @@ def view(
         sliders=scene._sliders if scene else [],
     )
     opened = View(shown, core)
-    if flag(open, "open") and not webbrowser.open(opened.address):
+    if flag(open, "open") and not opened._open_page():
         print(f"view: open {opened.address} in a browser on this computer", file=sys.stderr)
     return opened

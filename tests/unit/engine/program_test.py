@@ -233,6 +233,28 @@ class ProgramTest(ProgramCase):
             self.assertIn("drop: 0 s simulated", view.stdout.read())
         self.assertEqual(view.returncode, 0)
 
+    @unittest.skipIf(sys.platform == "darwin", "the program that opens files is called open")
+    def test_the_browser_is_opened_without_the_token_in_its_arguments(self):
+        opener, told = self.folder / "bin" / "xdg-open", self.folder / "told"
+        opener.parent.mkdir()
+        opener.write_text(f'#!/bin/sh\n{{ echo "$@"; stat -c %a "$1"; cat "$1"; }} > "{told}.part"\n'
+                          f'mv "{told}.part" "{told}"\n')
+        opener.chmod(0o755)
+        own = {**os.environ, "DISPLAY": ":0", "PATH": f"{opener.parent}:{os.environ['PATH']}",
+               "TMPDIR": str(self.folder)}
+        with subprocess.Popen([PROGRAM, "view", self.scene, "--paused"], stdout=subprocess.PIPE, text=True,
+                              env=own) as view:
+            address = re.search(r"http\S+", view.stdout.readline())[0]
+            end = time.monotonic() + 10
+            while not told.exists() and time.monotonic() < end:
+                time.sleep(0.01)
+            view.send_signal(signal.SIGINT)
+        argument, mode, page = told.read_text().split("\n", 2)
+        self.assertNotIn(address.rpartition("=")[2], argument)
+        self.assertIn(address, page)
+        self.assertEqual(mode, "600")
+        self.assertFalse(pathlib.Path(argument).parent.exists())
+
     def test_materials_are_listed_with_their_sources(self):
         found = json.loads(self.skerry("materials", "--json").stdout)
         text = self.skerry("materials").stdout

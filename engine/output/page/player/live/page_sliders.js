@@ -15,6 +15,7 @@ function make_sliders(host, list, move) {
     label.append(about, output, input);
     const row = { label, moved: -Infinity };
     row.set = (value) => {
+      input.disabled = value === null;  // its object was removed
       input.value = value;
       output.textContent = text.si(value, unit);
       input.setAttribute("aria-valuetext", output.textContent);

@@ -2,7 +2,8 @@
 // stronger than what lies at rest.
 "use strict";
 
-// A force of scales.force.top gets an arrow about as long as half a body is thick; dots leave room between vertices.
+// A force of scales.force.top gets an arrow about as long as half a body is thick, and no force an arrow of more than
+// three times this length. Dots leave room between vertices.
 function make_contacts(scene, { size, spacing }, scales) {
   const dot_radius = 0.2 * spacing, arrow_length = 0.75 * size, arrow_width = Math.min(1.1 * spacing, 0.2 * size);
   const copies = make_instances(scene, new THREE.IcosahedronBufferGeometry(1, 1), arrow_geometry());
@@ -53,7 +54,8 @@ function make_contacts(scene, { size, spacing }, scales) {
       const radius = strength > 0 ? dot_radius : 0.7 * dot_radius;
       copies.set_place(0, i, matrix.compose(point, turn.set(0, 0, 0, 1), scale.setScalar(radius)));
       if (strength > 0) turn.setFromUnitVectors(along, force.multiplyScalar(1 / strength));
-      const length = Math.sqrt(strength / scales.force.top) * arrow_length, width = Math.min(arrow_width, length / 3);
+      const length = Math.min(Math.sqrt(strength / scales.force.top), 3) * arrow_length;
+      const width = Math.min(arrow_width, length / 3);
       copies.set_place(1, i, matrix.compose(point, turn, scale.set(width, length, width)));
     }
     copies.upload(count);
