@@ -400,6 +400,23 @@ TEST_CASE("simulated time follows the wall clock at the rate", "[unit][live]") {
     CHECK(quickest <= expected + tolerance);
 }
 
+TEST_CASE("sync waits for a command while the view is paused, and never while it plays", "[unit][live]") {
+    World world = falling_cube();
+    LiveRun run(world, {.paused = true});
+    const auto seconds_of_sync = [&] { return seconds_of([&] { run.sync(world); }); };
+    CHECK(seconds_of_sync() >= 0.015);  // without a browser
+    Visit visit(run.hub());
+    CHECK(seconds_of_sync() >= 0.015);
+    for (const char* command : {"step", "play"}) {
+        visit.send({{"do", command}});
+        run.sync(world);
+        CHECK(run.playing());
+    }
+    Real quickest = 1;
+    for (int call = 0; call < 20; ++call) quickest = std::min(quickest, seconds_of_sync());
+    CHECK(quickest < 0.015);
+}
+
 TEST_CASE("more browsers and more commands than the limits are refused", "[unit][live]") {
     LiveHub hub;
     hub.begin_run({}, {});
