@@ -15,7 +15,7 @@ namespace {
 constexpr Real frame_step = 1.0 / 60;   // longest call of advance, as the frames of a scene [s]
 constexpr Real frames_per_second = 30;  // most snapshots per wall time [1/s]
 constexpr int snapshot_pause = 4;       // least time between two snapshots, in durations of a snapshot
-constexpr Real longest_wait = 0.02;     // of due() [s]
+constexpr Real longest_wait = 0.02;     // of due(), and of sync() while paused [s]
 constexpr Real longest_lag = 0.1;       // lag behind the wall clock that the simulation makes up for [s]
 constexpr Real fastest_rate = 1000;     // largest simulated time per wall time
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
@@ -74,11 +74,13 @@ LiveRun::LiveRun(World& world, const LiveSettings& settings)
 
 void LiveRun::sync(World& world) {
     step_asked_ = false;
-    if (!hub_.is_busy()) return;
-    sample_probes(world);
-    apply_commands(world);
-    changed_ = true;
-    show(world, true);
+    if (hub_.is_busy()) {
+        sample_probes(world);
+        apply_commands(world);
+        changed_ = true;
+        show(world, true);
+    }
+    if (!state_.playing && !step_asked_) hub_.wait_for_commands(Clock::now() + seconds_of(longest_wait));
 }
 
 Real LiveRun::due(World& world) {

@@ -479,6 +479,17 @@ def test_a_slow_handshake_blocks_nobody(view: sk.View) -> None:
             client.wait(lambda: client.frames)
 
 
+@pytest.mark.skipif("SKERRY_FULL" not in os.environ, reason="SKERRY_FULL is not set")
+def test_slow_handshakes_on_all_threads_are_ended(view: sk.View) -> None:
+    port, _ = place_of(view)
+    threads = 12
+    with contextlib.ExitStack() as slow:
+        for _ in range(threads + 1):
+            slow.enter_context(socket.create_connection(("127.0.0.1", port))).sendall(b"GET / HT")
+        answer = answer_to(port, "GET / HTTP/1.1", f"Host: 127.0.0.1:{port}", "Connection: close", seconds=20)
+    assert status_of(answer) == 200
+
+
 def test_a_port_in_use_is_an_error() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]

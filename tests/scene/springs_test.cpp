@@ -72,10 +72,6 @@ Vibration vibration_of(Oscillator& oscillator, Real h, int periods) {
     return {2 * std::numbers::pi * periods / time, std::log(peaks.front() / peaks.back()) / between};
 }
 
-struct Course {
-    World world;
-};
-
 /// Sum of the momenta of all bodies [kg m/s].
 Vec3 momentum_of(World& world) {
     const Model& model = WorldAccess::state_of(world).model;
@@ -356,8 +352,7 @@ TEST_CASE("springs continue with the same bits with more threads, as a clone and
     const auto course = [](Index threads) {
         Settings settings;
         settings.threads = threads;
-        Course scene{World(settings)};
-        World& world = scene.world;
+        World world(settings);
         const auto material = world.add_material({.young_modulus = 1e5});
         const ColliderHandle floor = world.add_collider(Plane{{0, 0, 1}, {0, 0, -1}});
         BodyHandle before{};
@@ -380,7 +375,7 @@ TEST_CASE("springs continue with the same bits with more threads, as a clone and
             before = body;
         }
         world.advance(0.2);
-        return scene;
+        return world;
     };
     check_same_bits(course, [](World& world) { world.advance(0.2); });
 }

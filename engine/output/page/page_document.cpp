@@ -134,7 +134,7 @@ Json json_of(const Quantile& quantile) {
 }
 
 Json json_of_data(const PageData& data, const PageSummary& summary) {
-    Json json = {{"schema", 3}, {"title", summary.title}, {"gravity", json_of(data.gravity())}};
+    Json json = {{"title", summary.title}, {"gravity", json_of(data.gravity())}};
     json.update(json_of_objects(data.stream(), {}));
     json.update({{"rows", json_of_rows(data)},
                  {"speed", json_of(data.fields()[0])},

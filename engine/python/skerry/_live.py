@@ -83,9 +83,9 @@ class View:
 
     def sync(self) -> None:
         """Carries out the commands of users of the page since the last call (pulls, sliders, gravity, reset), and shows
-        the present state if a page can take a frame. Never waits for a page, and drops frames instead. Call it after
-        each call of World.advance(). A reset is refused while a recorder is in its `with` block. BufferError: arrays of
-        views() are in use."""
+        the present state if a page can take a frame, else drops it. While the page pauses the run, waits up to 20 ms
+        for a command. Call it after each call of World.advance(). A reset is refused while a recorder is in its `with`
+        block. BufferError: arrays of views() are in use."""
         self._turn(self._core.sync)
 
     def run(self) -> None:

@@ -104,8 +104,8 @@ std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
     if (overlap && overlap->depth > touching_fraction * margin(pair)) return overlap;
     if (pair.is_analytic || model_.bodies.kind[pair.second] != BodyKind::kinematic || has_inside(pair.second))
         return std::nullopt;
-    return find_touch_of_back({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
-                              rounding(pair));
+    return find_touch_of_open_surface({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
+                                      rounding(pair));
 }
 
 std::optional<RoundSolid> StartSearch::round(Index body) const {

@@ -241,7 +241,8 @@ std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid&
     return overlap;
 }
 
-std::optional<Overlap> find_touch_of_back(const PlacedSolid& solid, const PlacedSolid& surface, Real tolerance) {
+std::optional<Overlap> find_touch_of_open_surface(const PlacedSolid& solid, const PlacedSolid& surface,
+                                                  Real tolerance) {
     std::vector<Vec3> outward(solid.solid.point.size(), Vec3::Zero());  // by point: sum of twice the area vectors [m^2]
     for (const SolidTriangle& triangle : solid.solid.surface) {
         const auto at = [&](std::size_t k) { return solid.solid.point[static_cast<std::size_t>(triangle.node[k])]; };

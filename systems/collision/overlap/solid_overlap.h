@@ -32,6 +32,6 @@ std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid&
 
 /// Finds a point of a solid that touches the back of an open surface: its distance is at most `tolerance` [m]. At such
 /// a distance contacts cannot detect the side of the surface on which the solid is.
-std::optional<Overlap> find_touch_of_back(const PlacedSolid& solid, const PlacedSolid& surface, Real tolerance);
+std::optional<Overlap> find_touch_of_open_surface(const PlacedSolid& solid, const PlacedSolid& surface, Real tolerance);
 
 }  // namespace skerry

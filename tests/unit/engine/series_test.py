@@ -115,16 +115,16 @@ class SeriesTest(ProgramCase):
             rows = read_csv(series)
             at = rows["time [s]"]
             self.assertEqual(len(at), math.floor(seconds / probe_step + 1e-9) + 1, at)
-            for i, time in enumerate(at):
-                self.assertAlmostEqual(time, probe_step * i, places=12)
+            for i, of_row in enumerate(at):
+                self.assertAlmostEqual(of_row, probe_step * i, places=12)
             # impulses between rows include the calls of advance that end between them
             checkpoint, again = self.folder / "run.skerry", self.folder / "again.csv"
-            self.skerry("run", scene, "--stats", self.folder / "whole.json", "--probes", again,
-                        "--checkpoint", checkpoint, "--every", 0.03, "--seconds", seconds)
+            self.skerry("run", scene, "--probes", again, "--checkpoint", checkpoint, "--every", 0.03,
+                        "--seconds", seconds)
             self.skerry("run", "--restart", checkpoint, "--probes", again, "--seconds", seconds + 0.05)
             longer = read_csv(again)
-            for i, time in enumerate(longer["time [s]"]):
-                self.assertAlmostEqual(time, probe_step * i, places=12)
+            for i, of_row in enumerate(longer["time [s]"]):
+                self.assertAlmostEqual(of_row, probe_step * i, places=12)
             self.assertEqual(longer["time [s]"][:len(at)], at)
 
     def test_a_run_that_is_resumed_within_a_frame_keeps_all_rows_of_uneven_frames(self):
@@ -136,8 +136,8 @@ class SeriesTest(ProgramCase):
         rows = read_csv(series)["time [s]"]
         self.assertEqual(rows[:len(before)], before)
         self.assertEqual(len(rows), 11, rows)
-        for i, time in enumerate(rows):
-            self.assertAlmostEqual(time, 0.03 * i, places=12)
+        for i, of_row in enumerate(rows):
+            self.assertAlmostEqual(of_row, 0.03 * i, places=12)
 
     def test_hdf5_holds_the_same_numbers_with_units(self):
         self.skerry("run", self.scene, "--probes", self.folder / "s.h5", "--seconds", 0.05)
