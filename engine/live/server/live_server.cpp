@@ -29,13 +29,16 @@ constexpr std::size_t longest_message = 4096;  // longest message of a browser [
 /// The WebSocket of one browser.
 class SocketLink final : public LiveLink {
 public:
-    explicit SocketLink(mg_connection* connection) : connection_(connection) {}
+    SocketLink(mg_connection* connection, int socket) : connection_(connection), socket_(socket) {}
 
     bool send_text(std::string_view text) override { return send(MG_WEBSOCKET_OPCODE_TEXT, text); }
     bool send_bytes(std::string_view bytes) override { return send(MG_WEBSOCKET_OPCODE_BINARY, bytes); }
+    /// Wakes the thread of the connection, which then ends it. mg_close_connection must not be called for this, because
+    /// it can close the socket while that thread uses it, and does not wake a thread that waits for the rest of a
+    /// message.
     void close() override {
         if (!broken_) send(MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, {});
-        mg_close_connection(connection_);
+        shutdown(socket_, SHUT_RDWR);
     }
 
     std::uint64_t client = 0;  // number of the browser at the hub
@@ -45,12 +48,16 @@ private:
     /// message nothing more can be sent, because the browser would read it as the rest of the message.
     bool send(int opcode, std::string_view bytes) {
         constexpr std::size_t header = 2;  // length of a message without data, for which the library returns it
+        mg_lock_connection(connection_);  // a ping of the library must not follow a part of a message either
         const int sent = mg_websocket_write(connection_, opcode, bytes.data(), bytes.size());
         broken_ = sent < 0 || static_cast<std::size_t>(sent) != (bytes.empty() ? header : bytes.size());
+        if (broken_) shutdown(socket_, SHUT_RDWR);
+        mg_unlock_connection(connection_);
         return !broken_;
     }
 
     mg_connection* connection_;
+    int socket_;           // open until Impl::closed() returns
     bool broken_ = false;  // a message was not sent as a whole
 };
 
@@ -81,6 +88,25 @@ LiveRequest request_of(const mg_request_info& info) {
         request.upgrade |= is_named(header.name, "upgrade");
     }
     return request;
+}
+
+/// Returns the port of one end of a socket; 0 if it is not connected, or no socket.
+template <class Call>
+int port_of(int socket, Call&& call) {
+    sockaddr_in place{};
+    socklen_t size = sizeof place;
+    const bool known = call(socket, reinterpret_cast<sockaddr*>(&place), &size) == 0 && place.sin_family == AF_INET;
+    return known ? ntohs(place.sin_port) : 0;
+}
+
+/// Returns the socket of a connection, which has no function in the library; -1 if it is not found. `port`: of the
+/// server.
+int socket_of(const mg_connection* connection, int port) {
+    constexpr int most_sockets = 1 << 16;  // numbers that are tried
+    const int remote = mg_get_request_info(connection)->remote_port;
+    for (int socket = 0; socket < most_sockets; ++socket)
+        if (port_of(socket, getpeername) == remote && port_of(socket, getsockname) == port) return socket;
+    return -1;
 }
 
 /// Connects to a port of this machine, and closes the connection.
@@ -149,8 +175,14 @@ int LiveServer::Impl::begin_request(mg_connection* connection) {
 
 void LiveServer::Impl::ready(mg_connection* connection, void*) {
     guarded(false, [&] {
-        auto link = std::make_unique<SocketLink>(connection);
-        link->client = of(connection).hub.join(*link);
+        Impl& server = of(connection);
+        const int socket = socket_of(connection, server.port);
+        if (socket < 0) {
+            mg_close_connection(connection);
+            return false;
+        }
+        auto link = std::make_unique<SocketLink>(connection, socket);
+        link->client = server.hub.join(*link);
         if (link->client == 0)
             link->close();
         else
