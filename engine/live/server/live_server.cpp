@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <civetweb.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -13,6 +14,8 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string_view>
 #include <thread>
 
@@ -39,6 +42,17 @@ public:
     void close() override {
         if (!broken_) send(MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, {});
         shutdown(socket_, SHUT_RDWR);
+    }
+
+    /// Ends the connection if the browser has sent nothing for 30 s, in which it has not answered several pings, or has
+    /// not been asked because it has sent a part of a message.
+    void close_if_silent() const {
+        constexpr std::uint32_t longest_silence = 30'000;  // [ms]
+        tcp_info info{};
+        socklen_t size = sizeof info;
+        if (getsockopt(socket_, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 &&
+            info.tcpi_last_data_recv > longest_silence)
+            shutdown(socket_, SHUT_RDWR);
     }
 
     std::uint64_t client = 0;  // number of the browser at the hub
@@ -128,6 +142,8 @@ struct LiveServer::Impl {
     std::string page, token;
     std::atomic<int> port = 0;  // written once, before the first request can be admitted
     mg_context* context = nullptr;
+    std::mutex links_mutex;
+    std::set<const SocketLink*> links;  // of the connected browsers; guarded by links_mutex
 
     static Impl& of(const mg_connection* connection) {
         return *static_cast<Impl*>(mg_get_user_context_data(connection));
@@ -136,6 +152,7 @@ struct LiveServer::Impl {
         return static_cast<SocketLink*>(mg_get_user_connection_data(connection));
     }
     void put_page(mg_connection* connection) const;
+    void close_silent_links();
     static int begin_request(mg_connection* connection);
     static void ready(mg_connection* connection, void*);
     static int receive(mg_connection* connection, int bits, char* data, std::size_t size, void*);
@@ -154,15 +171,22 @@ void LiveServer::Impl::put_page(mg_connection* connection) const {
     mg_write(connection, page.data(), page.size());
 }
 
+/// Frees the slots of browsers that are gone without notice.
+void LiveServer::Impl::close_silent_links() {
+    const std::lock_guard lock(links_mutex);
+    for (const SocketLink* link : links) link->close_if_silent();
+}
+
 /// Returns 0 for a WebSocket, with which the library then continues, and the status of the answer otherwise.
 int LiveServer::Impl::begin_request(mg_connection* connection) {
     constexpr int ok = 200, forbidden = 403;
     return guarded(forbidden, [&] {
-        const Impl& server = of(connection);
+        Impl& server = of(connection);
         switch (admission(request_of(*mg_get_request_info(connection)), server.port, server.token)) {
             case Admission::stream:
                 return 0;
             case Admission::page:
+                server.close_silent_links();
                 server.put_page(connection);
                 return ok;
             case Admission::refused:
@@ -182,11 +206,16 @@ void LiveServer::Impl::ready(mg_connection* connection, void*) {
             return false;
         }
         auto link = std::make_unique<SocketLink>(connection, socket);
+        std::set<const SocketLink*> joined{link.get()};
         link->client = server.hub.join(*link);
-        if (link->client == 0)
+        if (link->client == 0) {
             link->close();
-        else
-            mg_set_user_connection_data(connection, link.release());
+            server.close_silent_links();  // the page tries again
+            return false;
+        }
+        mg_set_user_connection_data(connection, link.release());
+        const std::lock_guard lock(server.links_mutex);
+        server.links.merge(joined);  // cannot fail
         return true;
     });
 }
@@ -205,7 +234,13 @@ int LiveServer::Impl::receive(mg_connection* connection, int bits, char* data, s
 void LiveServer::Impl::closed(const mg_connection* connection, void*) {
     const std::unique_ptr<SocketLink> link(link_of(connection));
     guarded(false, [&] {
-        if (link) of(connection).hub.leave(link->client);
+        if (!link) return false;
+        Impl& server = of(connection);
+        {
+            const std::lock_guard lock(server.links_mutex);
+            server.links.erase(link.get());
+        }
+        server.hub.leave(link->client);
         return true;
     });
 }
