@@ -50,8 +50,7 @@ public:
         constexpr std::uint32_t longest_silence = 30'000;  // [ms]
         tcp_info info{};
         socklen_t size = sizeof info;
-        if (getsockopt(socket_, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 &&
-            info.tcpi_last_data_recv > longest_silence)
+        if (getsockopt(socket_, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 && info.tcpi_last_data_recv > longest_silence)
             shutdown(socket_, SHUT_RDWR);
     }
 
@@ -62,7 +61,7 @@ private:
     /// message nothing more can be sent, because the browser would read it as the rest of the message.
     bool send(int opcode, std::string_view bytes) {
         constexpr std::size_t header = 2;  // length of a message without data, for which the library returns it
-        mg_lock_connection(connection_);  // a ping of the library must not follow a part of a message either
+        mg_lock_connection(connection_);   // a ping of the library must not follow a part of a message either
         const int sent = mg_websocket_write(connection_, opcode, bytes.data(), bytes.size());
         broken_ = sent < 0 || static_cast<std::size_t>(sent) != (bytes.empty() ? header : bytes.size());
         if (broken_) shutdown(socket_, SHUT_RDWR);
