@@ -141,8 +141,8 @@ struct LiveServer::Impl {
     std::string page, token;
     std::atomic<int> port = 0;  // written once, before the first request can be admitted
     mg_context* context = nullptr;
-    std::mutex links_mutex;
-    std::set<const SocketLink*> links;  // of the connected browsers; guarded by links_mutex
+    std::mutex links_mutex{};
+    std::set<const SocketLink*> links{};  // of the connected browsers; guarded by links_mutex
 
     static Impl& of(const mg_connection* connection) {
         return *static_cast<Impl*>(mg_get_user_context_data(connection));
