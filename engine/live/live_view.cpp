@@ -1,6 +1,9 @@
+#include <unistd.h>
+
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "engine/live/live_run.h"
 #include "engine/live/server/live_server.h"
@@ -15,6 +18,10 @@ struct LiveView::Impl {
     std::unique_ptr<LiveServer> server;  // none after close()
     std::string address;
     std::atomic<bool> open = true;
+    pid_t process = getpid();
+
+    /// True in a process made by fork(), in which the threads of the view do not exist and its locks may be held.
+    bool lost_threads() const { return getpid() != process; }
 
     Impl(World& world, const LiveSettings& settings)
         : run(world, settings),
@@ -35,9 +42,19 @@ LiveView::LiveView(World& world, const LiveSettings& settings) {
     impl_ = std::make_unique<Impl>(world, settings);
 }
 
-LiveView::~LiveView() = default;
+LiveView::~LiveView() {
+    // In a process made by fork() the view is left in memory, because it would wait for its threads.
+    if (impl_ && impl_->lost_threads()) [[maybe_unused]]
+        const Impl* left = impl_.release();
+}
+
 LiveView::LiveView(LiveView&&) noexcept = default;
-LiveView& LiveView::operator=(LiveView&&) noexcept = default;
+
+LiveView& LiveView::operator=(LiveView&& other) noexcept {
+    LiveView taken(std::move(other));
+    std::swap(impl_, taken.impl_);
+    return *this;
+}
 
 std::string LiveView::address() const {
     return impl_->address;
@@ -84,6 +101,7 @@ void LiveView::run(World& world, const std::function<bool()>& go_on,
 
 void LiveView::close() {
     impl_->open = false;
+    if (impl_->lost_threads()) return;
     const std::lock_guard lock(impl_->closing);
     impl_->server = nullptr;
 }
@@ -93,11 +111,11 @@ bool LiveView::is_open() const {
 }
 
 bool LiveView::playing() const {
-    return impl_->run.playing();
+    return !impl_->lost_threads() && impl_->run.playing();
 }
 
 int LiveView::clients() const {
-    return impl_->run.hub().clients();
+    return impl_->lost_threads() ? 0 : impl_->run.hub().clients();
 }
 
 std::uint64_t LiveView::frames_sent() const {

@@ -26,7 +26,7 @@ import pytest
 
 import skerry as sk
 from live_client import Client, answer_to, connect, place_of, upgrade
-from worlds import RUBBER, ball_world, skip_without_live_view
+from worlds import RUBBER, ball_world, run_program, skip_without_live_view
 
 skip_without_live_view()
 
@@ -519,6 +519,27 @@ def test_a_step_that_is_refused_pauses_run() -> None:
         assert view.is_open and client.of_type("problem")
         view.close()
         thread.join()
+
+
+@pytest.mark.parametrize("leave", ["view.close(); os._exit(0)", "sys.exit(0)"])
+def test_a_forked_process_ends_and_leaves_the_server(leave: str) -> None:
+    run_program(
+        f"""
+        import os, signal, sys, warnings
+        import skerry as sk
+        from worlds import ball_world
+
+        view = sk.view(ball_world()[0], open=False)
+        warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 warns of forks beside threads
+        child = os.fork()
+        if child == 0:
+            signal.alarm(20)  # ends a child that waits for ever
+            {leave}
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+        view.sync()
+        view.close()
+        """
+    )
 
 
 def test_a_view_that_is_closed_frees_its_port(view: sk.View) -> None:

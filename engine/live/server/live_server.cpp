@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <civetweb.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -13,6 +14,8 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string_view>
 #include <thread>
 
@@ -29,13 +32,26 @@ constexpr std::size_t longest_message = 4096;  // longest message of a browser [
 /// The WebSocket of one browser.
 class SocketLink final : public LiveLink {
 public:
-    explicit SocketLink(mg_connection* connection) : connection_(connection) {}
+    SocketLink(mg_connection* connection, int socket) : connection_(connection), socket_(socket) {}
 
     bool send_text(std::string_view text) override { return send(MG_WEBSOCKET_OPCODE_TEXT, text); }
     bool send_bytes(std::string_view bytes) override { return send(MG_WEBSOCKET_OPCODE_BINARY, bytes); }
+    /// Wakes the thread of the connection, which then ends it. mg_close_connection must not be called for this, because
+    /// it can close the socket while that thread uses it, and does not wake a thread that waits for the rest of a
+    /// message.
     void close() override {
         if (!broken_) send(MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, {});
-        mg_close_connection(connection_);
+        shutdown(socket_, SHUT_RDWR);
+    }
+
+    /// Ends the connection if the browser has sent nothing for 30 s, in which it has not answered several pings, or has
+    /// not been asked because it has sent a part of a message.
+    void close_if_silent() const {
+        constexpr std::uint32_t longest_silence = 30'000;  // [ms]
+        tcp_info info{};
+        socklen_t size = sizeof info;
+        if (getsockopt(socket_, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 && info.tcpi_last_data_recv > longest_silence)
+            shutdown(socket_, SHUT_RDWR);
     }
 
     std::uint64_t client = 0;  // number of the browser at the hub
@@ -45,12 +61,16 @@ private:
     /// message nothing more can be sent, because the browser would read it as the rest of the message.
     bool send(int opcode, std::string_view bytes) {
         constexpr std::size_t header = 2;  // length of a message without data, for which the library returns it
+        mg_lock_connection(connection_);   // a ping of the library must not follow a part of a message either
         const int sent = mg_websocket_write(connection_, opcode, bytes.data(), bytes.size());
         broken_ = sent < 0 || static_cast<std::size_t>(sent) != (bytes.empty() ? header : bytes.size());
+        if (broken_) shutdown(socket_, SHUT_RDWR);
+        mg_unlock_connection(connection_);
         return !broken_;
     }
 
     mg_connection* connection_;
+    int socket_;           // open until Impl::closed() returns
     bool broken_ = false;  // a message was not sent as a whole
 };
 
@@ -83,6 +103,25 @@ LiveRequest request_of(const mg_request_info& info) {
     return request;
 }
 
+/// Returns the port of one end of a socket; 0 if it is not connected, or no socket.
+template <class Call>
+int port_of(int socket, Call&& call) {
+    sockaddr_in place{};
+    socklen_t size = sizeof place;
+    const bool known = call(socket, reinterpret_cast<sockaddr*>(&place), &size) == 0 && place.sin_family == AF_INET;
+    return known ? ntohs(place.sin_port) : 0;
+}
+
+/// Returns the socket of a connection, which has no function in the library; -1 if it is not found. `port`: of the
+/// server.
+int socket_of(const mg_connection* connection, int port) {
+    constexpr int most_sockets = 1 << 16;  // numbers that are tried
+    const int remote = mg_get_request_info(connection)->remote_port;
+    for (int socket = 0; socket < most_sockets; ++socket)
+        if (port_of(socket, getpeername) == remote && port_of(socket, getsockname) == port) return socket;
+    return -1;
+}
+
 /// Connects to a port of this machine, and closes the connection.
 void connect_once(int port) {
     const int own = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -102,6 +141,8 @@ struct LiveServer::Impl {
     std::string page, token;
     std::atomic<int> port = 0;  // written once, before the first request can be admitted
     mg_context* context = nullptr;
+    std::mutex links_mutex{};
+    std::set<const SocketLink*> links{};  // of the connected browsers; guarded by links_mutex
 
     static Impl& of(const mg_connection* connection) {
         return *static_cast<Impl*>(mg_get_user_context_data(connection));
@@ -110,6 +151,7 @@ struct LiveServer::Impl {
         return static_cast<SocketLink*>(mg_get_user_connection_data(connection));
     }
     void put_page(mg_connection* connection) const;
+    void close_silent_links();
     static int begin_request(mg_connection* connection);
     static void ready(mg_connection* connection, void*);
     static int receive(mg_connection* connection, int bits, char* data, std::size_t size, void*);
@@ -128,15 +170,22 @@ void LiveServer::Impl::put_page(mg_connection* connection) const {
     mg_write(connection, page.data(), page.size());
 }
 
+/// Frees the slots of browsers that are gone without notice.
+void LiveServer::Impl::close_silent_links() {
+    const std::lock_guard lock(links_mutex);
+    for (const SocketLink* link : links) link->close_if_silent();
+}
+
 /// Returns 0 for a WebSocket, with which the library then continues, and the status of the answer otherwise.
 int LiveServer::Impl::begin_request(mg_connection* connection) {
     constexpr int ok = 200, forbidden = 403;
     return guarded(forbidden, [&] {
-        const Impl& server = of(connection);
+        Impl& server = of(connection);
         switch (admission(request_of(*mg_get_request_info(connection)), server.port, server.token)) {
             case Admission::stream:
                 return 0;
             case Admission::page:
+                server.close_silent_links();
                 server.put_page(connection);
                 return ok;
             case Admission::refused:
@@ -149,12 +198,23 @@ int LiveServer::Impl::begin_request(mg_connection* connection) {
 
 void LiveServer::Impl::ready(mg_connection* connection, void*) {
     guarded(false, [&] {
-        auto link = std::make_unique<SocketLink>(connection);
-        link->client = of(connection).hub.join(*link);
-        if (link->client == 0)
+        Impl& server = of(connection);
+        const int socket = socket_of(connection, server.port);
+        if (socket < 0) {
+            mg_close_connection(connection);
+            return false;
+        }
+        auto link = std::make_unique<SocketLink>(connection, socket);
+        std::set<const SocketLink*> joined{link.get()};
+        link->client = server.hub.join(*link);
+        if (link->client == 0) {
             link->close();
-        else
-            mg_set_user_connection_data(connection, link.release());
+            server.close_silent_links();  // the page tries again
+            return false;
+        }
+        mg_set_user_connection_data(connection, link.release());
+        const std::lock_guard lock(server.links_mutex);
+        server.links.merge(joined);  // cannot fail
         return true;
     });
 }
@@ -173,7 +233,13 @@ int LiveServer::Impl::receive(mg_connection* connection, int bits, char* data, s
 void LiveServer::Impl::closed(const mg_connection* connection, void*) {
     const std::unique_ptr<SocketLink> link(link_of(connection));
     guarded(false, [&] {
-        if (link) of(connection).hub.leave(link->client);
+        if (!link) return false;
+        Impl& server = of(connection);
+        {
+            const std::lock_guard lock(server.links_mutex);
+            server.links.erase(link.get());
+        }
+        server.hub.leave(link->client);
         return true;
     });
 }
