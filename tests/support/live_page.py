@@ -130,6 +130,10 @@ LIVE = """
     check(root.dataset.playing === "false" && find("rate").querySelector("select").value === "0.1"
       && !find("gravity").checked && find("notice").textContent === "no such body", "state and problem are shown");
 
+    const shown = [[2, "1"], [0.5, "1"], [0, "1"], [1234, "1"], [-0.0123, "1"], [null, "1"], [0.5, "m"]];
+    const texts = shown.map(([value, unit]) => text.si(value, unit)).join("; ");
+    check(texts === "2; 0.5; 0; 1,234; -0.0123; \u2013; 500\u202fmm", "plain numbers have no unit: " + texts);
+
     const { scales: { speed }, widen } = make_live_scales();
     const ends = [[0, 1], [0.1, 3], [1, 0.4], [3.05, 0.4], [3.2, 0.4], [3.3, 2]].map(([now, value]) => {
       widen({ speed: value }, now);

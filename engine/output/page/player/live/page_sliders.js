@@ -5,8 +5,7 @@
 // all sliders that the user is not moving.
 function make_sliders(host, list, move) {
   const patience = 500;  // ms after the last movement
-  const rows = list.map(({ name, unit: given, low, high, value: initial }, number) => {
-    const unit = given === "1" ? "" : given;
+  const rows = list.map(({ name, unit, low, high, value: initial }, number) => {
     const label = document.createElement("label"), input = document.createElement("input");
     const about = document.createElement("span"), output = document.createElement("output");
     about.textContent = name;
