@@ -141,6 +141,14 @@ LIVE = """
     });
     check(ends.join() === "1,3,3,3,0.4,2", "scales widen at once and narrow slowly: " + ends);
 
+    const corner = (x) => new THREE.Vector3(x, x, x), aim = make_aim(new THREE.Box3(corner(0), corner(1)));
+    const frame_at = (height) => ({ bodies: new Map([[0, { lower: [0, 0, height], extent: [1, 1, 1] }]]) });
+    for (let i = 0; i <= 8; ++i) {  // a fall that is drawn four times a second
+      const { min, max } = aim(frame_at(-5 * (i / 4) ** 2), i / 4);
+      check(min.z <= -5 * (i / 4) ** 2 && max.z >= 1 - 5 * (i / 4) ** 2 && max.z - min.z < 2,
+        "a falling body is in the box from " + min.z + " to " + max.z + " after " + i / 4 + " s");
+    }
+
     server.refuses = true;
     server.socket.close();
     await wait(100);

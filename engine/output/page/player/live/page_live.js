@@ -177,7 +177,7 @@ function make_live(page, has_view) {
     is_new = false;
     state.time = row.time;
     pull.measured(row.pull);
-    if (page.scene && state.follow) page.scene.view.aim(aim(frame));
+    if (page.scene && state.follow) page.scene.view.aim(aim(frame, performance.now() / 1000));
     show();
     if (page.scene) page.scene.render();
     link.send({ do: "seen", number: row.number });
