@@ -119,6 +119,16 @@ LIVE = """
     find("slider_0").value = 0.5;
     find("slider_0").dispatchEvent(new Event("input"));
     check(server.sent[0].value === 0.5 && server.sent[0].number === 0, "a slider moves");
+    const shown_after = async (ms) => {
+      await wait(ms);
+      await server.frame(1);
+      await wait(200);
+      return Number(find("slider_0").value);
+    };
+    check(await shown_after(600) === 0.5, "a slider waits for a row that knows its movement");
+    for (let i = 0; i < 3; ++i) await shown_after(0);
+    check(await shown_after(0) === 0.25, "it follows newer rows");
+    server.sent = server.sent.filter((order) => order.do === "slider");
     find("slider_0").dispatchEvent(new Event("dblclick"));
     check(server.sent[1].value === 0.25, "a double click moves it back");
     server.sent = [];

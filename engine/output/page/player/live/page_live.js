@@ -190,7 +190,7 @@ function make_live(page, has_view) {
     const pace = row.speed > 0 ? "  " + text.average(row.speed) + "\u00d7 real time" : "";
     show_clock(find, row.time.toFixed(3) + " s", pace);
     page.plots.forEach((plot) => plot.update());
-    sliders.show(row.sliders);
+    sliders.show(row.sliders, row.number);
     controls.show_legends();
   }
   function tick(now) {
