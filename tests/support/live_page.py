@@ -166,6 +166,17 @@ LIVE = """
     while (root.dataset.live !== "refused") await wait(20);
     check(/token/.test(find("notice").textContent), "a refusal is shown");
     server.refuses = false;
+    const { begin } = server, problem = "found 4 browsers";
+    server.begin = () => {
+      server.tell({ type: "problem", text: problem });
+      setTimeout(() => server.socket.close(), 0);
+    };
+    while (root.dataset.live !== "full") await wait(20);
+    const pause_of_notice = () => Number(/again in ([\\d.]+)\u202fs/.exec(find("notice").textContent)[1]);
+    check(find("notice").textContent.startsWith(problem + ". Trying"), "not so: " + find("notice").textContent);
+    const first_pause = pause_of_notice();
+    while (!(pause_of_notice() > first_pause)) await wait(20);
+    server.begin = begin;
     while (root.dataset.live !== "open") await wait(20);
     await server.frame(1);
     check(root.dataset.number === "0" && root.dataset.bodies === "2" && find("notice").hidden, "it begins again");
