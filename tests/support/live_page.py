@@ -32,12 +32,13 @@ server.begin = () => {
     sliders: [{ name: "height", unit: "m", low: 0, high: 1, value: 0.25 }],
     plots: [{ name: "tip", columns: [{ name: "x", unit: "m" }, { name: "force", unit: "N" }] }] });
 };
+server.pace = 0.5;
 server.push = (speed, force) => {
   const { objects, bytes } = MESSAGES[server.at], number = server.at++;
   server.tell({ type: "add", ...objects });
   server.tell({ type: "row", number, time: number / 60, kinetic: 1, elastic: 2, potential: null, dissipated: 0,
     contacts: 3, stick: 1, slide: 2, regions: 1, top: { speed, stress: 0, strain: 0, force: 1, line_force: 1 },
-    probes: [[number, 2]], sliders: [0.25], pull: force ? { force, length: 0.1 } : null, speed: 0.5 });
+    probes: [[number, 2]], sliders: [0.25], pull: force ? { force, length: 0.1 } : null, speed: server.pace });
   server.say(Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0)).buffer);
   return number;
 };
@@ -150,6 +151,11 @@ LIVE = """
       return speed.top;
     });
     check(ends.join() === "1,3,3,3,0.4,2", "scales widen at once and narrow slowly: " + ends);
+
+    server.pace = 0.0004321;
+    await server.frame(1);
+    await wait(200);
+    check(/0\.000432\u00d7 real time/.test(find("clock").textContent), "a slow run: " + find("clock").textContent);
 
     const corner = (x) => new THREE.Vector3(x, x, x), aim = make_aim(new THREE.Box3(corner(0), corner(1)));
     const frame_at = (height) => ({ bodies: new Map([[0, { lower: [0, 0, height], extent: [1, 1, 1] }]]) });

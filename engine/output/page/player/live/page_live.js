@@ -198,7 +198,7 @@ function make_live(page, has_view) {
   }
   // Updates clock, plots, legends and sliders, less often than the picture.
   function refresh() {
-    const pace = row.speed > 0 ? "  " + text.average(row.speed) + "\u00d7 real time" : "";
+    const pace = row.speed > 0 ? "  " + text.unitless(row.speed) + "\u00d7 real time" : "";
     show_clock(find, row.time.toFixed(3) + " s", pace);
     page.plots.forEach((plot) => plot.update());
     sliders.show(row.sliders, row.number);
