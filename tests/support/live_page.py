@@ -32,12 +32,13 @@ server.begin = () => {
     sliders: [{ name: "height", unit: "m", low: 0, high: 1, value: 0.25 }],
     plots: [{ name: "tip", columns: [{ name: "x", unit: "m" }, { name: "force", unit: "N" }] }] });
 };
+server.pace = 0.5;
 server.push = (speed, force) => {
   const { objects, bytes } = MESSAGES[server.at], number = server.at++;
   server.tell({ type: "add", ...objects });
   server.tell({ type: "row", number, time: number / 60, kinetic: 1, elastic: 2, potential: null, dissipated: 0,
     contacts: 3, stick: 1, slide: 2, regions: 1, top: { speed, stress: 0, strain: 0, force: 1, line_force: 1 },
-    probes: [[number, 2]], sliders: [0.25], pull: force ? { force, length: 0.1 } : null, speed: 0.5 });
+    probes: [[number, 2]], sliders: [0.25], pull: force ? { force, length: 0.1 } : null, speed: server.pace });
   server.say(Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0)).buffer);
   return number;
 };
@@ -119,6 +120,16 @@ LIVE = """
     find("slider_0").value = 0.5;
     find("slider_0").dispatchEvent(new Event("input"));
     check(server.sent[0].value === 0.5 && server.sent[0].number === 0, "a slider moves");
+    const shown_after = async (ms) => {
+      await wait(ms);
+      await server.frame(1);
+      await wait(200);
+      return Number(find("slider_0").value);
+    };
+    check(await shown_after(600) === 0.5, "a slider waits for a row that knows its movement");
+    for (let i = 0; i < 3; ++i) await shown_after(0);
+    check(await shown_after(0) === 0.25, "it follows newer rows");
+    server.sent = server.sent.filter((order) => order.do === "slider");
     find("slider_0").dispatchEvent(new Event("dblclick"));
     check(server.sent[1].value === 0.25, "a double click moves it back");
     server.sent = [];
@@ -130,12 +141,29 @@ LIVE = """
     check(root.dataset.playing === "false" && find("rate").querySelector("select").value === "0.1"
       && !find("gravity").checked && find("notice").textContent === "no such body", "state and problem are shown");
 
+    const shown = [[2, "1"], [0.5, "1"], [0, "1"], [1234, "1"], [-0.0123, "1"], [null, "1"], [0.5, "m"]];
+    const texts = shown.map(([value, unit]) => text.si(value, unit)).join("; ");
+    check(texts === "2; 0.5; 0; 1,234; -0.0123; \u2013; 500\u202fmm", "plain numbers have no unit: " + texts);
+
     const { scales: { speed }, widen } = make_live_scales();
     const ends = [[0, 1], [0.1, 3], [1, 0.4], [3.05, 0.4], [3.2, 0.4], [3.3, 2]].map(([now, value]) => {
       widen({ speed: value }, now);
       return speed.top;
     });
     check(ends.join() === "1,3,3,3,0.4,2", "scales widen at once and narrow slowly: " + ends);
+
+    server.pace = 0.0004321;
+    await server.frame(1);
+    await wait(200);
+    check(/0\.000432\u00d7 real time/.test(find("clock").textContent), "a slow run: " + find("clock").textContent);
+
+    const corner = (x) => new THREE.Vector3(x, x, x), aim = make_aim(new THREE.Box3(corner(0), corner(1)));
+    const frame_at = (height) => ({ bodies: new Map([[0, { lower: [0, 0, height], extent: [1, 1, 1] }]]) });
+    for (let i = 0; i <= 8; ++i) {  // a fall that is drawn four times a second
+      const { min, max } = aim(frame_at(-5 * (i / 4) ** 2), i / 4);
+      check(min.z <= -5 * (i / 4) ** 2 && max.z >= 1 - 5 * (i / 4) ** 2 && max.z - min.z < 2,
+        "a falling body is in the box from " + min.z + " to " + max.z + " after " + i / 4 + " s");
+    }
 
     server.refuses = true;
     server.socket.close();
@@ -144,6 +172,17 @@ LIVE = """
     while (root.dataset.live !== "refused") await wait(20);
     check(/token/.test(find("notice").textContent), "a refusal is shown");
     server.refuses = false;
+    const { begin } = server, problem = "found 4 browsers";
+    server.begin = () => {
+      server.tell({ type: "problem", text: problem });
+      setTimeout(() => server.socket.close(), 0);
+    };
+    while (root.dataset.live !== "full") await wait(20);
+    const pause_of_notice = () => Number(/again in ([\\d.]+)\u202fs/.exec(find("notice").textContent)[1]);
+    check(find("notice").textContent.startsWith(problem + ". Trying"), "not so: " + find("notice").textContent);
+    const first_pause = pause_of_notice();
+    while (!(pause_of_notice() > first_pause)) await wait(20);
+    server.begin = begin;
     while (root.dataset.live !== "open") await wait(20);
     await server.frame(1);
     check(root.dataset.number === "0" && root.dataset.bodies === "2" && find("notice").hidden, "it begins again");

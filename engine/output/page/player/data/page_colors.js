@@ -4,9 +4,11 @@
 const text = (() => {
   const prefixes = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "\u00b5"], [1e-9, "n"]];
 
-  // Three significant digits with an SI prefix; fewer where an error is given, down to the one that it changes.
+  // Three significant digits with an SI prefix; fewer where an error is given, down to the one that it changes. The unit
+  // "1" is that of plain numbers, which get neither a unit nor a prefix.
   function si(value, unit, error) {
     if (value === null || !isFinite(value)) return "\u2013";
+    if (unit === "1") return unitless(value);
     if (Math.abs(value) < 5e-12) return "0 " + unit;
     const [factor, prefix] = prefixes.find(([f]) => Math.abs(value) >= f * 0.9995) || prefixes[prefixes.length - 1];
     const digits = digits_of(value, error);
@@ -22,6 +24,8 @@ const text = (() => {
     return String(+value.toFixed(size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2));
   }
   const count = (value) => Math.round(value).toLocaleString("en-US");
+  // Three significant digits, and all digits before the point.
+  const unitless = (value) => (Math.abs(value) >= 999.5 ? count(value) : String(+value.toPrecision(3)));
   const average = (value) => (value >= 100 ? count(value) : plain(value));
 
   // The next of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten.
@@ -35,7 +39,7 @@ const text = (() => {
     const power = Math.pow(10, Math.floor(Math.log10(range / parts)));
     return power * ([1, 2, 5].find((step) => step * power >= range / parts) || 10);
   }
-  return { si, percent, count, average, round_up, tick };
+  return { si, percent, count, unitless, average, round_up, tick };
 })();
 
 const colors = (() => {

@@ -34,18 +34,27 @@ function measure_scene(run, bodies, frames) {
 }
 
 // Returns a function from a frame of a live run to the box that the camera shows: the union of all frames so far, or
-// the present frame if the union is much larger than the first frame. The box moves smoothly. first: box of the first
-// frame.
-function make_aim(first, share = 0.05) {
+// the present frame if the union is much larger than the first frame. The box moves smoothly. If it
+// is large enough, it contains the bodies. first: box of the first frame. seconds: wall time of the call [s].
+function make_aim(first, time_constant = 0.3) {
   const whole = first.clone(), shown = first.clone();
-  return (frame) => {
+  let last = -Infinity;
+  return (frame, seconds) => {
     const now = box_of_frame(frame) || whole;
     whole.union(now);
     const wanted = radius_of(whole) < 1.5 * radius_of(first) ? whole : now;
+    const share = 1 - Math.exp(-Math.max(seconds - last, 0) / time_constant);
+    last = seconds;
     shown.min.lerp(wanted.min, share);
     shown.max.lerp(wanted.max, share);
-    return shown;
+    return shown.translate(shift_over(shown, now));
   };
+}
+
+// Smallest movement of `box` after which along each axis the smaller one of `box` and `other` is inside the larger one.
+function shift_over(box, other) {
+  const low = other.min.clone().sub(box.min), high = other.max.clone().sub(box.max);
+  return new THREE.Vector3().clamp(low.clone().min(high), high.clone().max(low));
 }
 
 const share_of = (list, share) => list.sort((a, b) => a - b)[Math.round(share * (list.length - 1))];

@@ -15,6 +15,7 @@ function take_token() {
 
 // receive(data) gets the messages in their order; each call waits for the promise of the previous one. status(name,
 // seconds): "connecting", "open", "lost" or "refused", with the time until the next try [s].
+// settle(): the program has accepted the page, so that the next try after a lost connection comes soon.
 function make_link(receive, status) {
   const token = take_token(), shortest_pause = 0.5, longest_pause = 15;  // s
   let socket = null, pause = shortest_pause;
@@ -37,7 +38,6 @@ function make_link(receive, status) {
       status("open");
     });
     own.addEventListener("message", ({ data }) => {
-      pause = shortest_pause;
       queue = queue.then(() => (own === socket ? receive(data) : undefined));
     });
     own.addEventListener("close", async () => {
@@ -50,5 +50,6 @@ function make_link(receive, status) {
   }
   const is_open = () => socket !== null && socket.readyState === WebSocket.OPEN;
   const send = (message) => { if (is_open()) socket.send(JSON.stringify(message)); };
-  return { connect, send, is_open };
+  const settle = () => { pause = shortest_pause; };
+  return { connect, send, is_open, settle };
 }

@@ -55,6 +55,8 @@ function make_live(page, has_view) {
   let is_new = false;               // the frame has not been drawn
   let is_stale = false;             // the panel shows an older row
   let aim = null;                   // make_aim of the scene
+  let has_begun = false;            // since the page is connected
+  let refusal = "";                 // problem in place of a begin
   let refreshed = 0, drawn = 0;
   page.scales = memory.scales;
   state.fields = ["speed"];
@@ -69,6 +71,8 @@ function make_live(page, has_view) {
     if (handlers[message.type]) await handlers[message.type](message);
   }
   async function begin({ run: described, state: first_state, sliders: movable, plots }) {
+    has_begun = true;
+    link.settle();
     pull.forget();
     clear_run();
     visuals.length = 0;
@@ -139,15 +143,22 @@ function make_live(page, has_view) {
   }
   // A problem stays while the run pauses for it, and otherwise for some seconds.
   function show_problem({ text: about }) {
+    if (!has_begun) refusal = about;
     page.notice(about);
     setTimeout(() => { if (state.playing && find("notice").textContent === about) page.notice(""); }, 8000);
   }
   function show_status(name, seconds) {
+    if (name === "connecting") {
+      has_begun = false;
+      refusal = "";
+    }
+    if (name === "lost" && refusal) name = "full";
     root.dataset.live = name;
     if (name !== "open") pull.forget();
     const again = "Trying again in " + text.si(seconds, "s") + ".";
     const [short, long] = {
-      connecting: ["connecting \u2026", null], open: ["live", ""],
+      connecting: ["connecting \u2026", null], open: ["live", null],
+      full: ["not connected", refusal + ". " + again],
       lost: ["connection lost", "The program that runs the scene does not answer. It has ended, or the connection was "
         + "lost. " + again],
       refused: ["connection refused", "The program refused the connection. The address of this page lacks the right "
@@ -177,7 +188,7 @@ function make_live(page, has_view) {
     is_new = false;
     state.time = row.time;
     pull.measured(row.pull);
-    if (page.scene && state.follow) page.scene.view.aim(aim(frame));
+    if (page.scene && state.follow) page.scene.view.aim(aim(frame, performance.now() / 1000));
     show();
     if (page.scene) page.scene.render();
     link.send({ do: "seen", number: row.number });
@@ -187,10 +198,10 @@ function make_live(page, has_view) {
   }
   // Updates clock, plots, legends and sliders, less often than the picture.
   function refresh() {
-    const pace = row.speed > 0 ? "  " + text.average(row.speed) + "\u00d7 real time" : "";
+    const pace = row.speed > 0 ? "  " + text.unitless(row.speed) + "\u00d7 real time" : "";
     show_clock(find, row.time.toFixed(3) + " s", pace);
     page.plots.forEach((plot) => plot.update());
-    sliders.show(row.sliders);
+    sliders.show(row.sliders, row.number);
     controls.show_legends();
   }
   function tick(now) {
