@@ -6,12 +6,20 @@ const pace_levels = [
   { shadows: false, share: 0.5 },
 ];
 
+// The finest level without shadows that draws at most 300,000 of the pixels, or the coarsest one.
+function first_level(pixels) {
+  const level = pace_levels.findIndex(({ shadows, share }) => !shadows && share * share * pixels <= 300000);
+  return level < 0 ? pace_levels.length - 1 : level;
+}
+
 // next(is_changed) is called before each turn of the loop, and returns the level of detail: a coarser one while turns
 // with new pictures take too long, and all pixels once the picture stands still. share: drawn pixels per pixel of a
-// row. Shadows do not come back, because switching them takes the time of many pictures.
-function make_pace(is_coarse) {
+// row. Shadows do not come back, because switching them takes the time of many pictures. is_coarse: there is no GPU, so
+// that the first level depends on `pixels`, the number of pixels of the view.
+function make_pace(is_coarse, pixels) {
   const slow = 40, rest = 400;  // ms of a turn, and after the last picture
-  let level = is_coarse ? 1 : 0, late = 0, drew = false, turned = 0, changed = 0, chosen = 0, trial = 10000;  // ms
+  let level = is_coarse ? first_level(pixels) : 0, late = 0, drew = false;
+  let turned = 0, changed = 0, chosen = 0, trial = 10000;  // ms
 
   function judge(passed, now) {
     late = Math.max(late + (passed > slow ? Math.min(passed / slow, 3) : -1), 0);

@@ -2,12 +2,14 @@
 "use strict";
 
 // `up` is a unit vector, `box` the result of measure_scene. The camera shows the box of the frame until the user moves
-// or zooms it. is_coarse: the view is drawn without smooth edges, and without shadows at first.
+// or zooms it. is_coarse: there is no GPU; the view is drawn without smooth edges, on a ground of one colour, and
+// without shadows at first.
 function make_view(host, up, box, is_coarse) {
   const renderer = new THREE.WebGLRenderer({
     antialias: !is_coarse,
-    alpha: true,                  // the style sheet paints the background
-    preserveDrawingBuffer: true,  // unchanged pictures are not drawn again, and can be copied at any time
+    alpha: !is_coarse,  // the style sheet paints what is behind; without a GPU this takes long
+    stencil: false,
+    preserveDrawingBuffer: !is_coarse,  // a recorded page can be read at any time; without a GPU the copy takes long
   });
   renderer.gammaOutput = true;
   renderer.gammaFactor = 2.2;
@@ -51,7 +53,9 @@ function make_view(host, up, box, is_coarse) {
   const home = { turn: -1.05, lift: 0.38, distance: 1, place: 0, follow: true };
   const orbit = { ...home, offset: new THREE.Vector3() };
   const course = box.course.map(fitted);
-  const pace = make_pace(is_coarse);
+  const style = getComputedStyle(host);
+  const pixel_ratio = () => Math.min(window.devicePixelRatio || 1, 2);
+  const pace = make_pace(is_coarse, host.clientWidth * host.clientHeight * pixel_ratio() ** 2);
   let share = 1;  // of the pixels of a row that are drawn
   let dirty = true, shown_place = 0, pick = null, on_change = () => {};
 
@@ -141,7 +145,10 @@ function make_view(host, up, box, is_coarse) {
   }
 
   const render = () => draw_at(pace.next(dirty));
-  const render_fine = () => draw_at(pace_levels[0]);
+  function render_fine() {
+    dirty = true;
+    draw_at(pace_levels[0]);
+  }
   function draw_at(level) {
     key.castShadow = level.shadows;
     if (level.share !== share) {
@@ -153,12 +160,13 @@ function make_view(host, up, box, is_coarse) {
   }
   function draw() {
     dirty = false;
+    if (is_coarse) renderer.setClearColor(style.getPropertyValue("--ground-middle").trim());
     renderer.render(scene, camera);
   }
   // Sets the number of pixels, and returns width by height.
   function size_up() {
     const width = Math.max(host.clientWidth, 1), height = Math.max(host.clientHeight, 1);
-    renderer.setPixelRatio(share * Math.min(window.devicePixelRatio || 1, 2));
+    renderer.setPixelRatio(share * pixel_ratio());
     renderer.setSize(width, height);
     return width / height;
   }
