@@ -21,10 +21,12 @@ Two fields_at(const Vec3& x, Real curved) {
 
 template <int terms>
 Two fitted(std::span<const Vec3> points, Real curved, int& rank) {
-    PolynomialFit<terms, 2> fit;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        fit.add(1 + 0.1 * static_cast<Real>(i), points[i], fields_at(points[i], curved));
-    return fit.at_origin(rank);
+    std::vector<Real> factor;
+    for (std::size_t i = 0; i < points.size(); ++i) factor.push_back(1 + 0.1 * static_cast<Real>(i));
+    rank = find_fit_factors<terms>(points, factor);
+    Two sum = Two::Zero();
+    for (std::size_t i = 0; i < points.size(); ++i) sum += factor[i] * fields_at(points[i], curved);
+    return sum;
 }
 
 }  // namespace
