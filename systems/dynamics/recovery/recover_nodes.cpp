@@ -2,15 +2,12 @@
 
 #include <optional>
 
+#include "systems/dynamics/recovery/surface_search.h"
 #include "systems/material/material_law.h"
 
 namespace skerry {
 
 namespace {
-
-Mat3 green_strain(const Mat3& F) {
-    return (F.transpose() * F - Mat3::Identity()) / 2;
-}
 
 class Recovery {
     using Shares = std::span<const RecoveryPlan::Share>;
@@ -27,10 +24,22 @@ public:
           fields_(plan.center.size()) {
         of_blocks(body.elements, body.blocks, plan.block, body.position, fields_);
         sum_forces();
-        at_smooth_.reserve(plan.smooth.size());
+        std::vector<SurfaceSearch> searches;
+        searches.reserve(plan.faces.size());
         for (std::size_t row = 0; row < plan.smooth.size(); ++row)
-            at_smooth_.push_back(plan.smooth[row] == no_index ? sum(plan.strained[row], plan.volumetric[row])
-                                                              : at_face(row));
+            if (plan.smooth[row] != no_index) searches.push_back(search_at(row));
+        const std::vector<std::optional<Mat3>> gradients = surface_gradients(searches);
+        at_smooth_.reserve(plan.smooth.size());
+        for (std::size_t row = 0; row < plan.smooth.size(); ++row) {
+            const auto f = static_cast<std::size_t>(plan.smooth[row]);
+            if (plan.smooth[row] != no_index && gradients[f]) {
+                const Mat3& F = *gradients[f];
+                at_smooth_.push_back({stress(searches[f].material, F) * F.transpose() / F.determinant(),
+                                      (F.transpose() * F - Mat3::Identity()) / 2});
+            } else {
+                at_smooth_.push_back(sum(plan.strained[row], plan.volumetric[row]));
+            }
+        }
     }
 
     /// Value at node `i` of the plan.
@@ -57,9 +66,9 @@ private:
             const auto place = static_cast<std::size_t>(at);
             const std::size_t block = block_of(place), lane = place % element_lanes;
             const ElementGradient& of = body_.elements.nodes_of(block).gradient[corner];
-            force_[static_cast<std::size_t>(row)] += fields_[place].nominal_stress *
-                                                     (body_.elements.volume[block][lane] *
-                                                      Vec3(of[0][lane], of[1][lane], of[2][lane]));
+            force_[static_cast<std::size_t>(row)] +=
+                fields_[place].nominal_stress *
+                (body_.elements.volume[block][lane] * Vec3(of[0][lane], of[1][lane], of[2][lane]));
         }
     }
 
@@ -75,20 +84,12 @@ private:
         return value;
     }
 
-    Value at_face(std::size_t row) const {
-        const auto f = static_cast<std::size_t>(plan_.smooth[row]);
-        const auto place = static_cast<std::size_t>(plan_.faces[f].place);
-        const MaterialConstants material = body_.elements.whole_material_of(block_of(place));
-        if (const std::optional<Mat3> F = gradient_at(f, plan_.strained[row], material))
-            return {stress(material, *F) * F->transpose() / F->determinant(), green_strain(*F)};
-        return sum(plan_.strained[row], plan_.volumetric[row]);
-    }
-
-    /// Deformation gradient at the surface node of face `f`, with a stress that balances the traction. The traction is
+    /// Search for the deformation gradient with a stress that balances the traction at a surface node. The traction is
     /// the external force on the elements around the node, divided by the surface area. The part of the force that is
     /// due to weight and inertia is subtracted first. Per volume, this part is taken to be the same as at the inner
     /// nodes nearby.
-    std::optional<Mat3> gradient_at(std::size_t f, Shares strained, const MaterialConstants& material) const {
+    SurfaceSearch search_at(std::size_t row) const {
+        const auto f = static_cast<std::size_t>(plan_.smooth[row]);
         const RecoveryPlan::Face& face = plan_.faces[f];
         const std::span<const Index> rows = plan_.force[f];
         Vec3 force = force_[static_cast<std::size_t>(rows.front())], inner_force = Vec3::Zero();
@@ -96,10 +97,10 @@ private:
         force -= face.inner_share * inner_force;
         const SurfaceAround& around = face.around;
         Vec3 start = Vec3::Zero();
-        for (const auto [place, factor] : strained)
+        for (const auto [place, factor] : plan_.strained[row])
             start += fields_[static_cast<std::size_t>(place)].gradient * (factor * around.normal);
-        return surface_gradient(material, around, surface_stretch(plan_.triangles[f], position_),
-                                force / around.area.norm(), start);
+        return {body_.elements.whole_material_of(block_of(static_cast<std::size_t>(face.place))), &around,
+                surface_stretch(plan_.triangles[f], position_), force / around.area.norm(), start};
     }
 
     const RecoveryPlan& plan_;
