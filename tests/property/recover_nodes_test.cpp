@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "systems/dynamics/recovery/polynomial_fit.h"
-#include "systems/dynamics/recovery/surface_gradient.h"
+#include "systems/dynamics/recovery/surface_search.h"
 #include "systems/material/material_law.h"
 #include "tests/support/jittered_box.h"
 #include "tests/support/material_models.h"
@@ -21,10 +21,12 @@ Two fields_at(const Vec3& x, Real curved) {
 
 template <int terms>
 Two fitted(std::span<const Vec3> points, Real curved, int& rank) {
-    PolynomialFit<terms, 2> fit;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        fit.add(1 + 0.1 * static_cast<Real>(i), points[i], fields_at(points[i], curved));
-    return fit.at_origin(rank);
+    std::vector<Real> factor;
+    for (std::size_t i = 0; i < points.size(); ++i) factor.push_back(1 + 0.1 * static_cast<Real>(i));
+    rank = find_fit_factors<terms>(points, factor);
+    Two sum = Two::Zero();
+    for (std::size_t i = 0; i < points.size(); ++i) sum += factor[i] * fields_at(points[i], curved);
+    return sum;
 }
 
 }  // namespace
@@ -85,6 +87,40 @@ TEST_CASE("the gradient at a curved surface is that of the body for a uniform de
             surface_gradient(material, dome, stretch, stress(material, F) * dome.normal, Vec3(dome.normal));
         REQUIRE(found);
         CHECK((*found - F).norm() < 1e-9);
+    }
+}
+
+TEST_CASE("gradients of many nodes are those of single nodes and do not depend on the others", "[property]") {
+    // Twelve nodes of flat surfaces in a body of each material, with known gradients.
+    std::mt19937_64 random(6);
+    std::vector<SurfaceAround> around;
+    std::vector<SurfaceSearch> searches;
+    std::vector<Mat3> exact;
+    around.reserve(12 * std::size(material_models));
+    for (const MaterialModel model : material_models) {
+        const MaterialConstants material = material_constants(model, 1e6, 0.45, 1000);
+        for (int i = 0; i < 12; ++i) {
+            const std::vector<Vec3> rest{random_vector(random), random_vector(random), random_vector(random)};
+            const std::vector<std::array<Index, 3>> surface{{0, 1, 2}};
+            around.push_back(surface_around(surface, std::vector<Index>{0}, rest));
+            Mat3 F = Mat3::Identity();
+            for (int k = 0; k < 3; ++k) F.col(k) += 0.002 * i * random_vector(random);
+            exact.push_back(F);
+            std::vector<Vec3> position;
+            for (const Vec3& x : rest) position.emplace_back(F * x);
+            const std::vector<SurfaceTriangle> triangles{surface_triangle(surface[0], rest).value()};
+            const Vec3& normal = around.back().normal;
+            searches.push_back({material, &around.back(), surface_stretch(triangles, position),
+                                stress(material, F) * normal,
+                                (Mat3::Identity() + 0.9 * (F - Mat3::Identity())) * normal});
+        }
+    }
+    const std::vector<std::optional<Mat3>> found = surface_gradients(searches);
+    for (std::size_t i = 0; i < searches.size(); ++i) {
+        INFO(name_of(searches[i].material.model) << ", node " << i);
+        REQUIRE(found[i]);
+        CHECK((*found[i] - exact[i]).norm() < 1e-10);
+        CHECK(*surface_gradients(std::span(searches).subspan(i, 1)).front() == *found[i]);
     }
 }
 

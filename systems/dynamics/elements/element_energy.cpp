@@ -42,17 +42,27 @@ void for_each_block(const ElementInputs& elements, Range blocks, std::span<const
         elements, blocks, position, [](std::size_t) { return true; }, visit);
 }
 
-/// Writes the Cauchy stress of each element of a block [Pa]; zero in lanes without volume.
-void put_cauchy_stress(const Real8& volume, const LaneMat3<Real8>& F, const LaneMat3<Real8>& P,
-                       std::span<Mat3> stress) {
+/// Cauchy stress of the elements of a block [Pa]; zero in lanes without volume.
+LaneMat3<Real8> cauchy_stress_of(const Real8& volume, const LaneMat3<Real8>& F, const LaneMat3<Real8>& P) {
     // least volume ratio for which the Cauchy stress has a meaning; the limit makes the stress finite
     constexpr Real least_volume_ratio = 1e-6;
-    for (std::size_t l = 0; l < element_lanes; ++l) {
-        const Mat3 f = lane_of(F, static_cast<int>(l));
-        const Real ratio = std::max(std::abs(f.col(0).dot(f.col(1).cross(f.col(2)))), least_volume_ratio);
-        stress[l] = lane_of(P, static_cast<int>(l)) * f.transpose() / ratio;
-        if (!(volume[l] > 0)) stress[l].setZero();
-    }
+    const Real8 J = determinant(F), size = J < 0.0 ? -J : J, zero{};
+    const Real8 ratio = size > least_volume_ratio ? size : zero + least_volume_ratio;
+    // The stress in lanes without volume may not be finite.
+    const auto column = [&](const Real8& x, const Real8& y, const Real8& z) -> LaneVec3<Real8> {
+        const LaneVec3<Real8> sum = x * P.c0 + y * P.c1 + z * P.c2;
+        return {volume > 0.0 ? sum.x / ratio : zero, volume > 0.0 ? sum.y / ratio : zero,
+                volume > 0.0 ? sum.z / ratio : zero};
+    };
+    return {column(F.c0.x, F.c1.x, F.c2.x), column(F.c0.y, F.c1.y, F.c2.y), column(F.c0.z, F.c1.z, F.c2.z)};
+}
+
+/// Green strain (F^T F - I) / 2.
+LaneMat3<Real8> green_strain_of(const LaneMat3<Real8>& F) {
+    const Real8 xy = 0.5 * dot(F.c0, F.c1), yz = 0.5 * dot(F.c1, F.c2), zx = 0.5 * dot(F.c2, F.c0);
+    return {{0.5 * (dot(F.c0, F.c0) - 1.0), xy, zx},
+            {xy, 0.5 * (dot(F.c1, F.c1) - 1.0), yz},
+            {zx, yz, 0.5 * (dot(F.c2, F.c2) - 1.0)}};
 }
 
 LaneMat3<Real8> stress_of(const MaterialConstants& material, const LaneMat3<Real8>& F, const LaneMat3<Real8>& R) {
@@ -114,7 +124,9 @@ void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const 
                    [&](std::size_t b, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
                        const LaneMat3<Real8>& R) {
                        const std::size_t first = (b - static_cast<std::size_t>(blocks.begin)) * element_lanes;
-                       put_cauchy_stress(volume, F, stress_of(material, F, R), stress.subspan(first, element_lanes));
+                       const LaneMat3<Real8> cauchy = cauchy_stress_of(volume, F, stress_of(material, F, R));
+                       for (std::size_t l = 0; l < element_lanes; ++l)
+                           stress[first + l] = lane_of(cauchy, static_cast<int>(l));
                    });
 }
 
@@ -130,12 +142,11 @@ void element_fields(const ElementInputs& elements, Range blocks, std::span<const
     for_each_block_of(elements, up_to_last, position, asks,
                       [&](std::size_t, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
                           const LaneMat3<Real8>& R) {
-                          const LaneMat3<Real8> P = stress_of(material, F, R);
-                          std::array<Mat3, element_lanes> cauchy;
-                          put_cauchy_stress(volume, F, P, cauchy);
-                          for (std::size_t l = 0; l < element_lanes; ++l)
-                              fields[next * element_lanes + l] = {lane_of(F, static_cast<int>(l)),
-                                                                  lane_of(P, static_cast<int>(l)), cauchy[l]};
+                          const LaneMat3<Real8> P = stress_of(material, F, R), cauchy = cauchy_stress_of(volume, F, P),
+                                                strain = green_strain_of(F);
+                          for (int l = 0; l < static_cast<int>(element_lanes); ++l)
+                              fields[next * element_lanes + static_cast<std::size_t>(l)] = {
+                                  lane_of(F, l), lane_of(P, l), lane_of(cauchy, l), lane_of(strain, l)};
                           ++next;
                       });
 }

@@ -23,6 +23,7 @@ void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const 
 struct ElementFields {
     Mat3 gradient;                       // deformation gradient F
     Mat3 nominal_stress, cauchy_stress;  // nominal: first Piola-Kirchhoff; both without the relaxing part [Pa]
+    Mat3 strain;                         // Green strain
 };
 
 /// Writes the fields of the elements in some blocks of a range. `asked`: these blocks, ascending and counted from

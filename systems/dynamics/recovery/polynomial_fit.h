@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "components/types.h"
 
@@ -12,28 +13,26 @@ namespace skerry {
 /// Number of terms of a polynomial of three variables of degree 1 and 2.
 inline constexpr int linear_terms = 4, quadratic_terms = 10;
 
-/// Weighted least-squares fit of a linear or quadratic polynomial to samples with `values` components, evaluated at the
-/// origin. Terms that the samples do not determine are dropped, from the highest to the lowest degree. So a linear
-/// field is reproduced wherever the samples determine it.
-template <int terms, int values>
+/// Weighted least-squares fit of a linear or quadratic polynomial to samples, evaluated at the origin. Terms that the
+/// samples do not determine are dropped, from the highest to the lowest degree. So a linear field is reproduced
+/// wherever the samples determine it.
+template <int terms>
 class PolynomialFit {
 public:
-    using Sample = Eigen::Matrix<Real, 1, values>;
-
     /// Adds a sample at `offset` from the origin. Offsets should be of the order of 1.
-    void add(Real weight, const Vec3& offset, const Sample& sample) {
+    void add(Real weight, const Vec3& offset) {
         const Row row = row_at(offset);
         normal_.noalias() += weight * row.transpose() * row;
-        right_.noalias() += weight * row.transpose() * sample;
     }
 
-    /// Value of the polynomial at the origin; zero without samples. `rank`: number of terms that were not dropped.
-    Sample at_origin(int& rank) const {
+    /// The value at the origin is the sum over the samples of weight * (row . terms at the offset) * sample, with the
+    /// row returned here. It is zero without samples. `rank`: number of terms that were not dropped.
+    Eigen::Matrix<Real, 1, terms> row_of_origin(int& rank) const {
         // Cholesky decomposition, row by row. The diagonal after elimination of the earlier terms, over its first
         // value, is the squared sine of the angle between a term and the earlier terms, over all samples.
         constexpr Real dependent = 1e-3;
         Eigen::Matrix<Real, terms, terms> lower = Eigen::Matrix<Real, terms, terms>::Zero();
-        Eigen::Matrix<Real, terms, values> value = right_;
+        Eigen::Matrix<Real, terms, 1> value = Eigen::Matrix<Real, terms, 1>::Unit(0);
         std::array<bool, terms> kept{};
         rank = 0;
         for (int i = 0; i < terms; ++i) {
@@ -48,24 +47,20 @@ public:
             }
             ++rank;
             lower(i, i) = std::sqrt(left);
-            value.row(i) -= lower.row(i).head(i) * value.topRows(i);
-            value.row(i) /= lower(i, i);
+            value[i] = (value[i] - lower.row(i).head(i).dot(value.head(i))) / lower(i, i);
         }
         for (int i = terms - 1; i >= 0; --i) {
             if (!kept[static_cast<std::size_t>(i)]) {
-                value.row(i).setZero();
+                value[i] = 0;
                 continue;
             }
-            value.row(i) /= lower(i, i);
-            value.topRows(i) -= lower.row(i).head(i).transpose() * value.row(i);
+            value[i] /= lower(i, i);
+            value.head(i) -= lower.row(i).head(i).transpose() * value[i];
         }
-        return value.row(0);
+        return value.transpose();
     }
 
-private:
-    using Row = Eigen::Matrix<Real, 1, terms>;
-
-    static Row row_at(const Vec3& d) {
+    static Eigen::Matrix<Real, 1, terms> row_at(const Vec3& d) {
         Row row;
         row.template head<linear_terms>() << 1, d.x(), d.y(), d.z();
         if constexpr (terms == quadratic_terms)
@@ -74,8 +69,22 @@ private:
         return row;
     }
 
+private:
+    using Row = Eigen::Matrix<Real, 1, terms>;
+
     Eigen::Matrix<Real, terms, terms> normal_ = Eigen::Matrix<Real, terms, terms>::Zero();
-    Eigen::Matrix<Real, terms, values> right_ = Eigen::Matrix<Real, terms, values>::Zero();
 };
+
+/// Replaces the weights of samples by factors: the sum of factor * sample is the value of the fit at the origin.
+/// Returns the number of terms that were not dropped. `offset`: of the samples from the origin.
+template <int terms>
+int find_fit_factors(std::span<const Vec3> offset, std::span<Real> weight) {
+    PolynomialFit<terms> fit;
+    for (std::size_t i = 0; i < offset.size(); ++i) fit.add(weight[i], offset[i]);
+    int rank = 0;
+    const auto row = fit.row_of_origin(rank);
+    for (std::size_t i = 0; i < offset.size(); ++i) weight[i] *= row.dot(fit.row_at(offset[i]));
+    return rank;
+}
 
 }  // namespace skerry

@@ -1,6 +1,7 @@
 #include "systems/dynamics/recovery/recovery_plan.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "systems/dynamics/recovery/node_patches.h"
@@ -18,6 +19,8 @@ void append_row(Ragged<T>& list, std::span<const T> row) {
 }
 
 class Planner {
+    using Share = RecoveryPlan::Share;
+
 public:
     Planner(const RecoveryMesh& body, std::span<const Index> nodes)
         : body_(body),
@@ -114,17 +117,16 @@ private:
             need(static_cast<Index>(n));
             for (const Index inner : patches_.inner_neighbours(static_cast<Index>(n))) need(inner);
         }
-        std::vector<std::vector<RecoveryPlan::Corner>> at(static_cast<std::size_t>(count));
+        plan_.force_count = static_cast<std::size_t>(count);
         for (std::size_t place = 0; place < place_count(); ++place) {
             if (near_elements_.covered(body_.cover, place).empty()) continue;
             const BlockNodes nodes = body_.elements.nodes_of(block_of(place));
             for (Index k = 0; k < nodes.count; ++k) {
                 const Index n = nodes.node[k][place % element_lanes] - body_.first_node;
                 if (const Index row = force_row_[static_cast<std::size_t>(n)]; row != no_index)
-                    at[static_cast<std::size_t>(row)].push_back({static_cast<Index>(place), k});
+                    plan_.corners.push_back({static_cast<Index>(place), k, row});
             }
         }
-        for (const std::vector<RecoveryPlan::Corner>& row : at) append_row<RecoveryPlan::Corner>(plan_.corners, row);
     }
 
     void add_smooth(Index n) {
@@ -133,23 +135,62 @@ private:
         constexpr std::size_t enough = 2 * quadratic_terms;
         smooth_[static_cast<std::size_t>(n)] = static_cast<Index>(plan_.smooth.size());
         std::vector<Index> strained, volumetric;
-        Real size = 0;
         bool smoothed = false;
         const std::vector<Index> places = near_elements_.around(patches_.tetrahedra(n));
         for (const Index place : places) {
-            const auto p = static_cast<std::size_t>(place);
-            size = std::max(size, (plan_.center[p] - rest(n)).norm());
             (has_strain(place) ? strained : volumetric).push_back(place);
-            smoothed = smoothed || (has_strain(place) && near_elements_.covered(body_.cover, p).size() > 1);
+            smoothed = smoothed || (has_strain(place) &&
+                                    near_elements_.covered(body_.cover, static_cast<std::size_t>(place)).size() > 1);
         }
         // The traction gives no elastic deformation gradient at the surface of a material that yields.
         const bool is_face = patches_.kind(n) == NodeKind::face &&
                              !body_.elements.material_of(block_of(static_cast<std::size_t>(places.front()))).yields();
-        plan_.smooth.push_back({rest(n), size > 0 ? size : 1, smoothed && strained.size() >= enough,
-                                is_face ? static_cast<Index>(plan_.faces.size()) : no_index});
-        append_row<Index>(plan_.strained, strained);
-        append_row<Index>(plan_.volumetric, volumetric);
-        if (is_face) add_face(n, places.front());
+        plan_.smooth.push_back(is_face ? static_cast<Index>(plan_.faces.size()) : no_index);
+        if (is_face) {
+            append_row<Share>(plan_.strained, mean_of(strained, 1));
+            append_row<Share>(plan_.volumetric, mean_of(volumetric, 1));
+            add_face(n, places.front());
+            return;
+        }
+        Real size = 0;
+        for (const Index place : places)
+            size = std::max(size, (plan_.center[static_cast<std::size_t>(place)] - rest(n)).norm());
+        if (!(size > 0)) size = 1;
+        const bool is_quadratic = smoothed && strained.size() >= enough;
+        append_row<Share>(plan_.strained, fit_of(is_quadratic, strained, rest(n), size));
+        append_row<Share>(plan_.volumetric, fit_of(false, volumetric, rest(n), size));
+    }
+
+    Real volume(Index place) const {
+        const auto p = static_cast<std::size_t>(place);
+        return body_.elements.volume[block_of(p)][p % element_lanes];
+    }
+
+    /// Factors of the mean over elements, times `share`.
+    std::vector<Share> mean_of(std::span<const Index> places, Real share) const {
+        Real whole = 0;
+        for (const Index place : places) whole += volume(place);
+        std::vector<Share> shares;
+        if (whole > 0)
+            for (const Index place : places) shares.push_back({place, share * volume(place) / whole});
+        return shares;
+    }
+
+    /// Factors of a fit to the values of elements, evaluated at a rest position.
+    std::vector<Share> fit_of(bool is_quadratic, std::span<const Index> places, const Vec3& at, Real size) const {
+        std::vector<Vec3> offset;
+        std::vector<Real> factor;
+        for (const Index place : places) {
+            offset.emplace_back((plan_.center[static_cast<std::size_t>(place)] - at) / size);
+            factor.push_back(volume(place));
+        }
+        if (is_quadratic)
+            find_fit_factors<quadratic_terms>(offset, factor);
+        else
+            find_fit_factors<linear_terms>(offset, factor);
+        std::vector<Share> shares;
+        for (std::size_t i = 0; i < places.size(); ++i) shares.push_back({places[i], factor[i]});
+        return shares;
     }
 
     void add_face(Index n, Index place) {
@@ -170,38 +211,45 @@ private:
     }
 
     void add_value(Index n) {
-        const auto begin = static_cast<Index>(plan_.extrapolations.size());
         const bool is_smooth = patches_.kind(n) != NodeKind::other;
-        if (!is_smooth)
-            for (const Index material : patches_.materials_around(n)) add_extrapolation(n, material);
-        plan_.values.push_back({is_smooth ? smooth_[static_cast<std::size_t>(n)] : no_index,
-                                {begin, static_cast<Index>(plan_.extrapolations.size())},
-                                rest(n)});
+        plan_.smooth_of.push_back(is_smooth ? smooth_[static_cast<std::size_t>(n)] : no_index);
+        std::vector<Share> donors, strained, volumetric;
+        if (!is_smooth) {
+            const std::vector<Index> materials = patches_.materials_around(n);
+            Real whole = 0;
+            for (const Index material : materials) whole += patches_.node_volume(n, material);
+            if (whole > 0)
+                for (const Index material : materials)
+                    extrapolate(n, material, patches_.node_volume(n, material) / whole, donors, strained, volumetric);
+        }
+        append_row<Share>(plan_.donors, donors);
+        append_row<Share>(plan_.strained_around, strained);
+        append_row<Share>(plan_.volumetric_around, volumetric);
     }
 
-    void add_extrapolation(Index n, Index material) {
-        const std::vector<Index> donors = patches_.donors(n, material);
+    /// Appends the factors of a linear fit to the donors of one material, times `share`. If they do not suffice, the
+    /// factors of the mean over the elements of this material are appended.
+    void extrapolate(Index n, Index material, Real share, std::vector<Share>& donors, std::vector<Share>& strained,
+                     std::vector<Share>& volumetric) {
+        const std::vector<Index> nodes = patches_.donors(n, material);
         Real size = 0;
-        for (const Index donor : donors) size = std::max(size, (rest(donor) - rest(n)).norm());
+        for (const Index donor : nodes) size = std::max(size, (rest(donor) - rest(n)).norm());
         if (!(size > 0)) size = 1;
-        PolynomialFit<linear_terms, 1> fit;
-        std::vector<Index> rows, strained, volumetric;
-        for (const Index donor : donors) {
-            fit.add(1, (rest(donor) - rest(n)) / size, decltype(fit)::Sample::Zero());
-            rows.push_back(smooth_[static_cast<std::size_t>(donor)]);
+        std::vector<Vec3> offset;
+        for (const Index donor : nodes) offset.emplace_back((rest(donor) - rest(n)) / size);
+        std::vector<Real> factor(nodes.size(), 1);
+        if (find_fit_factors<linear_terms>(offset, factor) == linear_terms) {
+            for (std::size_t i = 0; i < nodes.size(); ++i)
+                donors.push_back({smooth_[static_cast<std::size_t>(nodes[i])], share * factor[i]});
+            return;
         }
-        int rank = 0;
-        fit.at_origin(rank);
-        const bool is_determined = rank == linear_terms;
-        if (!is_determined)
-            for (const Index place : near_elements_.around(patches_.tetrahedra(n)))
-                if (patches_.material_of(
-                        near_elements_.covered(body_.cover, static_cast<std::size_t>(place)).front()) == material)
-                    (has_strain(place) ? strained : volumetric).push_back(place);
-        append_row<Index>(plan_.donors, rows);
-        append_row<Index>(plan_.strained_around, strained);
-        append_row<Index>(plan_.volumetric_around, volumetric);
-        plan_.extrapolations.push_back({patches_.node_volume(n, material), size, is_determined});
+        std::vector<Index> strained_places, volumetric_places;
+        for (const Index place : near_elements_.around(patches_.tetrahedra(n)))
+            if (patches_.material_of(near_elements_.covered(body_.cover, static_cast<std::size_t>(place)).front()) ==
+                material)
+                (has_strain(place) ? strained_places : volumetric_places).push_back(place);
+        std::ranges::copy(mean_of(strained_places, share), std::back_inserter(strained));
+        std::ranges::copy(mean_of(volumetric_places, share), std::back_inserter(volumetric));
     }
 
     const RecoveryMesh& body_;
@@ -210,7 +258,7 @@ private:
     std::vector<Index> smooth_;       // by node: row of RecoveryPlan::smooth; no_index if the node is not needed
     std::vector<std::uint8_t> near_;  // by tetrahedron: 1 if the elements that cover it are needed
     ElementsNear near_elements_;
-    std::vector<Index> force_row_;  // by node: row of RecoveryPlan::corners, or no_index
+    std::vector<Index> force_row_;  // by node: its row among the nodes whose force is needed, or no_index
     RecoveryPlan plan_;
 };
 

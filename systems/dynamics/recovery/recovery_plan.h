@@ -33,17 +33,18 @@ struct RecoveryPlan {
     std::vector<Index> block;  // blocks whose elements are needed, ascending
     std::vector<Vec3> center;  // by place: centroid of the tetrahedra that the element covers [m]
 
-    /// Inner node, or node of a smooth part of the surface. Its value is found from the elements around it.
-    struct SmoothNode {
-        Vec3 rest;          // rest position [m]
-        Real size;          // largest distance of the centroid of an element around the node [m]
-        bool is_quadratic;  // true for a quadratic fit, false for a linear fit
-        Index face;         // row of `faces`; no_index for an inner node
+    /// Factor of one value in a weighted sum.
+    struct Share {
+        Index from;
+        Real factor;
     };
-    std::vector<SmoothNode> smooth;
-    // For each row of `smooth`: places of the elements around its node, ascending. `strained`: elements with strain.
-    // `volumetric`: elements that have only the volumetric part of the stress.
-    Ragged<Index> strained, volumetric;
+    // Inner nodes, and nodes of a smooth part of the surface. For each one its row of `faces`, or no_index if it is an
+    // inner node. The value of an inner node is a sum of values of the elements around it.
+    std::vector<Index> smooth;
+    // For each row of `smooth`: factors of the elements around its node, by place, ascending. They are those of the fit
+    // of an inner node, and of the mean at a face. `strained`: elements with strain. `volumetric`: elements that have
+    // only the volumetric part of the stress.
+    Ragged<Share> strained, volumetric;
 
     struct Face {
         SurfaceAround around;
@@ -53,34 +54,22 @@ struct RecoveryPlan {
     };
     std::vector<Face> faces;
     Ragged<SurfaceTriangle> triangles;  // by face
-    // Rows of `corners` for each face: first the row of the face's own node, then the rows of the inner nodes of the
-    // tetrahedra around this node.
+    // Rows of nodes whose force is needed, for each face: first the row of the face's own node, then the rows of the
+    // inner nodes of the tetrahedra around this node.
     Ragged<Index> force;
-    /// Corner of an element.
+    /// Corner of an element at a node whose force is needed.
     struct Corner {
         Index place, corner;
+        Index row;  // row of the node
     };
-    Ragged<Corner> corners;  // for each node whose force is needed: all corners of elements at the node
+    std::vector<Corner> corners;  // ascending by place
+    std::size_t force_count = 0;  // number of nodes whose force is needed
 
-    /// Linear fit at an edge, corner or interface of materials, for the elements of one material.
-    struct Extrapolation {
-        Real volume;         // quarter of the volume of the tetrahedra of this material around the node [m^3]
-        Real size;           // largest distance of a donor from the node [m]
-        bool is_determined;  // false if the donors do not suffice for a fit
-    };
-    std::vector<Extrapolation> extrapolations;
-    Ragged<Index> donors;  // by extrapolation: rows of `smooth` whose values the fit uses
-    // Places of the elements of the material around the node of each extrapolation, as in `strained` and `volumetric`.
-    // They are listed only if the fit is not determined.
-    Ragged<Index> strained_around, volumetric_around;
-
-    /// Source of the value of a node: a row of `smooth`, or the rows `extrapolations` if `smooth` is no_index.
-    struct Value {
-        Index smooth;
-        Range extrapolations;
-        Vec3 rest;  // rest position [m]
-    };
-    std::vector<Value> values;  // in the order of `nodes`
+    // For each of `nodes`: its row of `smooth`, or no_index for a node at an edge, corner or interface of materials.
+    std::vector<Index> smooth_of;
+    // The values of these latter nodes are sums over `donors`, which are rows of `smooth`, and over places. There are
+    // places only for materials with too few donors for a fit.
+    Ragged<Share> donors, strained_around, volumetric_around;
 };
 
 RecoveryPlan plan_recovery(const RecoveryMesh& body, std::span<const Index> nodes);

@@ -1,10 +1,15 @@
 #include "systems/dynamics/recovery/surface_gradient.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "systems/dynamics/recovery/surface_search.h"
+#include "systems/material/lane_math.h"
+#include "systems/material/linear.h"
 #include "systems/material/material_law.h"
+#include "systems/material/stable_neo_hookean.h"
 
 namespace skerry {
 
@@ -36,6 +41,99 @@ Eigen::Matrix<Real, 3, 2> plane_of(const Vec3& normal) {
     plane.col(0) = normal.cross(Vec3::Unit(axis)).normalized();
     plane.col(1) = normal.cross(plane.col(0));
     return plane;
+}
+
+constexpr int most_newton_passes = 20;
+/// Newton's method ends when |P N - traction| is at most `newton_accuracy` |P| plus `newton_rounding` times the
+/// modulus.
+constexpr Real newton_accuracy = 1e-12, newton_rounding = 16 * std::numeric_limits<Real>::epsilon();
+
+Real modulus_of(const MaterialConstants& material) {
+    return 2 * material.shear_modulus + std::abs(material.lame_lambda);
+}
+
+/// Slope d(P N)/db for F = base + b across^T, as the sum of the terms of add_stiffness of a law.
+struct SlopeTerms {
+    LaneVec3<Real8> across, normal;
+    LaneMat3<Real8> sum{};
+
+    void add_identity(const Real8& s) {
+        const Real8 x = s * dot(across, normal);
+        sum.c0.x += x;
+        sum.c1.y += x;
+        sum.c2.z += x;
+    }
+    template <class Matrix>
+    void add_dyad(const Real8& s, const Matrix& X) {
+        add(s, times(X, normal), times(X, across));
+    }
+    template <class Matrix>
+    void add_turned_transpose(const Real8& s, const Matrix& R) {
+        add(s, times(R, across), times(R, normal));
+    }
+    /// A change u of b changes cof(F) N by u x F (N x across).
+    void add_cofactor_slope(const Real8& s, const LaneMat3<Real8>& F) {
+        const LaneVec3<Real8> w = s * multiply(F, cross(normal, across));
+        sum.c0.y -= w.z;
+        sum.c0.z += w.y;
+        sum.c1.x += w.z;
+        sum.c1.z -= w.x;
+        sum.c2.x -= w.y;
+        sum.c2.y += w.x;
+    }
+
+private:
+    static LaneVec3<Real8> times(IdentityMatrix, const LaneVec3<Real8>& v) { return v; }
+    static LaneVec3<Real8> times(const LaneMat3<Real8>& a, const LaneVec3<Real8>& v) { return multiply(a, v); }
+    void add(const Real8& s, const LaneVec3<Real8>& left, const LaneVec3<Real8>& right) {
+        sum = sum + LaneMat3<Real8>{(s * right.x) * left, (s * right.y) * left, (s * right.z) * left};
+    }
+};
+
+void set_lane(LaneVec3<Real8>& to, int l, const Vec3& v) {
+    to.x[l] = v.x();
+    to.y[l] = v.y();
+    to.z[l] = v.z();
+}
+
+/// Newton's method for up to eight nodes of one material. Lanes that have converged do not change. Lanes that do not
+/// converge leave `found` empty.
+template <class Law>
+void search_lanes(Law law, std::span<const SurfaceSearch> searches, std::span<std::optional<Mat3>> found) {
+    const MaterialConstants& material = searches.front().material;
+    LaneMat3<Real8> base;
+    LaneVec3<Real8> across, normal, traction, b;
+    for (int l = 0; l < static_cast<int>(element_lanes); ++l) {
+        const SurfaceSearch& of = searches[std::min(static_cast<std::size_t>(l), searches.size() - 1)];
+        const Mat3 own_base = of.stretch * of.around->inverse;
+        set_lane(base.c0, l, own_base.col(0));
+        set_lane(base.c1, l, own_base.col(1));
+        set_lane(base.c2, l, own_base.col(2));
+        set_lane(across, l, of.around->across);
+        set_lane(normal, l, of.around->normal);
+        set_lane(traction, l, of.traction);
+        set_lane(b, l, of.start);
+    }
+    LaneMat3<Real8> F;
+    for (int pass = 0; pass < most_newton_passes; ++pass) {
+        F = base + LaneMat3<Real8>{across.x * b, across.y * b, across.z * b};
+        const LaneMat3<Real8> P = whole(law.stress(material, F), F);
+        const LaneVec3<Real8> excess = multiply(P, normal) - traction;
+        const Real8 limit = newton_accuracy * square_root(inner_product(P, P)) + newton_rounding * modulus_of(material);
+        const auto converged = square_root(dot(excess, excess)) <= limit;
+        if (pass + 1 == most_newton_passes || all(converged)) {
+            const Real8 J = determinant(F);
+            for (std::size_t l = 0; l < searches.size(); ++l)
+                if (converged[l] && J[l] > 0) found[l] = lane_of(F, static_cast<int>(l));
+            return;
+        }
+        SlopeTerms slope{across, normal};
+        law.add_stiffness(material, F, slope);
+        const LaneMat3<Real8> cof = cofactor(slope.sum);
+        const Real8 inverse = (converged ? Real8{} : Real8{} + 1.0) / dot(slope.sum.c0, cof.c0);
+        b = b - LaneVec3<Real8>{inverse * dot(cof.c0, excess), inverse * dot(cof.c1, excess),
+                                inverse * dot(cof.c2, excess)};
+    }
 }
 
 }  // namespace
@@ -98,14 +196,12 @@ Mat3 surface_stretch(std::span<const SurfaceTriangle> triangles, std::span<const
 std::optional<Mat3> surface_gradient(const MaterialConstants& material, const SurfaceAround& around,
                                      const Mat3& stretch, const Vec3& traction, const Vec3& start) {
     const Mat3 base = stretch * around.inverse;
-    constexpr int most_passes = 20;
-    constexpr Real accuracy = 1e-12, rounding = 16 * std::numeric_limits<Real>::epsilon();
-    const Real modulus = 2 * material.shear_modulus + std::abs(material.lame_lambda);
+    const Real modulus = modulus_of(material);
     Vec3 b = start;
-    for (int pass = 0; pass < most_passes; ++pass) {
+    for (int pass = 0; pass < most_newton_passes; ++pass) {
         const Mat3 F = base + b * around.across.transpose(), P = stress(material, F);
         const Vec3 excess = P * around.normal - traction;
-        if (excess.norm() <= accuracy * P.norm() + rounding * modulus)
+        if (excess.norm() <= newton_accuracy * P.norm() + newton_rounding * modulus)
             return F.determinant() > 0 ? std::optional(F) : std::nullopt;
         const Tangent tangent = skerry::tangent(material, F);
         Mat3 slope;
@@ -115,6 +211,27 @@ std::optional<Mat3> surface_gradient(const MaterialConstants& material, const Su
         if (!b.allFinite()) break;
     }
     return std::nullopt;
+}
+
+std::vector<std::optional<Mat3>> surface_gradients(std::span<const SurfaceSearch> searches) {
+    std::vector<std::optional<Mat3>> found(searches.size());
+    for (std::size_t begin = 0, end = 0; begin < searches.size(); begin = end) {
+        const MaterialConstants& material = searches[begin].material;
+        const auto is_same = [&](const MaterialConstants& other) {
+            return other.model == material.model && other.shear_modulus == material.shear_modulus &&
+                   other.lame_lambda == material.lame_lambda;
+        };
+        while (end < searches.size() && end < begin + element_lanes && is_same(searches[end].material)) ++end;
+        const auto nodes = searches.subspan(begin, end - begin);
+        const auto results = std::span(found).subspan(begin, end - begin);
+        if (material.model == MaterialModel::stable_neo_hookean) search_lanes(StableNeoHookean{}, nodes, results);
+        if (material.model == MaterialModel::linear) search_lanes(Linear{}, nodes, results);
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            if (!results[i])
+                results[i] = surface_gradient(nodes[i].material, *nodes[i].around, nodes[i].stretch, nodes[i].traction,
+                                              nodes[i].start);
+    }
+    return found;
 }
 
 }  // namespace skerry
