@@ -54,8 +54,8 @@ void LiveHub::leave(std::uint64_t number) {
     changed_.notify_all();
     thread.join();
     const std::lock_guard lock(mutex_);
+    if (find(number)->pulls) commands_.push_back({.action = LiveAction::release, .client = number});
     std::erase_if(clients_, [&](const Client& client) { return client.number == number; });
-    commands_.push_back({.action = LiveAction::release, .client = number});
     note_busy();
     changed_.notify_all();
 }
@@ -91,6 +91,8 @@ void LiveHub::receive(std::uint64_t number, std::string_view text) {
             commands_.push_back(command);
         else if (problem.empty())
             problem = "command: found " + std::to_string(most_waiting) + " commands that wait, expected fewer";
+        if (problem.empty() && command.action == LiveAction::pull) client->pulls = true;
+        if (problem.empty() && command.action == LiveAction::release) client->pulls = false;
         note_busy();
     }
     if (!problem.empty()) put_text(*client, problem_text(problem));

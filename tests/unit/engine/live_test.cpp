@@ -72,6 +72,15 @@ public:
         }));
         return Json::parse(found);
     }
+    void wait_for_texts(const std::string& begin, std::ptrdiff_t count) {
+        std::unique_lock lock(mutex_);
+        REQUIRE(changed_.wait_for(lock, patience, [&] { return count_begins(begin) >= count; }));
+    }
+    /// Number of messages with this beginning.
+    std::ptrdiff_t count_texts(const std::string& begin) {
+        const std::lock_guard lock(mutex_);
+        return count_begins(begin);
+    }
     void wait_for_end() {
         std::unique_lock lock(mutex_);
         REQUIRE(changed_.wait_for(lock, patience, [&] { return closed_; }));
@@ -89,6 +98,10 @@ public:
     }
 
 private:
+    std::ptrdiff_t count_begins(const std::string& begin) const {
+        return std::ranges::count_if(texts_, [&](const std::string& text) { return text.starts_with(begin); });
+    }
+
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<std::string> texts_;
@@ -294,6 +307,27 @@ TEST_CASE("a browser that looks changes no bit of the run", "[unit][live]") {
         return world.state_hash();
     };
     CHECK(hash_of_run(true) == hash_of_run(false));
+}
+
+TEST_CASE("a browser that leaves ends a call of advance only if it pulls a body", "[unit][live]") {
+    World world = falling_cube();
+    LiveRun run(world, {});
+    std::optional<Visit> visit;
+    visit.emplace(run.hub());
+    const bool pulls = GENERATE(false, true);
+    if (pulls) {
+        row_with(*visit, run, world, [](const Json&) { return true; });
+        visit->send({{"do", "pull"}, {"body", 0}, {"point", {0, 0, 0.1}}, {"to", {0, 0, 0.3}}});
+        run.sync(world);
+        CHECK_FALSE(Springs(world).all().empty());
+    }
+    const auto go_on = [&](const StepReport&) {
+        visit.reset();
+        return run.between_steps(world);
+    };
+    CHECK(world.advance(0.02, go_on).status == (pulls ? StepStatus::stopped : StepStatus::ok));
+    run.sync(world);
+    CHECK(Springs(world).all().empty());
 }
 
 TEST_CASE("a command is refused with the member at fault", "[unit][live]") {
