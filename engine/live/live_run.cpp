@@ -115,6 +115,11 @@ void LiveRun::fail(const std::string& text) {
     state_.playing = false;
     hub_.report_to_all(text);
     hub_.set_state(state_);
+void LiveRun::end_pulls(World& world) {
+    for (auto& [client, pull] : pulls_) pull.end(world);
+    pulls_.clear();
+}
+
 }
 
 void LiveRun::apply_commands(World& world) {

@@ -26,6 +26,8 @@ public:
     Real due(World& world);
     bool between_steps(const World& world);
     void fail(const std::string& text);
+    /// Removes the springs and fields of all pulls from the world.
+    void end_pulls(World& world);
 
 private:
     using Clock = std::chrono::steady_clock;

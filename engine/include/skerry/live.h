@@ -44,7 +44,8 @@ public:
 
     /// Address of the page, for example http://127.0.0.1:40123/#token=...
     std::string address() const;
-    /// Ends all connections and stops the server. After it sync(), fail() and run() do nothing, and due() returns 0.
+    /// Ends all connections and stops the server. After it sync(), due() and run() only end the pulls of browsers,
+    /// due() returns 0, and fail() does nothing.
     void close();
     bool is_open() const;
     bool playing() const;  // false if the view is paused; true until the next sync() for a single step

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import threading
 import time
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from . import _core
 from ._arrays import checked, counted, flag, name_text, real
+from ._errors import SceneError
 from ._scene import Scene
 from ._world import World
 from ._world.probes import Probe, recorded_probes
@@ -93,11 +95,13 @@ class View:
             self.close()
 
     def close(self) -> None:
-        """Ends the server, and run() of another thread. Pages keep their last picture. The end of the `with` block does
-        this."""
+        """Ends the server, the pulls of pages, and run() of another thread. Pages keep their last picture. The end of
+        the `with` block does this. If the world is in use, the end of run() or the next sync() ends the pulls."""
         self._closed = True
         with self._lock:
             self._core.close()
+            with contextlib.suppress(RuntimeError, BufferError, SceneError):
+                self._core.sync(self._world._core)
 
     def _turn(self, function: Callable[[_core.World], float | None]) -> float | None:
         with self._lock:

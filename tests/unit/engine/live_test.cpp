@@ -330,6 +330,19 @@ TEST_CASE("a browser that leaves ends a call of advance only if it pulls a body"
     CHECK(Springs(world).all().empty());
 }
 
+TEST_CASE("the pulls of a view that is closed end", "[unit][live]") {
+    World world = falling_cube();
+    const std::uint64_t start = world.state_hash();
+    LiveRun run(world, {});
+    Visit visit(run.hub());
+    row_with(visit, run, world, [](const Json&) { return true; });
+    visit.send({{"do", "pull"}, {"body", 0}, {"point", {0, 0, 0.1}}, {"to", {0, 0, 0.3}}});
+    run.sync(world);
+    CHECK(world.state_hash() != start);
+    run.end_pulls(world);
+    CHECK(world.state_hash() == start);
+}
+
 TEST_CASE("a command is refused with the member at fault", "[unit][live]") {
     const auto refusal = [](const std::string& text) { return message_of([&] { read_command(text); }); };
     CHECK(refusal("") == "command: found nothing, expected a JSON object such as {\"do\":\"play\"}");
