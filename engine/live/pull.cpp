@@ -87,9 +87,13 @@ void Pull::end(World& world) {
 
 std::optional<PullState> Pull::state(const World& world) const {
     const WorldState& state = WorldAccess::state_of(world);
-    if (springs_.empty() || state.model.spring_map.row(springs_.front()) == no_index) return {};
-    PullState pull{.force = 0, .length = spring_state(state, springs_.front()).length};
-    for (const SpringHandle spring : springs_) pull.force += spring_state(state, spring).force;
+    std::optional<PullState> pull;
+    for (const SpringHandle spring : springs_) {
+        if (state.model.spring_map.row(spring) == no_index) continue;  // the owner of the world has removed it
+        const SpringState now = spring_state(state, spring);
+        if (!pull) pull = {.force = 0, .length = now.length};
+        pull->force += now.force;
+    }
     return pull;
 }
 

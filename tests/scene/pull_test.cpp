@@ -130,6 +130,24 @@ TEST_CASE("a step that is refused during a pull changes nothing, and the pull go
     pull.begin(cube.world, cube.body, {0, 0, 0.01}, {0, 0, 0.2});
     REQUIRE(cube.world.advance(0.01).ok());
     const std::vector<Vec3> before(cube.world.positions(cube.body).begin(), cube.world.positions(cube.body).end());
+TEST_CASE("a pull goes on when the owner of the world removes one of its springs", "[scene]") {
+    Cube cube(BodyDynamics::explicit_elastic);
+    Pull pull;
+    pull.begin(cube.world, cube.body, {0, 0, 0.01}, {0, 0, 0.2});
+    Springs springs(cube.world);
+    const std::vector<SpringHandle> all = springs.all();
+    REQUIRE(all.size() > 2);
+    const std::size_t removed = GENERATE(std::size_t{0}, std::size_t{1});
+    springs.remove(all[removed]);
+    REQUIRE(cube.world.advance(1e-3).ok());
+    Real force = 0;
+    for (const SpringHandle spring : springs.all()) force += springs.state(spring).force;
+    REQUIRE(pull.state(cube.world));
+    CHECK(pull.state(cube.world)->force == Approx(force));
+    pull.end(cube.world);
+    CHECK(springs.all().empty());
+}
+
     const Real force = pull.state(cube.world)->force;
     std::vector<Vec3> load(before.size(), Vec3(0, 0, 1e308));
     cube.world.set_loads(cube.body, load);
