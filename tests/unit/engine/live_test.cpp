@@ -343,6 +343,31 @@ TEST_CASE("the pulls of a view that is closed end", "[unit][live]") {
     CHECK(world.state_hash() == start);
 }
 
+TEST_CASE("the switch of gravity follows the owner of the world and other views", "[unit][live]") {
+    World world = falling_cube();
+    const World start = world.clone();
+    const Vec3 gravity = world.settings().gravity;
+    LiveRun run(world, {}), other(world, {});
+    Visit visit(run.hub()), other_visit(other.hub());
+    for (const auto& [hub, guest] : {std::pair(&run, &visit), std::pair(&other, &other_visit)}) {
+        guest->send({{"do", "gravity"}, {"on", false}});
+        hub->sync(world);
+    }
+    other_visit.send({{"do", "gravity"}, {"on", true}});
+    other.sync(world);
+    CHECK(world.settings().gravity == gravity);
+    visit.send({{"do", "gravity"}, {"on", false}});
+    run.sync(world);
+    CHECK(world.settings().gravity == Vec3::Zero());
+    CHECK_FALSE(run.hub().state().gravity);
+    world.reset(start);
+    run.sync(world);
+    CHECK(run.hub().state().gravity);
+    world.set_gravity(Vec3::Zero());
+    run.sync(world);
+    CHECK_FALSE(run.hub().state().gravity);
+}
+
 TEST_CASE("a command is refused with the member at fault", "[unit][live]") {
     const auto refusal = [](const std::string& text) { return message_of([&] { read_command(text); }); };
     CHECK(refusal("") == "command: found nothing, expected a JSON object such as {\"do\":\"play\"}");
