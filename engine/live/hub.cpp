@@ -221,7 +221,7 @@ void LiveHub::serve(Client& client) {
     LiveEncoder encoder;
     std::shared_ptr<Snapshot> snapshot;
     std::unique_lock lock(mutex_);
-    bool connected = true;
+    bool connected = true, outgrown = false;
     while (connected) {
         changed_.wait(lock, [&] {
             return client.closed || client.run != run_ || !client.texts.empty() || has_frame_for(client);
@@ -255,8 +255,10 @@ void LiveHub::serve(Client& client) {
             connected = (messages.added.empty() || client.link->send_text(messages.added)) &&
                         client.link->send_text(messages.row) && client.link->send_bytes(messages.changes);
             if (connected) sent_.fetch_add(1, std::memory_order_relaxed);
+            outgrown = encoder.is_outgrown(*snapshot);
         }
         lock.lock();
+        if (std::exchange(outgrown, false)) client.run = 0;  // starts a new stream
         snapshot.reset();  // under the lock, so that free_snapshot() sees that all was read
     }
     client.closed = true;

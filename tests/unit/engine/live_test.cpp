@@ -279,6 +279,36 @@ TEST_CASE("the memory of a live stream does not grow with its length", "[unit][l
     CHECK(used.size() <= 3);
 }
 
+TEST_CASE("a live stream starts anew when most of its objects are gone", "[unit][live]") {
+    LiveHub hub;
+    hub.begin_run({}, {});
+    Visit visit(hub);
+    const auto streams = [&] { return visit.browser.count_texts(R"({"type":"begin")"); };
+    const auto show = [&](std::uint32_t generation) {
+        hub.mark_changed();
+        const std::shared_ptr<Snapshot> snapshot = hub.free_snapshot();
+        snapshot->frame = {};
+        for (std::uint32_t slot = 0; slot < 300; ++slot)
+            snapshot->frame.lines.push_back({.kind = LineKind::spring,
+                                             .slot = slot,
+                                             .generation = generation,
+                                             .name = {},
+                                             .points = {Vec3::Zero()},
+                                             .force = {0}});
+        hub.publish(snapshot);
+    };
+    // The fifth frame brings the stream to 1500 lines, of which 1200 are gone.
+    for (std::uint32_t frame = 1; frame < 10; ++frame) {
+        show(frame);
+        visit.browser.wait_for_frames(frame);
+        visit.acknowledge(frame);
+        if (frame == 5)
+            visit.browser.wait_for_texts(R"({"type":"begin")", 2);
+        else
+            CHECK(streams() == (frame < 5 ? 1 : 2));
+    }
+}
+
 TEST_CASE("a browser that looks changes no bit of the run", "[unit][live]") {
     const auto hash_of_run = [](bool seen) {
         World world = falling_cube(2);
