@@ -54,8 +54,8 @@ void LiveHub::leave(std::uint64_t number) {
     changed_.notify_all();
     thread.join();
     const std::lock_guard lock(mutex_);
+    if (find(number)->pulls) commands_.push_back({.action = LiveAction::release, .client = number});
     std::erase_if(clients_, [&](const Client& client) { return client.number == number; });
-    commands_.push_back({.action = LiveAction::release, .client = number});
     note_busy();
     changed_.notify_all();
 }
@@ -91,6 +91,8 @@ void LiveHub::receive(std::uint64_t number, std::string_view text) {
             commands_.push_back(command);
         else if (problem.empty())
             problem = "command: found " + std::to_string(most_waiting) + " commands that wait, expected fewer";
+        if (problem.empty() && command.action == LiveAction::pull) client->pulls = true;
+        if (problem.empty() && command.action == LiveAction::release) client->pulls = false;
         note_busy();
     }
     if (!problem.empty()) put_text(*client, problem_text(problem));
@@ -219,7 +221,7 @@ void LiveHub::serve(Client& client) {
     LiveEncoder encoder;
     std::shared_ptr<Snapshot> snapshot;
     std::unique_lock lock(mutex_);
-    bool connected = true;
+    bool connected = true, outgrown = false;
     while (connected) {
         changed_.wait(lock, [&] {
             return client.closed || client.run != run_ || !client.texts.empty() || has_frame_for(client);
@@ -253,8 +255,10 @@ void LiveHub::serve(Client& client) {
             connected = (messages.added.empty() || client.link->send_text(messages.added)) &&
                         client.link->send_text(messages.row) && client.link->send_bytes(messages.changes);
             if (connected) sent_.fetch_add(1, std::memory_order_relaxed);
+            outgrown = encoder.is_outgrown(*snapshot);
         }
         lock.lock();
+        if (std::exchange(outgrown, false)) client.run = 0;  // starts a new stream
         snapshot.reset();  // under the lock, so that free_snapshot() sees that all was read
     }
     client.closed = true;

@@ -48,7 +48,8 @@ public:
     /// Adds a browser and returns its number. If there are too many, sends it a problem and returns 0. `link` must live
     /// until leave().
     std::uint64_t join(LiveLink& link);
-    /// Removes a browser, and ends its pull. Waits for its thread.
+    /// Removes a browser, and ends its pull. A browser that pulls nothing leaves no command behind, because a command
+    /// ends a call of advance and so changes the length of the steps. Waits for its thread.
     void leave(std::uint64_t client);
     /// Takes a message of a browser. A message that is no command is answered with a problem.
     void receive(std::uint64_t client, std::string_view text);
@@ -96,6 +97,7 @@ private:
         LiveLink* link = nullptr;
         bool closed = false;               // its thread ends
         bool stresses = false;             // it shows stress or strain
+        bool pulls = false;                // its last pull has not been released
         std::deque<std::string> texts;     // messages that wait for its thread
         std::uint64_t run = 0;             // run that it shows
         std::uint64_t snapshot = 0;        // number of the last snapshot that it got

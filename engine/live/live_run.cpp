@@ -64,9 +64,7 @@ LiveRun::LiveRun(World& world, const LiveSettings& settings)
       plots_(plots_of(world, settings.probes)),
       probes_(tracked_probes(world)),
       start_(world.clone({.threads = 1})),
-      state_{.playing = !settings.paused, .rate = settings.rate, .gravity = true},
-      first_state_(state_),
-      gravity_(world.settings().gravity) {
+      state_{.playing = !settings.paused, .rate = settings.rate, .gravity = true} {
     require_rate(settings.rate);
     for (const Slider& slider : settings.sliders) slider_value(world, slider);
     begin_run(world);
@@ -120,17 +118,22 @@ void LiveRun::fail(const std::string& text) {
     hub_.set_state(state_);
 }
 
+void LiveRun::end_pulls(World& world) {
+    for (auto& [client, pull] : pulls_) pull.end(world);
+    pulls_.clear();
+}
+
 void LiveRun::apply_commands(World& world) {
-    if (!hub_.has_commands()) return;
-    for (const LiveCommand& command : hub_.take_commands()) {
+    note_gravity(world);
+    for (const LiveCommand& command : hub_.has_commands() ? hub_.take_commands() : std::vector<LiveCommand>()) {
         try {
             apply(command, world);
         } catch (const SceneError& error) {
             hub_.report(command.client, error.what());
         }
+        changed_ = true;
     }
     hub_.set_state(state_);
-    changed_ = true;
 }
 
 void LiveRun::apply(const LiveCommand& command, World& world) {
@@ -186,10 +189,16 @@ void LiveRun::apply(const LiveCommand& command, World& world) {
 }
 
 void LiveRun::set_gravity(World& world, bool on) {
-    if (on == state_.gravity) return;
-    if (!on) gravity_ = world.settings().gravity;
-    world.set_gravity(on ? gravity_ : Vec3::Zero());
-    state_.gravity = on;
+    if (on != state_.gravity) world.set_gravity(on ? gravity_ : Vec3::Zero());
+    note_gravity(world);
+}
+
+/// Derives the switch from the world, whose gravity its owner or another view may have changed. The switch of a world
+/// that never had gravity is on.
+void LiveRun::note_gravity(const World& world) {
+    const Vec3 gravity = world.settings().gravity;
+    if (!gravity.isZero(0)) gravity_ = gravity;
+    state_.gravity = !gravity.isZero(0) || gravity_.isZero(0);
 }
 
 void LiveRun::reset(World& world) {
@@ -197,8 +206,6 @@ void LiveRun::reset(World& world) {
     world.reset(start_);
     pulls_.clear();
     probes_ = tracked_probes(world);
-    gravity_ = world.settings().gravity;
-    state_.gravity = first_state_.gravity;
     state_.playing = state_.playing || failed_;
     failed_ = false;
     step_asked_ = false;
@@ -209,6 +216,7 @@ void LiveRun::reset(World& world) {
 /// Starts new streams for all browsers.
 void LiveRun::begin_run(const World& world) {
     taker_.clear();
+    note_gravity(world);
     LiveRunInfo info{.title = settings_.title,
                      .gravity = gravity_,
                      .sliders = settings_.sliders,

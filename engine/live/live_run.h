@@ -27,6 +27,8 @@ public:
     bool between_steps(const World& world);
     void fail(const std::string& text);
     void refuse_resets(const std::string& reason) { reset_refusal_ = reason; }
+    /// Removes the springs and fields of all pulls from the world.
+    void end_pulls(World& world);
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -34,6 +36,7 @@ private:
     void apply_commands(World& world);
     void apply(const LiveCommand& command, World& world);
     void set_gravity(World& world, bool on);
+    void note_gravity(const World& world);
     void reset(World& world);
     void begin_run(const World& world);
     void show(const World& world, bool between_calls);
@@ -53,8 +56,8 @@ private:
     std::vector<LivePlot> plots_;
     std::vector<PlottedProbe> probes_;
     World start_;  // state for a reset
-    LiveState state_, first_state_;
-    Vec3 gravity_;                          // gravity while it is on [m/s^2]
+    LiveState state_;
+    Vec3 gravity_ = Vec3::Zero();           // last gravity of the world that was not zero [m/s^2]
     std::map<std::uint64_t, Pull> pulls_;   // by number of the browser
     std::atomic<bool> step_asked_ = false;  // until due() or the next sync()
     bool failed_ = false;                   // paused by fail()

@@ -61,11 +61,16 @@ std::string LiveView::address() const {
 }
 
 void LiveView::sync(World& world) {
-    if (is_open()) impl_->run.sync(world);
+    if (is_open())
+        impl_->run.sync(world);
+    else
+        impl_->run.end_pulls(world);
 }
 
 Real LiveView::due(World& world) {
-    return is_open() ? impl_->run.due(world) : 0;
+    if (is_open()) return impl_->run.due(world);
+    impl_->run.end_pulls(world);
+    return 0;
 }
 
 bool LiveView::between_steps(const World& world) {
@@ -97,6 +102,7 @@ void LiveView::run(World& world, const std::function<bool()>& go_on,
         fail(problem);
         if (failed) failed(problem);
     }
+    if (!is_open()) impl_->run.end_pulls(world);
 }
 
 void LiveView::close() {

@@ -77,6 +77,14 @@ LiveEncoder::Messages LiveEncoder::pack(const Snapshot& snapshot, std::uint64_t 
     return messages;
 }
 
+bool LiveEncoder::is_outgrown(const Snapshot& snapshot) const {
+    constexpr std::size_t least = 1000;
+    const std::size_t stored = stream_.bodies().size() + stream_.colliders().size() + stream_.lines().size();
+    const Frame& frame = snapshot.frame;
+    const std::size_t present = frame.bodies.size() + frame.colliders.size() + frame.lines.size();
+    return stored > present + std::max(present, least);
+}
+
 /// Returns a value that 99 % of the positive values in `values_` do not exceed, so that few extreme values among many
 /// do not stretch a legend. Of at most 100 values it is the largest. Returns 0 if there are none. Changes the order of
 /// the values.

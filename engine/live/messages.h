@@ -43,7 +43,8 @@ std::string state_text(const LiveState& state);
 /// Reports a refused command, or a failed step.
 std::string problem_text(const std::string& problem);
 
-/// Encodes the snapshots for one browser. The memory does not grow with the number of frames.
+/// Encodes the snapshots for one browser. The memory does not grow with the number of frames. It stores every object
+/// that was in any frame, until the stream starts anew.
 class LiveEncoder {
 public:
     /// Messages of one frame. They are valid until the next call.
@@ -54,6 +55,9 @@ public:
     };
     /// `frame`: number of the frame for this browser. `client`: number of the browser.
     Messages pack(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client);
+    /// True if most of the objects in the stream, and more than 1000 of them, are not in this snapshot any more. A new
+    /// stream then saves memory here and on the page.
+    bool is_outgrown(const Snapshot& snapshot) const;
     /// Bodies by number in the stream.
     std::span<const BodyHandle> bodies() const { return stream_.body_handles(); }
 

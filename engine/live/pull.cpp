@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "engine/world/control/control.h"
+#include "engine/world/validate.h"
 
 namespace skerry {
 
@@ -39,6 +40,11 @@ std::vector<Vec3> held_points(const World& world, BodyHandle body, const Vec3& p
     return held;
 }
 
+/// Refuses points whose distance from the body could overflow, or is not a number.
+void require_near(const char* field, const Vec3& point) {
+    if (!(point.array().abs() <= 1e9).all()) refuse("pull", field, shown(point), "coordinates between -1e9 and 1e9 m");
+}
+
 }  // namespace
 
 void Pull::begin(World& world, BodyHandle body, const Vec3& point, const Vec3& target) {
@@ -46,6 +52,8 @@ void Pull::begin(World& world, BodyHandle body, const Vec3& point, const Vec3& t
     constexpr Real most_gravities = 50;  // greatest force, in weights of the body
     constexpr Real gravity = 9.81;       // of these weights [m/s^2]
     const Real mass = world.mass(body);
+    require_near("point", point);
+    require_near("to", target);
     QueryFilter only_body{.colliders = false, .except_bodies = world.bodies()};
     std::erase(only_body.except_bodies, body);
     const std::optional<SurfaceHit> held = world.nearest_point(point, infinity, only_body);
@@ -72,6 +80,7 @@ void Pull::begin(World& world, BodyHandle body, const Vec3& point, const Vec3& t
 }
 
 void Pull::move(World& world, const Vec3& target) {
+    require_near("to", target);
     Springs springs(world);
     for (std::size_t s = 0; s < springs_.size(); ++s)
         if (springs.alive(springs_[s])) springs.set_second(springs_[s], {.point = target + offset_[s]});
@@ -87,9 +96,13 @@ void Pull::end(World& world) {
 
 std::optional<PullState> Pull::state(const World& world) const {
     const WorldState& state = WorldAccess::state_of(world);
-    if (springs_.empty() || state.model.spring_map.row(springs_.front()) == no_index) return {};
-    PullState pull{.force = 0, .length = spring_state(state, springs_.front()).length};
-    for (const SpringHandle spring : springs_) pull.force += spring_state(state, spring).force;
+    std::optional<PullState> pull;
+    for (const SpringHandle spring : springs_) {
+        if (state.model.spring_map.row(spring) == no_index) continue;  // the owner of the world has removed it
+        const SpringState now = spring_state(state, spring);
+        if (!pull) pull = {.force = 0, .length = now.length};
+        pull->force += now.force;
+    }
     return pull;
 }
 

@@ -27,10 +27,10 @@ struct PullState {
 class Pull {
 public:
     /// Starts to drag the nearest surface point of a body to `point`; a previous pull ends. Wakes the body. Throws
-    /// SceneError, and changes nothing, for a removed body, for points that are not finite, and for an implicit body in
+    /// SceneError, and changes nothing, for a removed body, for coordinates beyond 1e9 m, and for an implicit body in
     /// a world with theta < 1.
     void begin(World& world, BodyHandle body, const Vec3& point, const Vec3& target);
-    /// Moves the target. Does nothing if no body is pulled. Throws SceneError for a target that is not finite.
+    /// Moves the target. Does nothing if no body is pulled. Throws SceneError for coordinates beyond 1e9 m.
     void move(World& world, const Vec3& target);
     /// Removes the springs and the field. Does nothing if no body is pulled.
     void end(World& world);

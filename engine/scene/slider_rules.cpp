@@ -29,9 +29,11 @@ void check_slider(const Place& place, const SliderEntry& slider) {
         place.key("pin").refuse("a key of a slider that moves no pin", "a slider with \"body\"");
     if (!(slider.low < slider.high))
         place.key("high").refuse(Json(slider.high).dump(), "more than \"low\", " + Json(slider.low).dump());
-    if (slider.about && std::max(-slider.low, slider.high) > std::numbers::pi_v<Real>)
+    // The value of a pose is read from its rotation, which is the same at both ends of half a revolution.
+    constexpr Real most_turn = std::numbers::pi_v<Real> - 1e-6;
+    if (slider.about && std::max(-slider.low, slider.high) > most_turn)
         place.refuse("angles from " + Json(slider.low).dump() + " to " + Json(slider.high).dump() + " rad",
-                     "at most half a revolution in each direction");
+                     "less than half a revolution in each direction, at most 3.14159 rad");
 }
 
 /// A collider or a pin that a slider moves. `motion`: motion that the scene gives the object.

@@ -342,6 +342,17 @@ def test_the_browser_is_opened_without_the_token_in_its_arguments(monkeypatch: p
     assert not file.parent.exists()
 
 
+def test_closing_a_view_ends_its_pulls() -> None:
+    world = ball_world()[0]
+    before = world.state_hash
+    with sk.view(world, open=False) as view, connect(view) as client:
+        client.wait(lambda: client.frames)
+        client.send("pull", body=0, point=[0, 0, 0], to=[0, 0, 9])
+        client.wait(lambda: len(world.springs) > 0)
+        view.close()
+        assert len(world.springs) == 0 and world.state_hash == before
+
+
 MALFORMED = [
     "",
     "{",

@@ -102,6 +102,12 @@ TEST_CASE("the target of a pull moves, and two pulls hold a body between their t
     cube.advance(2);
     CHECK(cube.center().isApprox(Vec3(0.1, 0, 0), 1e-3));
     CHECK_THAT(message_of([&] { pull.move(cube.world, Vec3::Constant(std::nan(""))); }), Contains("nan"));
+    CHECK_THAT(message_of([&] {
+                   pull.move(cube.world, {0, 1e155, 0});
+               }),
+               Contains("pull: to: found (0, 1e+155, 0), expected coordinates between"));
+    CHECK_THAT(message_of([&] { pull.begin(cube.world, cube.body, Vec3::Zero(), {0, 0, 1e300}); }), Contains("to"));
+    CHECK_THAT(message_of([&] { pull.begin(cube.world, cube.body, {1e300, 0, 0}, Vec3::Zero()); }), Contains("point"));
     CHECK(pull.state(cube.world)->length == Approx(0.19).epsilon(1e-3));
     pull.begin(cube.world, cube.body, {0.11, 0, 0}, {0.2, 0, 0});  // replaces the first pull
     CHECK(Springs(cube.world).all().size() == 2);
@@ -122,6 +128,24 @@ TEST_CASE("a reset to a clone without the pull ends the pull", "[scene]") {
     CHECK(!pull.state(cube.world));
     pull.end(cube.world);
     CHECK(cube.world.state_hash() == saved.state_hash());
+}
+
+TEST_CASE("a pull goes on when the owner of the world removes one of its springs", "[scene]") {
+    Cube cube(BodyDynamics::explicit_elastic);
+    Pull pull;
+    pull.begin(cube.world, cube.body, {0, 0, 0.01}, {0, 0, 0.2});
+    Springs springs(cube.world);
+    const std::vector<SpringHandle> all = springs.all();
+    REQUIRE(all.size() > 2);
+    const std::size_t removed = GENERATE(std::size_t{0}, std::size_t{1});
+    springs.remove(all[removed]);
+    REQUIRE(cube.world.advance(1e-3).ok());
+    Real force = 0;
+    for (const SpringHandle spring : springs.all()) force += springs.state(spring).force;
+    REQUIRE(pull.state(cube.world));
+    CHECK(pull.state(cube.world)->force == Approx(force));
+    pull.end(cube.world);
+    CHECK(springs.all().empty());
 }
 
 TEST_CASE("a step that is refused during a pull changes nothing, and the pull goes on", "[scene]") {

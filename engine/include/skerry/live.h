@@ -45,7 +45,8 @@ public:
 
     /// Address of the page, for example http://127.0.0.1:40123/#token=...
     std::string address() const;
-    /// Ends all connections and stops the server. After it sync(), fail() and run() do nothing, and due() returns 0.
+    /// Ends all connections and stops the server. After it sync(), due() and run() only end the pulls of browsers,
+    /// due() returns 0, and fail() does nothing.
     void close();
     /// False after close().
     bool is_open() const;

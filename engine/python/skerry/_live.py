@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pathlib
 import shutil
@@ -108,11 +109,13 @@ class View:
                 yield dt
 
     def close(self) -> None:
-        """Ends the server, and run() of another thread. Pages keep their last picture. The end of the `with` block does
-        this."""
+        """Ends the server, the pulls of pages, and run() of another thread. Pages keep their last picture. The end of
+        the `with` block does this. If the world is in use, the end of run() or the next sync() ends the pulls."""
         self._closed = True
         with self._lock:
             self._core.close()
+            with contextlib.suppress(RuntimeError, BufferError, SceneError):
+                self._core.sync(self._world._core)
         if self._forget_page:
             self._forget_page()
 

@@ -72,6 +72,15 @@ public:
         }));
         return Json::parse(found);
     }
+    void wait_for_texts(const std::string& begin, std::ptrdiff_t count) {
+        std::unique_lock lock(mutex_);
+        REQUIRE(changed_.wait_for(lock, patience, [&] { return count_begins(begin) >= count; }));
+    }
+    /// Number of messages with this beginning.
+    std::ptrdiff_t count_texts(const std::string& begin) {
+        const std::lock_guard lock(mutex_);
+        return count_begins(begin);
+    }
     void wait_for_end() {
         std::unique_lock lock(mutex_);
         REQUIRE(changed_.wait_for(lock, patience, [&] { return closed_; }));
@@ -89,6 +98,10 @@ public:
     }
 
 private:
+    std::ptrdiff_t count_begins(const std::string& begin) const {
+        return std::ranges::count_if(texts_, [&](const std::string& text) { return text.starts_with(begin); });
+    }
+
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<std::string> texts_;
@@ -273,6 +286,36 @@ TEST_CASE("the memory of a live stream does not grow with its length", "[unit][l
     CHECK(used.size() <= 3);
 }
 
+TEST_CASE("a live stream starts anew when most of its objects are gone", "[unit][live]") {
+    LiveHub hub;
+    hub.begin_run({}, {});
+    Visit visit(hub);
+    const auto streams = [&] { return visit.browser.count_texts(R"({"type":"begin")"); };
+    const auto show = [&](std::uint32_t generation) {
+        hub.mark_changed();
+        const std::shared_ptr<Snapshot> snapshot = hub.free_snapshot();
+        snapshot->frame = {};
+        for (std::uint32_t slot = 0; slot < 300; ++slot)
+            snapshot->frame.lines.push_back({.kind = LineKind::spring,
+                                             .slot = slot,
+                                             .generation = generation,
+                                             .name = {},
+                                             .points = {Vec3::Zero()},
+                                             .force = {0}});
+        hub.publish(snapshot);
+    };
+    // The fifth frame brings the stream to 1500 lines, of which 1200 are gone.
+    for (std::uint32_t frame = 1; frame < 10; ++frame) {
+        show(frame);
+        visit.browser.wait_for_frames(frame);
+        visit.acknowledge(frame);
+        if (frame == 5)
+            visit.browser.wait_for_texts(R"({"type":"begin")", 2);
+        else
+            CHECK(streams() == (frame < 5 ? 1 : 2));
+    }
+}
+
 TEST_CASE("a browser that looks changes no bit of the run", "[unit][live]") {
     const auto hash_of_run = [](bool seen) {
         World world = falling_cube(2);
@@ -301,6 +344,65 @@ TEST_CASE("a browser that looks changes no bit of the run", "[unit][live]") {
         return world.state_hash();
     };
     CHECK(hash_of_run(true) == hash_of_run(false));
+}
+
+TEST_CASE("a browser that leaves ends a call of advance only if it pulls a body", "[unit][live]") {
+    World world = falling_cube();
+    LiveRun run(world, {});
+    std::optional<Visit> visit;
+    visit.emplace(run.hub());
+    const bool pulls = GENERATE(false, true);
+    if (pulls) {
+        row_with(*visit, run, world, [](const Json&) { return true; });
+        visit->send({{"do", "pull"}, {"body", 0}, {"point", {0, 0, 0.1}}, {"to", {0, 0, 0.3}}});
+        run.sync(world);
+        CHECK_FALSE(Springs(world).all().empty());
+    }
+    const auto go_on = [&](const StepReport&) {
+        visit.reset();
+        return run.between_steps(world);
+    };
+    CHECK(world.advance(0.02, go_on).status == (pulls ? StepStatus::stopped : StepStatus::ok));
+    run.sync(world);
+    CHECK(Springs(world).all().empty());
+}
+
+TEST_CASE("the pulls of a view that is closed end", "[unit][live]") {
+    World world = falling_cube();
+    const std::uint64_t start = world.state_hash();
+    LiveRun run(world, {});
+    Visit visit(run.hub());
+    row_with(visit, run, world, [](const Json&) { return true; });
+    visit.send({{"do", "pull"}, {"body", 0}, {"point", {0, 0, 0.1}}, {"to", {0, 0, 0.3}}});
+    run.sync(world);
+    CHECK(world.state_hash() != start);
+    run.end_pulls(world);
+    CHECK(world.state_hash() == start);
+}
+
+TEST_CASE("the switch of gravity follows the owner of the world and other views", "[unit][live]") {
+    World world = falling_cube();
+    const World start = world.clone();
+    const Vec3 gravity = world.settings().gravity;
+    LiveRun run(world, {}), other(world, {});
+    Visit visit(run.hub()), other_visit(other.hub());
+    for (const auto& [hub, guest] : {std::pair(&run, &visit), std::pair(&other, &other_visit)}) {
+        guest->send({{"do", "gravity"}, {"on", false}});
+        hub->sync(world);
+    }
+    other_visit.send({{"do", "gravity"}, {"on", true}});
+    other.sync(world);
+    CHECK(world.settings().gravity == gravity);
+    visit.send({{"do", "gravity"}, {"on", false}});
+    run.sync(world);
+    CHECK(world.settings().gravity == Vec3::Zero());
+    CHECK_FALSE(run.hub().state().gravity);
+    world.reset(start);
+    run.sync(world);
+    CHECK(run.hub().state().gravity);
+    world.set_gravity(Vec3::Zero());
+    run.sync(world);
+    CHECK_FALSE(run.hub().state().gravity);
 }
 
 TEST_CASE("a command is refused with the member at fault", "[unit][live]") {

@@ -195,6 +195,11 @@ TEST_CASE("wrong sliders are refused with the file, the slider, the key and the 
                Contains("along") && Contains("length 0"));
     CHECK_THAT(refusal_of(R"({"name": "a", "collider": "ball", "about": [0, 0, 1], "low": 0, "high": 4})"),
                Contains("half a revolution"));
+    CHECK_THAT(refusal_of(R"({"name": "a", "collider": "ball", "about": [0, 0, 1], "low": -3.141592653589793,
+                              "high": 3.14159})"),
+               Contains("half a revolution"));
+    CHECK(yard_with(R"({"name": "a", "collider": "ball", "about": [0, 0, 1], "low": -3.14159, "high": 3.14159})")
+              .sliders.size() == 1);
     CHECK_THAT(refusal_of(R"({"name": "a", "cable": "tendon", "along": [0, 0, 1], "low": 0, "high": 4})"),
                Contains("along"));
     CHECK_THAT(refusal_of(R"({"name": "a", "cable": "tendon", "pin": 1, "low": 0, "high": 4})"), Contains("pin"));
