@@ -240,6 +240,14 @@ LAYOUT = """
       check(!covers({ left: x - 5, right: x + 5, top: y - 12, bottom: y }, cards[0]), name + " is under a card");
     check(getComputedStyle(document.querySelector("header")).backgroundColor !== "rgba(0, 0, 0, 0)",
       "the title has a ground");
+    const tall = document.createElement("div");
+    tall.style = "position: fixed; width: 100px; height: 1000px";
+    tall.innerHTML = ["top: 0; bottom: auto; height: 100px", "bottom: 0; top: auto; height: 300px"].map((style, i) =>
+      "<div id='" + ["top", "legends"][i] + "' style='" + style + "; position: absolute'></div>").join("");
+    document.body.append(tall);
+    const { share, middle } = free_part(tall);
+    check(Math.abs(share - 0.6) < 1e-9 && Math.abs(middle - 0.4) < 1e-9, "a free part of " + share + " at " + middle);
+    tall.remove();
     const stages = document.createElement("div"), stage = (name, seconds) => ({ name, seconds, runs: 1, skipped: 0 });
     show_stages(stages,
       { steps: 1, stages: [stage("a", 0.6), stage("b", 0.397), stage("c", 0.001), stage("d", 0.002)] });

@@ -57,6 +57,7 @@ function make_view(host, up, box, is_coarse) {
   const pixel_ratio = () => Math.min(window.devicePixelRatio || 1, 2);
   const pace = make_pace(is_coarse, host.clientWidth * host.clientHeight * pixel_ratio() ** 2);
   let share = 1;  // of the pixels of a row that are drawn
+  let free = { share: 1, middle: 0.5 };  // part between the cards: height and middle, as shares of the view
   let dirty = true, shown_place = 0, pick = null, on_change = () => {};
 
   function outward(turned, lifted) {
@@ -76,7 +77,7 @@ function make_view(host, up, box, is_coarse) {
     return { center, corners, radius: Math.max(shown.min.distanceTo(shown.max) / 2, 1e-6) };
   }
   function fit_distance({ corners, radius }) {
-    const tall = Math.tan(THREE.Math.degToRad(camera.fov / 2)), wide = tall * camera.aspect;
+    const whole = Math.tan(THREE.Math.degToRad(camera.fov / 2)), tall = whole * free.share, wide = whole * camera.aspect;
     return 1.12 * corners.reduce((most, [x, y, z]) => Math.max(most, Math.max(x / wide, y / tall) + z), radius);
   }
   // Center and distance of the course, between frames their means.
@@ -173,11 +174,14 @@ function make_view(host, up, box, is_coarse) {
   // A new size clears the canvas, so it is drawn at once: a blank picture would flash until the next turn of the loop.
   function resize() {
     camera.aspect = size_up();
+    free = free_part(host);
+    camera.setViewOffset(1000 * camera.aspect, 1000, 0, 1000 * (0.5 - free.middle), 1000 * camera.aspect, 1000);
     place_camera();
     draw();
     on_change(orbit.follow);
   }
-  new ResizeObserver(resize).observe(host);
+  const observer = new ResizeObserver(resize);
+  for (const element of [host, ...host.querySelectorAll("#top, #legends")]) observer.observe(element);
   resize();
 
   return {
@@ -214,4 +218,14 @@ function make_view(host, up, box, is_coarse) {
     },
     touch: () => { dirty = true; },
   };
+}
+
+// The part of the view between the cards at its top and bottom. At least 60 % of the height counts as free.
+function free_part(host) {
+  const frame = host.getBoundingClientRect(), height = Math.max(frame.height, 1);
+  const [top, bottom] = ["#top", "#legends"].map((name) => host.querySelector(name).getBoundingClientRect());
+  const above = top.height > 0 ? (top.bottom - frame.top) / height : 0;
+  const below = bottom.height > 0 ? (frame.bottom - bottom.top) / height : 0;
+  const scale = Math.min(1, 0.4 / Math.max(above + below, 1e-6));
+  return { share: 1 - scale * (above + below), middle: (1 + scale * (above - below)) / 2 };
 }
