@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "systems/contact/prepare_ties.h"
+
 namespace skerry {
 
 namespace {
@@ -33,12 +35,9 @@ Vec3 impulse_of(const CableBlockTable& blocks, const CableBlock& tie) {
 /// Divides the impulse of tie `t` among its nodes by their masses. Returns true if the tie breaks.
 bool store_mean(const Vec3& impulse, const TiedMeans& means, std::size_t t, Real end, TieTable& ties) {
     const Index first = means.body_nodes[static_cast<std::size_t>(ties.first[t])].begin;
-    const auto mass_of = [&](Index k) {
-        return means.mass[static_cast<std::size_t>(first + ties.node[static_cast<std::size_t>(k)])];
-    };
-    Real mass = 0;
-    for (Index k = ties.nodes[t].begin; k < ties.nodes[t].end; ++k) mass += mass_of(k);
-    for (Index k = ties.nodes[t].begin; k < ties.nodes[t].end; ++k) ties.impulse[k] = mass_of(k) / mass * impulse;
+    Index k = ties.nodes[t].begin;
+    for_each_share(rows_of(ties.node.span(), ties.nodes[t]), first, means.mass,
+                   [&](Index, Real share) { ties.impulse[k++] = share * impulse; });
     const bool breaks = impulse.norm() > ties.break_force[t] * ties.step[t];
     if (breaks) std::ranges::fill(rows_of(ties.broken, ties.nodes[t]), end);
     return breaks;

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "components/append_cable.h"
 #include "components/write_contact.h"
 #include "systems/geometry/rotation.h"
 
@@ -201,21 +202,16 @@ void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real
     const TieRow row(ties, step, t, static_cast<std::size_t>(tie.nodes[t].begin), mean_of_points(ties, t), 0);
     const auto begin = static_cast<Index>(blocks.stencil.size());
     bool moves = false;
-    const auto append_point = [&](const Stencil& stencil, const Vec3& velocity) {
+    const auto append = [&](const Stencil& stencil, const Vec3& velocity) {
         for (std::size_t a = 0; a < 4; ++a)
             moves |= stencil.weight[a] != 0 && ties.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0;
-        blocks.stencil.push_back(stencil);
-        blocks.velocity.push_back(velocity);
-        blocks.direction.push_back(Vec3::Zero());
-        blocks.length.push_back(0);
-        blocks.most_ratio.push_back(1);
-        blocks.impulse.push_back(0);
+        append_point(stencil, velocity, blocks);
     };
     Stencil four{};
     std::size_t count = 0;
     const auto end_point = [&] {
         for (std::size_t a = count; a < 4; ++a) four.node[a] = row.stencil().node[0];
-        append_point(std::exchange(four, {}), Vec3::Zero());
+        append(std::exchange(four, {}), Vec3::Zero());
         count = 0;
     };
     ties.for_each_share(t, [&](Index node, Real share) {
@@ -225,33 +221,24 @@ void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real
     });
     // The components of the impulse need three rows.
     while (count > 0 || static_cast<Index>(blocks.stencil.size()) < begin + 2) end_point();
-    append_point(row.stencil(), -row.demanded());
-    const Range points{begin, static_cast<Index>(blocks.stencil.size())};
+    append(row.stencil(), -row.demanded());
     if (!moves) {
-        for (auto* const column : {&blocks.velocity, &blocks.direction})
-            column->resize(static_cast<std::size_t>(begin));
-        for (auto* const column : {&blocks.length, &blocks.most_ratio, &blocks.impulse})
-            column->resize(static_cast<std::size_t>(begin));
-        blocks.stencil.resize(static_cast<std::size_t>(begin));
+        truncate_points(begin, blocks);
         return;
     }
     Vec3 impulse = Vec3::Zero();
     for (const Vec3& of_node : rows_of(tie.impulse.span(), tie.nodes[t])) impulse += scale * of_node;
     for (Index k = 0; k < 3; ++k) blocks.impulse[begin + k] = impulse[k];
-    CableBlock block{.cable = static_cast<Index>(t),
-                     .points = points,
-                     .solved = true,
-                     .by_length = false,
-                     .wanted = 0,
-                     .released = 0,
-                     .mobility = blocks.mobilities,
-                     .is_tie = true,
-                     .acts_at = row.point()};
-    blocks.mobilities += block.impulses() * block.impulses();
-    blocks.block.push_back(block);
-    blocks.work.push_back(0);
-    blocks.dissipated.push_back(0);
-    blocks.sum_impulse.push_back(Vec3::Zero());
+    append_block({.cable = static_cast<Index>(t),
+                  .points = {begin, static_cast<Index>(blocks.stencil.size())},
+                  .solved = true,
+                  .by_length = false,
+                  .wanted = 0,
+                  .released = 0,
+                  .mobility = blocks.mobilities,
+                  .is_tie = true,
+                  .acts_at = row.point()},
+                 blocks);
 }
 
 }  // namespace

@@ -26,6 +26,14 @@ struct TiePlace {
     Vec3 weight = Vec3::Zero();
 };
 
+/// Calls visit(node, share) for each of some nodes of a body. `nodes`: numbered as in the mesh of the body. `first`:
+/// row of NodeTable of its first node. `node`: row of NodeTable. `share`: part of the node of the mass of all `nodes`.
+void for_each_share(std::span<const Index> nodes, Index first, std::span<const Real> mass, auto&& visit) {
+    Real sum = 0;
+    for (const Index node : nodes) sum += mass[static_cast<std::size_t>(first + node)];
+    for (const Index node : nodes) visit(first + node, mass[static_cast<std::size_t>(first + node)] / sum);
+}
+
 struct TieInputs {
     const TieTable& tie;
     std::span<const Range> body_nodes, body_rigid, body_implicit;  // BodyTable
@@ -88,12 +96,7 @@ struct TieInputs {
     /// Calls visit(node, share) for each node of tie `t`. `node`: row of NodeTable. `share`: its part of the mass of
     /// all nodes of the tie.
     void for_each_share(std::size_t t, auto&& visit) const {
-        Real sum = 0;
-        for (const Index node : nodes_of(t)) sum += node_mass[static_cast<std::size_t>(row_of(tie.first[t], node))];
-        for (const Index node : nodes_of(t)) {
-            const Index row = row_of(tie.first[t], node);
-            visit(row, node_mass[static_cast<std::size_t>(row)] / sum);
-        }
+        skerry::for_each_share(nodes_of(t), row_of(tie.first[t], 0), node_mass, visit);
     }
     /// Mean point of the nodes of a tie, weighted by their masses [m].
     Vec3 mean_point(std::size_t t) const {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/append_cable.h"
+
 namespace skerry {
 
 namespace {
@@ -26,16 +28,13 @@ Range list_points(const CableInputs& cables, std::size_t cable, CableBlockTable&
             stencil.weight[count++] = weight;
         });
         for (std::size_t a = count; a < 4; ++a) stencil.node[a] = stencil.node[0];
-        blocks.stencil.push_back(stencil);
-        blocks.velocity.push_back(count > 0 ? Vec3(Vec3::Zero()) : cables.anchor.velocity(at));
+        append_point(stencil, count > 0 ? Vec3(Vec3::Zero()) : cables.anchor.velocity(at), blocks);
         const Vec3 here = cables.anchor.at(at), next = p + 1 < points.end ? cables.anchor.at(at + 1) : here;
         const Real length = (next - here).norm();
-        blocks.length.push_back(length);
+        blocks.length.back() = length;
         // A shorter segment has no direction, only a rounding error of its points.
         const Real shortest = 1e-14 * (here.norm() + next.norm());  // [m]
-        blocks.direction.push_back(length > shortest ? Vec3((next - here) / length) : Vec3(Vec3::Zero()));
-        blocks.most_ratio.push_back(1);
-        blocks.impulse.push_back(0);
+        if (length > shortest) blocks.direction.back() = (next - here) / length;
     }
     const Range listed{begin, static_cast<Index>(blocks.stencil.size())};
     const Real friction = cables.friction[cable];
@@ -88,15 +87,11 @@ void add_block(const CableInputs& cables, std::size_t cable, const CableTimes& t
         std::ranges::fill(impulse.first(segments), block.wanted);
     }
     if (block.solved) {
-        blocks.mobilities += static_cast<Index>(segments * segments);
         const Real scale = cables.step[cable] > 0 ? times.kick / cables.step[cable] : 0;
         const std::span<const Real> last = rows_of(cables.tension, cables.points[cable]);
         for (std::size_t s = 0; s < segments; ++s) impulse[s] = scale * last[s];
     }
-    blocks.block.push_back(block);
-    blocks.work.push_back(0);
-    blocks.dissipated.push_back(0);
-    blocks.sum_impulse.push_back(Vec3::Zero());
+    append_block(block, blocks);
 }
 
 /// Adds the bound of a segment of the length `length` and of the greatest tension `tension` to its bodies.

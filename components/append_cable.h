@@ -1,0 +1,38 @@
+// Appends rows to CableBlockTable.
+#pragma once
+
+#include "components/cable_table.h"
+
+namespace skerry {
+
+/// Appends a point without segment, friction and impulse to the columns by point. `velocity`: of the collider [m/s]
+inline void append_point(const Stencil& stencil, const Vec3& velocity, CableBlockTable& blocks) {
+    blocks.stencil.push_back(stencil);
+    blocks.velocity.push_back(velocity);
+    blocks.direction.push_back(Vec3::Zero());
+    blocks.length.push_back(0);
+    blocks.most_ratio.push_back(1);
+    blocks.impulse.push_back(0);
+}
+
+/// Removes the points from row `count` on. They belong to no block yet.
+inline void truncate_points(Index count, CableBlockTable& blocks) {
+    const auto rows = static_cast<std::size_t>(count);
+    blocks.stencil.resize(rows);
+    blocks.velocity.resize(rows);
+    blocks.direction.resize(rows);
+    blocks.length.resize(rows);
+    blocks.most_ratio.resize(rows);
+    blocks.impulse.resize(rows);
+}
+
+/// Appends a block whose points are in the table.
+inline void append_block(const CableBlock& block, CableBlockTable& blocks) {
+    if (block.solved) blocks.mobilities += block.impulses() * block.impulses();
+    blocks.block.push_back(block);
+    blocks.work.push_back(0);
+    blocks.dissipated.push_back(0);
+    blocks.sum_impulse.push_back(Vec3::Zero());
+}
+
+}  // namespace skerry
