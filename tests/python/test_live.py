@@ -333,6 +333,11 @@ def test_the_browser_is_opened_without_the_token_in_its_arguments(monkeypatch: p
         return True
 
     monkeypatch.setattr(webbrowser, "open", note)
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
+        monkeypatch.delenv(name, raising=False)
+    with sk.view(ball_world()[0]):
+        assert not opened  # there is no display
+    monkeypatch.setenv("DISPLAY", ":0")
     with sk.view(ball_world()[0]) as view:
         token = place_of(view)[1]
         assert len(opened) == 1 and token not in opened[0]

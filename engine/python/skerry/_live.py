@@ -121,7 +121,10 @@ class View:
 
     def _open_page(self) -> bool:
         """Opens the page by a file that leads to it. Other users of the computer can read the arguments of programs,
-        but not this file, so that the token in the address stays secret."""
+        but not this file, so that the token in the address stays secret. Returns False if there is no display, because
+        webbrowser would then start a browser in the terminal and wait for its end."""
+        if not any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")):
+            return False
         folder = pathlib.Path(tempfile.mkdtemp(prefix="skerry-view-"))
         self._forget_page = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
         file = folder / "view.html"
