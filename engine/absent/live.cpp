@@ -1,6 +1,6 @@
 // Replacement for engine/live if SKERRY_LIVE=OFF.
-#include "engine/absent/refuse_absent.h"
 #include "skerry/live.h"
+#include "engine/absent/refuse_absent.h"
 
 namespace skerry {
 
