@@ -115,9 +115,11 @@ int port_of(int socket, Call&& call) {
 /// Returns the socket of a connection, which has no function in the library; -1 if it is not found. `port`: of the
 /// server.
 int socket_of(const mg_connection* connection, int port) {
-    constexpr int most_sockets = 1 << 16;  // numbers that are tried
+    constexpr long most_sockets = 1 << 16;  // numbers that are tried
+    const long limit = sysconf(_SC_OPEN_MAX);
+    const int end = static_cast<int>(limit > 0 ? std::min(limit, most_sockets) : most_sockets);
     const int remote = mg_get_request_info(connection)->remote_port;
-    for (int socket = 0; socket < most_sockets; ++socket)
+    for (int socket = 0; socket < end; ++socket)
         if (port_of(socket, getpeername) == remote && port_of(socket, getsockname) == port) return socket;
     return -1;
 }
