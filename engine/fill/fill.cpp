@@ -1,6 +1,7 @@
 #include "skerry/fill.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/fill/best_mesh.h"
@@ -103,13 +104,11 @@ private:
     void check_edge() const {
         if (!settings_.edge) return;
         const Real edge = *settings_.edge, diagonal = box_diagonal(surface());
-        const std::string size = "the surface measures " + short_text(diagonal) + " m across its bounding box";
-        if (edge > diagonal)
-            refuse(short_text(edge) + " m", "an edge length below the size of the surface", size, "edge");
-        const Real count = (result_.surface.upper - result_.surface.lower).prod() / (edge * edge * edge);
-        if (count > most_cells)
-            refuse(short_text(edge) + " m, which divides the bounding box into " + short_text(count) + " cubes",
-                   "an edge length that gives at most " + short_text(most_cells) + " cubes", size, "edge");
+        const std::string size = "the surface measures " + short_text(diagonal) +
+                                 " across its bounding box, in the unit of its file, to which no \"scale\" is applied";
+        if (edge > diagonal) refuse(short_text(edge), "an edge length below the size of the surface", size, "edge");
+        const Real least = std::cbrt((result_.surface.upper - result_.surface.lower).prod() / most_cells);
+        if (edge < least) refuse(short_text(edge), "an edge length of at least " + short_text(least), size, "edge");
     }
 
     /// True if the wanted tetrahedra have about the size of the triangles of the surface.
@@ -197,6 +196,7 @@ private:
         std::string found = netgen_failure_.empty() ? "" : netgen_failure_ + "; ";
         found += "fTetWild, started by " + python + ", " + filled.failure;
         std::string hint;
+        if (filled.missing && netgen_missing_) found = "no installed mesher: " + found;
         if (filled.missing)
             hint = std::string(netgen_missing_ ? install_netgen : "") + (netgen_missing_ ? "; or " : "") +
                    install_ftetwild + ", and name its interpreter in SKERRY_FILL_PYTHON if it is not " + python;

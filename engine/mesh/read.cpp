@@ -40,13 +40,16 @@ RawMesh read_file(const std::string& path, bool surface) {
         std::string expected = "the extension ";
         for (const Format& other : formats)
             if (surface || !other.surface_only) expected += std::string(other.extension) + ", ";
-        Complaint{path,
-                  {},
-                  "file name",
-                  extension.empty() ? "no extension" : "the extension " + extension,
-                  expected + ".node or .ele",
-                  known ? "a body that deforms needs tetrahedra; a rigid body or a collider needs only a surface"
-                        : "export the mesh in one of these formats"}
+        Complaint{
+            path,
+            {},
+            "file name",
+            extension.empty() ? "no extension" : "the extension " + extension,
+            expected + ".node or .ele",
+            known
+                ? "a body that deforms needs tetrahedra: write \"surface\" instead of \"file\" in a scene, or fill the "
+                  "surface with `skerry fill`; a rigid body or a collider needs only a surface"
+                : "export the mesh in one of these formats"}
             .raise();
     }
     FileReader reader(path);

@@ -326,8 +326,8 @@ int inspect_scene(const InspectOptions& options) {
         if (count > 0) joined += ", " + grouped(count) + " " + name;
     std::cout << scene.name << ": " << scene.description << "\n"
               << "  bodies        " << grouped(report.bodies) << ", " << grouped(report.nodes) << " nodes, "
-              << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders" << joined
-              << "\n"
+              << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders)
+              << (report.colliders == 1 ? " collider" : " colliders") << joined << "\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
               << (report.stable_step_body.empty() ? "no body limits the step" : "limited by " + report.stable_step_body)

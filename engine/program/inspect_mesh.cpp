@@ -236,18 +236,20 @@ int report_surface(const InspectOptions& options, const SurfaceMesh& surface) {
               << (report.volume > 0 ? ", volume " + short_number(report.volume) + " m^3" : "") << "\n"
               << "  edges         mean " << with_unit(report.mean_edge, "m") << ", " << with_unit(report.min_edge, "m")
               << " to " << with_unit(report.max_edge, "m") << "\n"
-              << "  welded        " << grouped(report.merged) << " nodes, up to " << with_unit(report.tolerance, "m")
-              << " apart\n";
+              << "  welded        "
+              << (report.merged == 0 ? std::string("no nodes")
+                                     : grouped(report.merged) + (report.merged == 1 ? " node" : " nodes") + ", up to " +
+                                           with_unit(report.tolerance, "m") + " apart")
+              << "\n";
     for (std::size_t s = 0; s < std::min(report.shells.size(), most_shells); ++s)
         std::cout << "  shell         " << shell_text(report, report.shells[s]) << "\n";
     if (report.shells.size() > most_shells)
         std::cout << "                and " << grouped(report.shells.size() - most_shells) << " more shells\n";
     print_problems(problems);
-    std::cout
-        << "  next          "
-        << (report.can_be_filled()
-                ? "the repaired surface bounds a solid, which can be filled with tetrahedra as it is: skerry fill\n"
-                : "not a surface to be filled as it is; skerry fill can enclose it within a tolerance\n");
+    std::cout << "  next          "
+              << (report.can_be_filled()
+                      ? "the surface bounds a solid, which can be filled with tetrahedra as it is: skerry fill\n"
+                      : "not a surface to be filled as it is; skerry fill can enclose it within a tolerance\n");
     return exit_ok;
 }
 

@@ -9,6 +9,7 @@
 
 #include "components/split_mix.h"
 #include "engine/mesh/labels.h"
+#include "engine/mesh/surface/check_shells.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_plan.h"
 
@@ -32,9 +33,17 @@ Mesh make_shape(const MeshEntry& entry, bool rigid, std::vector<std::string>& no
     if (entry.skittle) return mesh::skittle(entry.skittle->height, entry.skittle->resolution);
     if (entry.table) return mesh::table(*entry.table);
     if (entry.surface) {
-        mesh::FillSettings settings{.edge = entry.edge, .cavities = entry.cavities, .python = filling.python};
+        mesh::FillSettings settings{.cavities = entry.cavities, .python = filling.python};
+        // The surface is filled in the units of its file and scaled afterwards, so that scenes of any scale share the
+        // mesh in the cache.
+        if (entry.edge) settings.edge = *entry.edge / entry.scale;
         settings.tolerance = entry.tolerance.value_or(settings.tolerance);
-        return mesh::fill_cached(entry.surface->path, settings, filling.progress, &notes);
+        std::vector<std::string> of_filling;
+        Mesh mesh = mesh::fill_cached(entry.surface->path, settings, filling.progress, &of_filling);
+        if (entry.scale != 1)
+            std::erase_if(of_filling, [](const std::string& note) { return note.ends_with(mesh::other_unit); });
+        notes.insert(notes.end(), of_filling.begin(), of_filling.end());
+        return mesh;
     }
     const std::string file = entry.file->path.string();
     return rigid ? mesh::read_rigid(file, &notes) : mesh::read(file, &notes);

@@ -107,7 +107,7 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
                       "path of a surface, for example .obj, .ply or .stl, relative to the folder of the scene. It is "
                       "filled with tetrahedra as by `skerry fill`, and the mesh is kept in a file beside it"})
             .key("edge", &MeshEntry::edge,
-                 {.meaning = "with \"surface\": edge length of the tetrahedra, before scaling; default: the triangles "
+                 {.meaning = "with \"surface\": edge length of the tetrahedra, after scaling; default: the triangles "
                              "of a surface without faults are kept",
                   .unit = "m",
                   .limits = positive})

@@ -45,6 +45,13 @@ SliderTarget moved(const World& world, HandleType object, const Motion& motion, 
     return {PoseControl{object}, {pose.position, pose.rotation}};
 }
 
+[[noreturn]] void refuse_pin(const Place& place, const std::string& body, std::size_t pins, std::size_t pin) {
+    if (pins == 0)
+        place.refuse(in_quotes(body) + ", a body without \"pin\"", "a body with a pin", "add one to the body");
+    place.refuse(in_quotes(body) + ", a body with " + std::to_string(pins) + (pins == 1 ? " pin" : " pins"),
+                 "a body with a pin of the number " + std::to_string(pin) + ", counted from 0");
+}
+
 class SliderMaker {
 public:
     SliderMaker(const ScenePlan& plan, const PlannedHandles& handles, World& world)
@@ -89,13 +96,13 @@ private:
                 const Place place = entry.place.key(key);
                 if (!taken_.insert(std::string(key) + " " + name + " " + std::to_string(entry.pin.value_or(0))).second)
                     place.refuse(in_quotes(name) + ", which another slider drives", "one slider for each object");
-                found.push_back(called_at(place, [&]() -> SliderTarget { return target(name, place); }));
+                found.push_back(target(name, place));
             }
         };
         const auto add_valued = [&]<class HandleType>(const char* key, const OneOrMore<std::string>& names,
                                                       const ObjectView<HandleType>& objects) {
-            add(key, names, [&](const std::string& name, const Place&) -> SliderTarget {
-                return {ValueControl{objects.find(name)}};
+            add(key, names, [&](const std::string& name, const Place& place) -> SliderTarget {
+                return {ValueControl{called_at(place, [&] { return objects.find(name); })}};
             });
         };
         add("collider", entry.collider, [&](const std::string& name, const Place& place) {
@@ -106,13 +113,11 @@ private:
             const std::size_t b = find_body(plan_, name, place);
             const auto pin = static_cast<std::size_t>(entry.pin.value_or(0));
             const std::vector<PinPlan>& pins = plan_.bodies[b].pins;
-            if (pin >= pins.size())
-                place.refuse(in_quotes(name) + ", a body with " + std::to_string(pins.size()) + " pins",
-                             "a body with the pin " + std::to_string(pin));
+            if (pin >= pins.size()) refuse_pin(place, name, pins.size(), pin);
             return moved(world_, handles_.pins[b][pin], pins[pin].motion, place);
         });
-        add("joint", entry.joint, [&](const std::string& name, const Place&) -> SliderTarget {
-            return {motor_control(world_, Joints(world_).find(name))};
+        add("joint", entry.joint, [&](const std::string& name, const Place& place) -> SliderTarget {
+            return {called_at(place, [&] { return motor_control(world_, Joints(world_).find(name)); })};
         });
         add_valued("cable", entry.cable, ObjectView<CableHandle>(world_));
         add_valued("cavity", entry.cavity, ObjectView<CavityHandle>(world_));

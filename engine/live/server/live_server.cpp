@@ -279,7 +279,7 @@ LiveServer::LiveServer(int port, LiveHub& hub)
                   .field = "port",
                   .found = std::to_string(port) + ", which cannot be opened (" + text.data() + ")",
                   .expected = "a free port, or 0 to choose one",
-                  .hint = {}}
+                  .hint = "another program may use this port"}
             .raise();
     mg_server_port ports{};
     mg_get_server_ports(impl_->context, 1, &ports);

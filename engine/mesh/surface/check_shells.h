@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 
 #include "skerry/surface_check.h"
 
 namespace skerry::mesh {
+
+/// End of fault_text for a surface of an unlikely size.
+inline constexpr std::string_view other_unit = "probably in another unit of length";
 
 /// Performs check_surface without the search for crossings, slivers and thin walls. `keep_walls`: see
 /// drop_repeated_shells.

@@ -156,7 +156,7 @@ std::string fault_text(const SurfaceFault& fault) {
     std::ostringstream text;
     text.precision(4);
     if (fault.kind == unlikely_size) {
-        text << "a size of " << fault.length << " m, probably in another unit of length";
+        text << "a size of " << fault.length << " m, " << other_unit;
         return text.str();
     }
     const Noun& noun = *std::ranges::find(nouns, fault.kind, &Noun::kind);

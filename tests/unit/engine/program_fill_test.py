@@ -104,6 +104,14 @@ class FillTest(ProgramCase):
         self.assertEqual(cache[0].stat().st_mtime_ns, changed)
         self.assertEqual(list(self.folder.glob("cube.obj.*.msh")), cache)
 
+    def test_the_edge_of_a_surface_in_millimetres_is_a_length_after_scaling(self):
+        self.need_netgen()
+        self.write("cube.obj", "".join(line.replace("1", "1000") + "\n" if line[0] == "v" else line + "\n"
+                                       for line in CUBE.splitlines()))
+        found = self.skerry("inspect", self.scene_of(scale=0.001, edge=1.1)).stdout
+        self.assertNotIn("another unit", found)
+        self.assertEqual(len(list(self.folder.glob("cube.obj.*.msh"))), 1)
+
     def test_keys_of_a_surface_need_a_surface(self):
         box = {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}, "edge": 0.1}
         body = {"mesh": box, "material": "rubber", "position": [0, 0, 2]}

@@ -19,6 +19,7 @@
 namespace skerry::test::slider_test {
 
 using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -186,7 +187,7 @@ TEST_CASE("wrong sliders are refused with the file, the slider, the key and the 
     CHECK_THAT(refusal_of(R"({"name": "a", "cable": "tend", "low": 0, "high": 9})"),
                Contains("sliders[0].cable") && Contains("'tend'") && Contains("'tendon'"));
     CHECK_THAT(refusal_of(R"({"name": "a", "collider": "bal", "along": [1, 0, 0], "low": 0, "high": 9})"),
-               Contains("sliders[0].collider") && Contains("\"ball\""));
+               StartsWith("slider \"a\": sliders[0].collider: found \"bal\"") && Contains("\"ball\""));
     CHECK_THAT(refusal_of(R"({"name": "a", "collider": "ball", "low": 0, "high": 1})"),
                Contains("neither \"along\" nor \"about\""));
     CHECK_THAT(refusal_of(R"({"name": "a", "collider": "belt", "along": [1, 0, 0], "low": 0, "high": 1})"),
@@ -204,7 +205,9 @@ TEST_CASE("wrong sliders are refused with the file, the slider, the key and the 
                Contains("along"));
     CHECK_THAT(refusal_of(R"({"name": "a", "cable": "tendon", "pin": 1, "low": 0, "high": 4})"), Contains("pin"));
     CHECK_THAT(refusal_of(R"({"name": "a", "body": "cube", "pin": 1, "along": [0, 0, 1], "low": 0, "high": 1})"),
-               Contains("1 pins") && Contains("pin 1"));
+               Contains("1 pin,") && Contains("number 1"));
+    CHECK_THAT(refusal_of(R"({"name": "a", "body": "sled", "along": [0, 0, 1], "low": 0, "high": 1})"),
+               Contains("without \"pin\"") && Contains("add one"));
     CHECK_THAT(refusal_of(R"({"name": "a", "cable": "tendon", "low": 4, "high": 4})"),
                Contains("sliders[0].high") && Contains("more than \"low\""));
     CHECK_THAT(refusal_of(R"({"name": "a", "cable": "tendon", "low": 0, "high": 1.5})"),
