@@ -326,18 +326,19 @@ TEST_CASE("a browser that looks changes no bit of the run", "[unit][live]") {
             visit.emplace(run.hub());
             visit->send({{"do", "fields"}, {"names", {"stress"}}});
         }
-        int shown = -1;  // number of the newest frame that the browser has
         for (int call = 0; call < 40; ++call) {
             REQUIRE(world.advance(0.005, [&](const StepReport&) { return run.between_steps(world); }).ok());
             run.sync(world);
             if (!seen || call % 8 != 7) continue;
-            shown = row_with(*visit, run, world, [&](const Json& row) { return row["number"] > shown; })["number"];
+            row_with(*visit, run, world, [&](const Json& row) { return row["time"] == world.time(); });
+            wait_for_next_frame();
         }
         if (seen) {
             const std::vector<Json> rows = visit->browser.rows();
             REQUIRE(rows.size() >= 4);
             CHECK(rows.back()["top"]["stress"] > 0);
-            CHECK(rows.back()["probes"][0][0] != nullptr);
+            // A second row of the same time has no mean force.
+            CHECK(std::ranges::any_of(rows, [](const Json& row) { return !row["probes"][0][0].is_null(); }));
         }
         return world.state_hash();
     };
