@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "engine/output/frame.h"
 #include "engine/world/control/control.h"
 
 namespace skerry {
@@ -91,6 +92,12 @@ std::optional<PullState> Pull::state(const World& world) const {
     PullState pull{.force = 0, .length = spring_state(state, springs_.front()).length};
     for (const SpringHandle spring : springs_) pull.force += spring_state(state, spring).force;
     return pull;
+}
+
+bool Pull::has(const LineFrame& line) const {
+    return line.kind == LineKind::spring && std::ranges::any_of(springs_, [&](SpringHandle spring) {
+               return spring.slot == line.slot && spring.generation == line.generation;
+           });
 }
 
 }  // namespace skerry
