@@ -265,8 +265,11 @@ void LiveRun::show(const World& world, bool between_calls) {
     snapshot->sliders.clear();
     for (const Slider& slider : settings_.sliders) snapshot->sliders.push_back(value_of(world, slider));
     snapshot->pulls.clear();
-    for (const auto& [client, pull] : pulls_)
+    for (const auto& [client, pull] : pulls_) {
         if (const auto state = pull.state(world)) snapshot->pulls.emplace_back(client, *state);
+        // The page draws one line for its pull. Its springs are no objects of the scene.
+        std::erase_if(snapshot->frame.lines, [&](const LineFrame& line) { return pull.has(line); });
+    }
     hub_.publish(snapshot);
     next_show_ = std::max(next_show_, now + snapshot_pause * (Clock::now() - now));
 }

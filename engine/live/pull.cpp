@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "engine/output/frame.h"
 #include "engine/world/control/control.h"
 #include "engine/world/validate.h"
 
@@ -104,6 +105,12 @@ std::optional<PullState> Pull::state(const World& world) const {
         pull->force += now.force;
     }
     return pull;
+}
+
+bool Pull::has(const LineFrame& line) const {
+    return line.kind == LineKind::spring && std::ranges::any_of(springs_, [&](SpringHandle spring) {
+               return spring.slot == line.slot && spring.generation == line.generation;
+           });
 }
 
 }  // namespace skerry

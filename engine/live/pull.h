@@ -10,6 +10,8 @@
 
 namespace skerry {
 
+struct LineFrame;
+
 /// Present state of a pull.
 struct PullState {
     Real force = 0;   // sum of the forces of all springs in the last step [N]
@@ -36,6 +38,8 @@ public:
     void end(World& world);
     /// Returns nothing if no body is pulled.
     std::optional<PullState> state(const World& world) const;
+    /// Returns true if the line shows one of the springs.
+    bool has(const LineFrame& line) const;
 
 private:
     std::vector<SpringHandle> springs_{};

@@ -452,6 +452,7 @@ TEST_CASE("commands control the run, and a reset brings the start back", "[unit]
     CHECK(run.due(world) > 0);
     REQUIRE(world.advance(0.01).ok());
     CHECK(row_with(visit, run, world, [](const Json& row) { return !row["pull"].is_null(); })["pull"]["force"] > 0);
+    CHECK(visit.browser.wait_for_text(R"("type":"add")")["lines"].empty());
 
     visit.send({{"do", "reset"}});
     CHECK(run.due(world) > 0);

@@ -4,8 +4,8 @@
 const text = (() => {
   const prefixes = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "\u00b5"], [1e-9, "n"]];
 
-  // Three significant digits with an SI prefix; fewer where an error is given, down to the one that it changes. The unit
-  // "1" is that of plain numbers, which get neither a unit nor a prefix.
+  // Three significant digits with an SI prefix; fewer where an error is given, down to the one that it changes.
+  // The unit "1" is that of plain numbers, which get neither a unit nor a prefix.
   function si(value, unit, error) {
     if (value === null || !isFinite(value)) return "\u2013";
     if (unit === "1") return unitless(value);

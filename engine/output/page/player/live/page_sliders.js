@@ -1,9 +1,9 @@
 // Sliders of the scene, which move colliders, cables and other things.
 "use strict";
 
-// list: {name, unit, low, high, value}. move(number, value) is called when the user moves a slider. show(values, number)
-// sets the sliders to the values in the row with that number. A slider that the user has moved keeps its place until
-// `patience` is over and a row has its value or `stale` more rows have come.
+// list: {name, unit, low, high, value}. move(number, value) is called when the user moves a slider. show(values,
+// number) sets the sliders to the values in the row with that number. A slider that the user has moved keeps its place
+// until `patience` is over and a row has its value or `stale` more rows have come.
 function make_sliders(host, list, move) {
   const patience = 500;  // ms after the last movement
   const stale = 3;       // rows that may come after a movement and not know it

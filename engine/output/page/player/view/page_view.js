@@ -77,7 +77,8 @@ function make_view(host, up, box, is_coarse) {
     return { center, corners, radius: Math.max(shown.min.distanceTo(shown.max) / 2, 1e-6) };
   }
   function fit_distance({ corners, radius }) {
-    const whole = Math.tan(THREE.Math.degToRad(camera.fov / 2)), tall = whole * free.share, wide = whole * camera.aspect;
+    const whole = Math.tan(THREE.Math.degToRad(camera.fov / 2));
+    const tall = whole * free.share, wide = whole * camera.aspect;
     return 1.12 * corners.reduce((most, [x, y, z]) => Math.max(most, Math.max(x / wide, y / tall) + z), radius);
   }
   // Center and distance of the course, between frames their means.
