@@ -178,7 +178,7 @@ TEST_CASE("a mesher that hangs, crashes or writes no mesh is an error of the sur
     CHECK_THAT(failure(open), Contains("/nowhere/python") && Contains("pip install wildmeshing"));
     CHECK_THAT(failure(open, {.tolerance = 0}), Contains("tolerance above 0"));
     CHECK_THAT(failure(open, {.edge = -1}), Contains("edge") && Contains("-1"));
-    CHECK_THAT(failure(open, {.edge = 5}), Contains("edge") && Contains("m across"));
+    CHECK_THAT(failure(open, {.edge = 5}), Contains("edge") && Contains("measures 1.66 across"));
     CHECK_THAT(failure(open, {.edge = 1e-4}),
                Contains("edge") && Contains("of at least") && Contains("no \"scale\" is applied"));
     CHECK_THROWS_WITH(mesh::fill(std::vector<std::filesystem::path>{}), Contains("found no files"));

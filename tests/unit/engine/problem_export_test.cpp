@@ -465,15 +465,17 @@ TEST_CASE("redundant hinges leave a gate its rotation in exported problems", "[u
         CHECK(problem_error(step.problem, step.impulse).relative < 1e-3);
         const ProblemSolution again = solve_problem(step.problem, {.tolerance = 1e-9});
         CHECK(again.converged);
-        // Contacts above each other share their force in any way, but its moment about the hinges is unique.
+        // Contacts above each other share their force in any way, but the moment about the hinges is unique.
         Real moment = 0, moment_again = 0;
         for (std::size_t i = 0; i < step.contact.size(); ++i) {
             const Real arm = world.contacts()[step.contact[i]].point.x();
-            moment += arm * step.impulse[i][0];
-            moment_again += arm * again.reaction[i][0];
-            for (Index k = step.problem.row_offset[i]; k < step.problem.row_offset[i + 1]; ++k)
-                if (step.problem.column[k] == static_cast<Index>(i))
-                    CHECK(step.problem.block[k](0, 0) == Approx(arm * arm / inertia).epsilon(1e-2));
+            for (Index k = step.problem.row_offset[i]; k < step.problem.row_offset[i + 1]; ++k) {
+                if (step.problem.column[k] != static_cast<Index>(i)) continue;
+                CHECK(step.problem.block[k](0, 0) == Approx(arm * arm / inertia).epsilon(1e-2));
+                const Vec3 lever = step.problem.block[k].row(0).transpose() * (inertia / arm);
+                moment += lever.dot(step.impulse[i]);
+                moment_again += lever.dot(again.reaction[i]);
+            }
         }
         CHECK(moment_again == Approx(moment).epsilon(1e-2));
     });

@@ -187,7 +187,7 @@ TEST_CASE("wrong sliders are refused with the file, the slider, the key and the 
     CHECK_THAT(refusal_of(R"({"name": "a", "cable": "tend", "low": 0, "high": 9})"),
                Contains("sliders[0].cable") && Contains("'tend'") && Contains("'tendon'"));
     CHECK_THAT(refusal_of(R"({"name": "a", "collider": "bal", "along": [1, 0, 0], "low": 0, "high": 9})"),
-               StartsWith("slider \"a\": sliders[0].collider: found \"bal\"") && Contains("\"ball\""));
+               StartsWith("scene: slider \"a\": sliders[0].collider: found \"bal\"") && Contains("\"ball\""));
     CHECK_THAT(refusal_of(R"({"name": "a", "collider": "ball", "low": 0, "high": 1})"),
                Contains("neither \"along\" nor \"about\""));
     CHECK_THAT(refusal_of(R"({"name": "a", "collider": "belt", "along": [1, 0, 0], "low": 0, "high": 1})"),
