@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import socket
 import time
 from collections.abc import Iterator
@@ -123,3 +124,16 @@ def connect(view: sk.View) -> Iterator[Client]:
     """A client of the view with the right token."""
     with open_socket(view.address) as connection:
         yield Client(view, connection)
+
+
+def status_of(answer: bytes) -> int:
+    found = re.match(rb"HTTP/1\.[01] (\d+) ", answer)
+    assert found, answer[:200]
+    return int(found[1])
+
+
+def advance(client: Client, dt: float = 0.01) -> None:
+    """Advances by dt and waits until the client has the frame."""
+    world, count = client.view.world, len(client.frames)
+    world.advance(dt)
+    client.wait(lambda: len(client.frames) > count)
