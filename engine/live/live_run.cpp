@@ -268,7 +268,7 @@ void LiveRun::show(const World& world, bool between_calls) {
     for (const auto& [client, pull] : pulls_) {
         if (const auto state = pull.state(world)) snapshot->pulls.emplace_back(client, *state);
         // The page draws one line for its pull. Its springs are no objects of the scene.
-        std::erase_if(snapshot->frame.lines, [&](const LineFrame& line) { return pull.has(line); });
+        std::erase_if(snapshot->frame.lines, [&held = pull](const LineFrame& line) { return held.has(line); });
     }
     hub_.publish(snapshot);
     next_show_ = std::max(next_show_, now + snapshot_pause * (Clock::now() - now));
