@@ -89,6 +89,7 @@ void bind_world(nb::module_& module) {
     bind_handle<SpringHandle>(module, "SpringHandle");
     bind_anchors(module);
     module.def("end_calls", &CallScope::end_calls);
+    module.def("hide_leaks", [] { nb::set_leak_warnings(false); });
     module.def("note_fork", [] {
         Use::note_fork();
         CallScope::note_fork();
