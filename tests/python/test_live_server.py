@@ -100,7 +100,9 @@ def test_a_client_that_hangs_slows_nothing_and_keeps_no_memory() -> None:
                 client.take(0)
             grown = 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
             assert view.frames_dropped > 0 and view.client_count == 2
-            assert grown < sum(map(len, client.frames[count:])), f"{grown} bytes more"
+            if "libasan" not in os.environ.get("LD_PRELOAD", ""):  # which keeps freed memory for a while
+                # The client here keeps each frame once; the server must not keep them, too.
+                assert grown < 1.5 * sum(map(len, client.frames[count:])), f"{grown} bytes more"
 
 
 def test_a_slow_handshake_blocks_nobody(view: sk.View) -> None:
@@ -153,6 +155,7 @@ def test_a_step_that_is_refused_pauses_run() -> None:
         thread.join()
 
 
+@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="its allocator can lock up after a fork")
 def test_a_forked_process_ends_and_leaves_the_server() -> None:
     run_program(
         """
