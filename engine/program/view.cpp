@@ -55,18 +55,8 @@ private:
     bool is_complete_ = false;
 };
 
-#ifdef __APPLE__
-constexpr const char* opening_program = "open";
-#else
-constexpr const char* opening_program = "xdg-open";
-#endif
-
 bool has_desktop() {
-#ifdef __APPLE__
-    return true;
-#else
     return std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
-#endif
 }
 
 /// Opens a file in the browser of the user. Does nothing if there is no program to open it.
@@ -78,10 +68,10 @@ void open_in_browser(const std::string& path) {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         posix_spawn_file_actions_addopen(&silence, stream, "/dev/null", O_RDWR, 0);
     posix_spawnattr_setflags(&own_group, POSIX_SPAWN_SETPGROUP);
-    std::string name = opening_program, argument = path;
+    std::string name = "xdg-open", argument = path;
     char* const arguments[] = {name.data(), argument.data(), nullptr};
     pid_t process = 0;
-    static_cast<void>(posix_spawnp(&process, opening_program, &silence, &own_group, arguments, environ));
+    static_cast<void>(posix_spawnp(&process, name.c_str(), &silence, &own_group, arguments, environ));
     posix_spawn_file_actions_destroy(&silence);
     posix_spawnattr_destroy(&own_group);
 }
