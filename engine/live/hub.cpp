@@ -37,6 +37,7 @@ std::uint64_t LiveHub::join(LiveLink& link) {
     client.number = ++last_client_;
     client.link = &link;
     client.snapshot = last_snapshot_;  // a snapshot from before it came may be old
+    if (!failure_.empty()) put_text(client, problem_text(failure_));
     client.thread = std::thread([this, &client] { serve(client); });
     note_busy();
     return client.number;
@@ -113,6 +114,7 @@ void LiveHub::begin_run(const LiveRunInfo& info, const LiveState& state) {
     ++run_;
     ++version_;
     latest_ = nullptr;
+    failure_.clear();
     changed_.notify_all();
 }
 
@@ -120,6 +122,7 @@ void LiveHub::set_state(const LiveState& state) {
     const std::lock_guard lock(mutex_);
     if (state == state_) return;
     state_ = state;
+    if (state.playing) failure_.clear();
     for (Client& client : clients_) put_text(client, state_text(state));
     changed_.notify_all();
 }
@@ -130,9 +133,10 @@ void LiveHub::report(std::uint64_t number, const std::string& problem) {
     changed_.notify_all();
 }
 
-void LiveHub::report_to_all(const std::string& problem) {
+void LiveHub::report_failure(const std::string& reason) {
     const std::lock_guard lock(mutex_);
-    for (Client& client : clients_) put_text(client, problem_text(problem));
+    failure_ = reason;
+    for (Client& client : clients_) put_text(client, problem_text(reason));
     changed_.notify_all();
 }
 

@@ -66,7 +66,8 @@ public:
     void set_state(const LiveState& state);
     /// Sends the text of a problem to a browser.
     void report(std::uint64_t client, const std::string& problem);
-    void report_to_all(const std::string& problem);
+    /// Sends the reason why the run has failed to all browsers, and to those that come while it is paused.
+    void report_failure(const std::string& reason);
     /// Notes that the world may differ from the last snapshot.
     void mark_changed();
 
@@ -123,6 +124,7 @@ private:
     std::vector<LiveCommand> commands_;
     LiveRunInfo info_;
     LiveState state_;
+    std::string failure_;  // reason why the run is paused by a failed step; empty if it is not
     std::uint64_t run_ = 0, version_ = 0, last_snapshot_ = 0;
     std::vector<std::shared_ptr<Snapshot>> snapshots_;  // all that were made; those in use have other owners, too
     std::shared_ptr<Snapshot> latest_;

@@ -114,7 +114,7 @@ bool LiveRun::between_steps(const World& world) {
 void LiveRun::fail(const std::string& text) {
     failed_ = true;
     state_.playing = false;
-    hub_.report_to_all(text);
+    hub_.report_failure(text);
     hub_.set_state(state_);
 }
 

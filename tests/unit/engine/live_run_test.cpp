@@ -169,8 +169,15 @@ TEST_CASE("commands control the run, and a reset brings the start back", "[unit]
         run.fail("body 'cube' is too fast");
         CHECK(run.due(world) == 0);
         visit.browser.wait_for_text("too fast");
+        {
+            Visit later(run.hub());
+            later.browser.wait_for_text("too fast");
+        }
         visit.send({{"do", "reset"}});
         CHECK(run.due(world) > 0);
+        Visit last(run.hub());
+        last.browser.wait_for_texts(R"({"type":"begin")", 1);
+        CHECK(last.browser.count_texts(R"({"type":"problem")") == 0);
     }
     SECTION("a long call of advance ends when a command arrives") {
         visit.send({{"do", "pause"}});
