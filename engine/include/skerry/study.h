@@ -12,15 +12,16 @@
 
 #include "components/options.h"
 #include "skerry/recorder.h"
+#include "skerry/settings.h"
 
 #pragma GCC visibility push(default)
 namespace skerry {
 
 /// Difference of a run to the scene as it is.
 struct StudyVariant {
-    int refine = 0;  // level of the meshes: each level halves the edges, negative levels double them
-    Real step = 1;   // ratio of the step length to the mean step of the unchanged scene; 1: the scene's own steps
-    Real tolerance = 1;                    // ratio of the solver's tolerance to that of the scene
+    int refine = 0;      // level of the meshes: each level halves the edges, negative levels double them
+    Real step = 1;       // ratio of the step length to the mean step of the unchanged scene; 1: the scene's own steps
+    Real tolerance = 1;  // ratio of the solver's tolerance to that of the scene
     std::optional<ElementKind> element{};  // element kind of all bodies; empty: the kinds of the scene
     int draw = 0;                          // number of the perturbation of the start, from 1; 0: none
 
@@ -48,14 +49,14 @@ struct EnumNames<StudyRunStatus> {
 /// A time series of a run.
 struct StudyColumn {
     SeriesColumn what;
-    // Typical size of the body or of the scene, for columns that are lengths; else 0. Differences of positions are
-    // compared with it [m].
-    Real size = 0;
+    Real size = 0;  // diagonal of the bounding box of the body at the start, or of all bodies for other columns [m]
     // False for a column that gets no error bar of its own, such as the place of one of many bodies.
     bool reported = true;
     std::vector<Real> values{};  // one per time; NaN if unknown
-    // Number of the node with the largest value, for a column of a largest stress; else empty. One per time.
-    std::vector<Index> nodes{};
+    // For a column of a largest stress: number within the body, and position at the start [m], of the node that had the
+    // largest value of the run. Else no_index.
+    Index node = no_index;
+    Vec3 place = Vec3::Zero();
 };
 
 /// A run of a study. `skerry run SCENE` with the assignments as --set repeats the run, except for its perturbation.
@@ -67,6 +68,7 @@ struct StudyRun {
     std::vector<std::string> warnings{};  // reasons not to rely on the run
     double cpu_seconds = 0;               // CPU time of the steps; predicted if the run was left out [s]
     std::uint64_t steps = 0;
+    Integrator integrator = Integrator::symplectic_euler;
     std::uint64_t state_hash = 0;  // hash of the state at the end
     std::size_t tetrahedra = 0, max_contacts = 0;
     std::vector<Real> time{};  // simulated time of each row [s]
@@ -109,27 +111,27 @@ struct StudyQuantity {
          expected_mesh_order = std::numeric_limits<Real>::quiet_NaN(),
          expected_step_order = std::numeric_limits<Real>::quiet_NaN();
     StudyVerdict verdict = StudyVerdict::not_measured;
-    std::string sentence{};      // verdict in words
+    std::string sentence{};       // verdict in words
     Real agree_until = infinity;  // time until which perturbed runs agree on the column of the quantity [s]
 };
 
 /// The cheapest settings whose predicted errors are at most the wanted error.
 struct CheapestSettings {
     StudyVariant variant;
-    bool reaches = false;  // false: no settings reach the wanted error, and these come nearest
-    double error = 0;      // predicted largest relative error of all quantities with a known error
+    bool reaches = false;    // false: no settings reach the wanted error, and these come nearest
+    double error = 0;        // predicted largest relative error of all quantities with a known error
     double cpu_seconds = 0;  // predicted CPU time [s]
     std::string sentence{};
     std::vector<std::string> assignments{};  // for `skerry run --set`; filled in by study()
 };
 
 struct StudyResult {
-    std::string scene;  // name of the scene
+    std::string scene;           // name of the scene
     std::vector<StudyRun> runs;  // the first is the scene as it is
     std::vector<StudyQuantity> quantities;
     std::optional<CheapestSettings> cheapest;
-    Real agree_until = infinity;  // time until which perturbed runs agree on all columns [s]
-    Real growth_rate = 0;         // rate at which small differences of the start grow; 0 if they do not [1/s]
+    Real agree_until = infinity;         // time until which perturbed runs agree on all columns [s]
+    Real growth_rate = 0;                // rate at which small differences of the start grow; 0 if they do not [1/s]
     std::vector<std::string> sentences;  // remarks on the study as a whole
     bool stopped = false;                // true if go_on ended the study; quantities are then empty
 };
