@@ -84,7 +84,6 @@ double wall_time(std::vector<double> costs, int threads) {
 void keep_to_budget(double budget, int threads, std::vector<PlannedRun>& plan) {
     std::vector<double> first, second;
     for (std::size_t i = 0; i < plan.size(); ++i) {
-        if (!plan[i].reason.empty()) continue;
         std::vector<double>& phase = i < independent_runs ? first : second;
         phase.push_back(plan[i].cost);
         const double wall = wall_time(first, threads) + wall_time(second, threads);

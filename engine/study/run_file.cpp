@@ -80,12 +80,16 @@ std::string variant_name(const StudyVariant& variant) {
     return name.empty() ? "scene" : name;
 }
 
+Json variant_json(const StudyVariant& variant) {
+    Json json = {{"refine", variant.refine}, {"step", variant.step}, {"tolerance", variant.tolerance}};
+    if (variant.element) json["element"] = name_of(*variant.element);
+    json["draw"] = variant.draw;
+    return json;
+}
+
 Json run_json(const StudyRun& run) {
-    Json variant = {{"refine", run.variant.refine}, {"step", run.variant.step}, {"tolerance", run.variant.tolerance}};
-    if (run.variant.element) variant["element"] = name_of(*run.variant.element);
-    variant["draw"] = run.variant.draw;
     return {{"name", variant_name(run.variant)},
-            {"variant", variant},
+            {"variant", variant_json(run.variant)},
             {"set", run.assignments},
             {"status", name_of(run.status)},
             {"message", run.message},

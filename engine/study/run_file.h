@@ -24,7 +24,8 @@ struct StoredRun {
 };
 StoredRun read_run(const std::filesystem::path& folder, const std::string& inputs, const StudyVariant& variant);
 
-/// JSON document of a run without its columns.
+Json variant_json(const StudyVariant& variant);
+/// JSON document of a run without its time series.
 Json run_json(const StudyRun& run);
 
 }  // namespace skerry

@@ -54,7 +54,6 @@ public:
           scene_(read_studied_scene(path, settings)),
           plan_(plan_study(scene_)),
           hasher_(path) {
-        keep_to_budget(settings.budget, threads_, plan_);
         runs_.resize(plan_.size());
         inputs_.resize(plan_.size());
         shares_ = std::vector<std::atomic<double>>(plan_.size());
@@ -66,41 +65,50 @@ public:
         const auto later = numbers.begin() + independent_runs;
         make_runs({numbers.begin(), later});
         if (!stop_ && runs_[0].status == StudyRunStatus::ok) {
-            leave_out_useless();
+            drop_pointless();
             make_runs({later, numbers.end()});
         }
         StudyResult result;
-        if (stop_) {
-            result.stopped = true;
-        } else {
-            for (std::size_t i = 0; i < plan_.size(); ++i)
-                if (!plan_[i].reason.empty()) leave_out(i);
-            for (StudyRun& run : runs_) choose_columns(settings_.probes, scene_.path, run.columns);
-            result = analyse(std::move(runs_), settings_);
-            if (result.cheapest)
-                result.cheapest->assignments = variant_assignments(scene_, result.cheapest->variant, mean_step_);
+        result.stopped = stop_;
+        if (!stop_ && runs_[0].status == StudyRunStatus::ok) {
+            result = analysed();
+        } else if (!stop_) {
+            result.sentences.push_back("The scene itself could not be run to its end: " + runs_[0].message +
+                                       ". Correct it first; no errors were determined.");
+            result.runs.assign(runs_.begin(), runs_.begin() + independent_runs);
         }
         result.scene = scene_.file.name;
         return result;
     }
 
 private:
-    /// Leaves out runs that can show nothing, as the first run has shown.
-    void leave_out_useless() {
+    /// Removes runs from the plan that the first run has shown to be pointless: other tolerances without contacts, and
+    /// steps longer than a call of advance.
+    void drop_pointless() {
         mean_step_ = runs_[0].time.back() / static_cast<Real>(std::max<std::uint64_t>(runs_[0].steps, 1));
-        for (std::size_t i = independent_runs; i < plan_.size(); ++i) {
-            const StudyVariant& variant = plan_[i].variant;
-            if (variant.tolerance != 1 && runs_[0].max_contacts == 0) plan_[i].reason = "the scene has no contacts";
-            if (variant.step > 1 && variant.step * mean_step_ > scene_.longest_call * (1 + 1e-6))
-                plan_[i].reason = "a step cannot be longer than the time between two frames or rows of probes";
-        }
+        std::erase_if(plan_, [&](const PlannedRun& planned) {
+            const StudyVariant& variant = planned.variant;
+            return (variant.tolerance != 1 && runs_[0].max_contacts == 0) ||
+                   (variant.step > 1 && variant.step * mean_step_ > scene_.longest_call * (1 + 1e-6));
+        });
+        keep_to_budget(settings_.budget, threads_, plan_);
     }
 
-    void leave_out(std::size_t i) {
-        runs_[i].variant = plan_[i].variant;
-        runs_[i].status = StudyRunStatus::left_out;
-        runs_[i].message = plan_[i].reason;
-        runs_[i].cpu_seconds = plan_[i].cost * runs_[0].cpu_seconds;
+    /// Result of the runs, of which at least the first was made.
+    StudyResult analysed() {
+        runs_.resize(plan_.size());
+        for (std::size_t i = 0; i < plan_.size(); ++i)
+            if (!plan_[i].reason.empty())
+                runs_[i] = {.variant = plan_[i].variant,
+                            .assignments = variant_assignments(scene_, plan_[i].variant, mean_step_),
+                            .status = StudyRunStatus::left_out,
+                            .message = plan_[i].reason,
+                            .cpu_seconds = plan_[i].cost * runs_[0].cpu_seconds};
+        for (StudyRun& run : runs_) choose_columns(settings_.probes, scene_.path, run.columns);
+        StudyResult result = analyse(std::move(runs_), settings_);
+        if (result.cheapest)
+            result.cheapest->assignments = variant_assignments(scene_, result.cheapest->variant, mean_step_);
+        return result;
     }
 
     std::string inputs_of(std::size_t i) {

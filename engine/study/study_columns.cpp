@@ -155,8 +155,7 @@ void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
             if (from.size() < 2) continue;
             const bool doubled = what.quantity.starts_with(name);
             sources_.push_back({{.what = {what.probe, doubled ? what.quantity : name + what.quantity, what.unit},
-                                 .size = size_,
-                                 .reported = many_bodies_},
+                                 .size = size_},
                                 part,
                                 from});
         }

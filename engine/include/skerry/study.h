@@ -77,8 +77,8 @@ struct StudyRun {
 
 /// Reliability of a quantity.
 /// - known: the error bar follows from runs whose differences behave as the theory says.
-/// - irregular: the differences do not; the error bar is the largest difference, without extrapolation.
-/// - singular: the largest stress grows without limit as the mesh is refined.
+/// - irregular: the differences do not; the error bar is a multiple of the largest difference.
+/// - singular: the largest stress grows without limit as the mesh is refined; `error` is infinite.
 /// - chaotic: the value depends on differences of the start that nobody can measure; see StudyResult::agree_until.
 /// - not_measured: the runs that could show the error are missing.
 enum class StudyVerdict { known, irregular, singular, chaotic, not_measured };
@@ -101,9 +101,10 @@ struct StudyQuantity {
     // Value extrapolated to vanishing edges, steps and tolerance, and its error.
     Real best = std::numeric_limits<Real>::quiet_NaN(), best_error = std::numeric_limits<Real>::quiet_NaN();
     Real error = std::numeric_limits<Real>::quiet_NaN();  // half width of the error bar of `value`
-    // Parts of `error` from the mesh, the step length and the contact solver.
+    // Parts of `error` from the mesh, the step length and the contact solver, and from differences of 1e-12 m at the
+    // start. A part is 0 if the study has no runs for it.
     Real mesh = std::numeric_limits<Real>::quiet_NaN(), step = std::numeric_limits<Real>::quiet_NaN(),
-         contact = std::numeric_limits<Real>::quiet_NaN();
+         contact = std::numeric_limits<Real>::quiet_NaN(), noise = std::numeric_limits<Real>::quiet_NaN();
     // Scale to which relative errors refer, for example the largest absolute value over the run.
     Real scale = std::numeric_limits<Real>::quiet_NaN();
     // Observed orders of convergence and those of the theory.
