@@ -19,10 +19,7 @@ constexpr double longest_interval = 600;  // longest time between two lines [s]
 }  // namespace
 
 CaseProgress::CaseProgress(bool wanted, const char* kind)
-    : wanted_(wanted),
-      bar_(wanted && isatty(STDERR_FILENO) != 0),
-      kind_(kind),
-      next_(bar_ ? 0 : first_line_after) {}
+    : wanted_(wanted), bar_(wanted && isatty(STDERR_FILENO) != 0), kind_(kind), next_(bar_ ? 0 : first_line_after) {}
 
 CaseProgress::~CaseProgress() {
     if (bar_) clear_bar();

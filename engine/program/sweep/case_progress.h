@@ -1,4 +1,5 @@
-// Displays the progress of the runs of a sweep or a study: as a bar on a terminal, otherwise as a line from time to time.
+// Displays the progress of the runs of a sweep or a study: as a bar on a terminal, otherwise as a line from time to
+// time.
 #pragma once
 
 #include "engine/program/progress.h"
