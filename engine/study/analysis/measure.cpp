@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-constexpr Real unknown = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
 
 const char* ending_of(StudyFigure figure) {
     switch (figure) {
@@ -43,7 +43,7 @@ std::size_t row_of_time(const StudyRun& run, Real time) {
 
 Real figure_value(const StudyRun& run, std::size_t column, StudyFigure figure, Real agree_until) {
     const std::vector<Real>& values = run.columns[column].values;
-    if (std::ranges::none_of(values, [](Real value) { return std::isfinite(value); })) return unknown;
+    if (std::ranges::none_of(values, [](Real value) { return std::isfinite(value); })) return no_value;
     if (figure == StudyFigure::end) return values[known_row(values, true)];
     if (figure == StudyFigure::agreed) return values[row_of_time(run, agree_until)];
     Real least = infinity, most = -infinity, sum = 0, seconds = 0;
@@ -168,14 +168,14 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     };
     const StudyColumn& scene = family.scene->columns[column];
     if (figure != StudyFigure::agreed && !is_statistic(scene) && quantity.noise > agreement_share * r.scale) {
-        r.error = r.mesh = r.step = r.contact = r.best = r.best_error = unknown;
+        r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
         return decide(StudyVerdict::chaotic, "runs begun 1e-12 m apart agree until " +
                                                  short_number(std::min(agree_until, family.scene->time.back())) +
                                                  " s; the value of this one run says nothing about others");
     }
     if (const std::string text = singular_text(family, column, figure); !text.empty()) {
         r.error = r.mesh = infinity;
-        r.best = r.best_error = unknown;
+        r.best = r.best_error = no_value;
         return decide(StudyVerdict::singular, text);
     }
     if (!std::isfinite(r.value)) return decide(StudyVerdict::not_measured, "the run has no value");
@@ -320,8 +320,8 @@ MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFig
     judge(family, column, figure, agree_until, wanted, quantity);
     for (const StudyRun& run : *family.all) {
         const bool comparable = std::ranges::find(family.comparable, &run) != family.comparable.end();
-        r.run_values.push_back(comparable ? value_of(run) : unknown);
-        r.run_errors.push_back(comparable ? error_with(quantity, run.variant) : unknown);
+        r.run_values.push_back(comparable ? value_of(run) : no_value);
+        r.run_errors.push_back(comparable ? error_with(quantity, run.variant) : no_value);
     }
     return quantity;
 }
@@ -334,7 +334,7 @@ Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant) {
     };
     Real mesh = at(quantity.mesh, std::exp2(Real{-1} * variant.refine), r.mesh);
     if (variant.element && quantity.mesh.shape() != ConvergenceShape::unmeasured) {
-        mesh = unknown;
+        mesh = no_value;
         for (const auto& [run, value] : quantity.elements)
             if (run.element == variant.element && run.refine == variant.refine) mesh = quantity.mesh.error_of(value);
     }
@@ -348,7 +348,7 @@ std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real
     for (std::size_t row = 0; row < scene.values.size(); ++row) {
         const bool agreed = family.scene->time[row] <= agree_until || is_statistic(scene);
         const auto value_of = [&](const StudyRun& run) { return run.columns[column].values[row]; };
-        band.push_back(agreed ? measure_values(family, scene.what, scale, value_of).result.error : unknown);
+        band.push_back(agreed ? measure_values(family, scene.what, scale, value_of).result.error : no_value);
     }
     return band;
 }
