@@ -58,7 +58,7 @@ std::vector<std::filesystem::path> write_results(const StudyOptions& options, co
     std::vector<std::filesystem::path> written{files.json, files.csv, files.page};
     write_file(files.json, [&](std::ostream& out) { out << study_json(result).dump(1) << "\n"; });
     write_file(files.csv, [&](std::ostream& out) { out << quantities_csv(result); });
-    write_file(files.page, [&](std::ostream& out) { out << study_page(result, options.settings.error); });
+    write_file(files.page, [&](std::ostream& out) { out << study_page(result); });
     if (result.cheapest) {
         write_cheapest_scene(options.scene, result, files.cheapest);
         written.push_back(files.cheapest);
