@@ -1,6 +1,7 @@
 // Replacement for engine/scene if SKERRY_SCENES=OFF.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/scene.h"
+#include "skerry/study.h"
 
 namespace skerry {
 
@@ -13,6 +14,9 @@ Scene load_scene_text(const std::string&, const std::filesystem::path&, const Sc
 }
 std::string scene_schema() {
     refuse_absent("scene_schema", "SKERRY_SCENES");
+}
+StudyResult study(const std::filesystem::path&, const StudySettings&) {
+    refuse_absent("study", "SKERRY_SCENES");
 }
 
 }  // namespace skerry

@@ -114,6 +114,8 @@ struct StudyQuantity {
     StudyVerdict verdict = StudyVerdict::not_measured;
     std::string sentence{};       // verdict in words
     Real agree_until = infinity;  // time until which perturbed runs agree on the column of the quantity [s]
+    // Value of each run and half width of its error bar, in the order of StudyResult::runs; NaN if unknown.
+    std::vector<Real> run_values{}, run_errors{};
 };
 
 /// The cheapest settings whose predicted errors are at most the wanted error.
@@ -130,6 +132,10 @@ struct StudyResult {
     std::string scene;           // name of the scene
     std::vector<StudyRun> runs;  // the first is the scene as it is
     std::vector<StudyQuantity> quantities;
+    double wanted_error = 0;  // StudySettings::error
+    // Half width of the error bar of each value of each column of the first run; empty for columns that are not
+    // reported.
+    std::vector<std::vector<Real>> bands;
     std::optional<CheapestSettings> cheapest;
     Real agree_until = infinity;         // time until which perturbed runs agree on all columns [s]
     Real growth_rate = 0;                // rate at which small differences of the start grow; 0 if they do not [1/s]

@@ -38,6 +38,7 @@ void add_run_sentences(const StudyFamily& family, std::vector<std::string>& sent
 
 StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings) {
     StudyResult result;
+    result.wanted_error = settings.error;
     result.runs = std::move(runs);
     const StudyFamily family(result.runs);
     const std::vector<Real> scales = column_scales(*family.scene);
@@ -51,10 +52,15 @@ StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings) {
     result.growth_rate = growth_rate(perturbed, scales);
     const bool chaotic = result.agree_until < family.scene->time.back();
     if (chaotic) result.sentences.push_back(chaos_text(result));
+    const bool reports_bodies = std::ranges::any_of(family.scene->columns, [](const StudyColumn& column) {
+        return column.reported && column.what.unit == "m" && !is_statistic(column);
+    });
     std::vector<MeasuredQuantity> measured;
+    result.bands.resize(scales.size());
     for (std::size_t column = 0; column < scales.size(); ++column) {
         const StudyColumn& what = family.scene->columns[column];
-        if (!what.reported || (is_statistic(what) && !chaotic)) continue;
+        if (!what.reported || (is_statistic(what) && !chaotic && reports_bodies)) continue;
+        result.bands[column] = error_band(family, column, scales[column], until[column]);
         for (const StudyFigure figure : figures_of(family, column, until[column], scales[column]))
             measured.push_back(measure(family, column, figure, scales[column], until[column], settings.error));
     }

@@ -47,18 +47,6 @@ std::vector<Option> factor_options(const StudyFamily& family, Real StudyVariant:
     return options;
 }
 
-Real mesh_error(const MeasuredQuantity& quantity, const StudyVariant& variant) {
-    if (quantity.mesh.shape() == ConvergenceShape::unmeasured) return 0;
-    if (!variant.element) return quantity.mesh.error_at(std::exp2(Real{-1} * variant.refine));
-    for (const auto& [run, value] : quantity.elements)
-        if (run == variant) return quantity.mesh.error_of(value);
-    return infinity;
-}
-
-Real factor_error(const Convergence& convergence, Real h) {
-    return convergence.shape() == ConvergenceShape::unmeasured ? 0 : convergence.error_at(h);
-}
-
 bool counts(const MeasuredQuantity& quantity) {
     const StudyQuantity& r = quantity.result;
     return (r.verdict == StudyVerdict::known || r.verdict == StudyVerdict::irregular) && std::isfinite(r.error) &&
@@ -80,9 +68,7 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
         const StudyQuantity* worst = nullptr;
         for (const MeasuredQuantity& quantity : quantities) {
             if (!counts(quantity)) continue;
-            const Real error = (mesh_error(quantity, mesh.variant) + factor_error(quantity.step, step.variant.step) +
-                                factor_error(quantity.contact, tolerance.variant.tolerance) + quantity.noise) /
-                               quantity.result.scale;
+            const Real error = error_with(quantity, found.variant) / quantity.result.scale;
             if (!(error <= found.error)) {
                 found.error = std::isnan(error) ? infinity : error;
                 worst = &quantity.result;

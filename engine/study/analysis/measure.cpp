@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-constexpr Real unknown = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
 
 const char* ending_of(StudyFigure figure) {
     switch (figure) {
@@ -43,7 +43,7 @@ std::size_t row_of_time(const StudyRun& run, Real time) {
 
 Real figure_value(const StudyRun& run, std::size_t column, StudyFigure figure, Real agree_until) {
     const std::vector<Real>& values = run.columns[column].values;
-    if (std::ranges::none_of(values, [](Real value) { return std::isfinite(value); })) return unknown;
+    if (std::ranges::none_of(values, [](Real value) { return std::isfinite(value); })) return no_value;
     if (figure == StudyFigure::end) return values[known_row(values, true)];
     if (figure == StudyFigure::agreed) return values[row_of_time(run, agree_until)];
     Real least = infinity, most = -infinity, sum = 0, seconds = 0;
@@ -168,14 +168,14 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     };
     const StudyColumn& scene = family.scene->columns[column];
     if (figure != StudyFigure::agreed && !is_statistic(scene) && quantity.noise > agreement_share * r.scale) {
-        r.error = r.mesh = r.step = r.contact = r.best = r.best_error = unknown;
+        r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
         return decide(StudyVerdict::chaotic, "runs begun 1e-12 m apart agree until " +
                                                  short_number(std::min(agree_until, family.scene->time.back())) +
                                                  " s; the value of this one run says nothing about others");
     }
     if (const std::string text = singular_text(family, column, figure); !text.empty()) {
         r.error = r.mesh = infinity;
-        r.best = r.best_error = unknown;
+        r.best = r.best_error = no_value;
         return decide(StudyVerdict::singular, text);
     }
     if (!std::isfinite(r.value)) return decide(StudyVerdict::not_measured, "the run has no value");
@@ -206,6 +206,48 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
         if (std::abs(value - r.value) > std::max(r.error, wanted * r.scale) && r.sentence.empty())
             r.sentence = "with " + std::string(name_of(*variant.element)) + " elements the value is " +
                          short_number(value, 4) + " " + r.unit + ", outside the error bar";
+}
+
+/// Measures the error of a number of each run.
+template <class ValueOf>
+MeasuredQuantity measure_values(const StudyFamily& family, const SeriesColumn& what, Real scale,
+                                const ValueOf& value_of) {
+    MeasuredQuantity quantity;
+    StudyQuantity& r = quantity.result;
+    r.unit = what.unit;
+    r.scale = scale;
+    r.value = value_of(*family.scene);
+    std::vector<ConvergenceLevel> mesh, step, contact;
+    for (const StudyRun* run : family.comparable) {
+        const StudyVariant& v = run->variant;
+        const Real value = value_of(*run);
+        if (is_mesh(v)) mesh.push_back({std::exp2(Real{-1} * v.refine), value});
+        if (is_step(v)) step.push_back({v.step, value});
+        if (is_contact(v)) contact.push_back({v.tolerance, value});
+        if (v.draw != 0 && std::isfinite(value)) quantity.noise = std::max(quantity.noise, std::abs(value - r.value));
+        if (v.element) quantity.elements.emplace_back(v, value);
+    }
+    constexpr Real rounding = 1e-12;
+    Real noise = std::max(rounding * r.scale, quantity.noise);
+    quantity.contact = Convergence(contact, {1, 1}, noise);
+    if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());  // the solver's error is noise, too
+    quantity.mesh = Convergence(mesh, mesh_theory(what), noise);
+    quantity.step = Convergence(step, step_theory(*family.scene), noise);
+    r.expected_mesh_order = mesh_theory(what).least;
+    r.expected_step_order = step_theory(*family.scene).least;
+    // A part that the study has no runs for is zero: rigid bodies have no mesh error, scenes without contacts no
+    // contact error.
+    const auto error = [&](const Convergence& convergence, auto belongs) {
+        const bool planned = std::ranges::any_of(
+            *family.all, [&](const StudyRun& run) { return belongs(run.variant) && !run.variant.is_scene(); });
+        return planned ? convergence.error() : 0;
+    };
+    r.mesh = error(quantity.mesh, is_mesh);
+    r.step = error(quantity.step, is_step);
+    r.contact = error(quantity.contact, is_contact);
+    r.noise = quantity.noise;
+    combine(quantity);
+    return quantity;
 }
 
 }  // namespace
@@ -270,45 +312,45 @@ std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t colum
 MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFigure figure, Real scale,
                          Real agree_until, Real wanted) {
     const SeriesColumn& what = family.scene->columns[column].what;
-    MeasuredQuantity quantity;
+    const auto value_of = [&](const StudyRun& run) { return figure_value(run, column, figure, agree_until); };
+    MeasuredQuantity quantity = measure_values(family, what, scale, value_of);
     StudyQuantity& r = quantity.result;
     r.name = what.probe + "." + what.quantity + ending_of(figure);
-    r.unit = what.unit;
-    r.scale = scale;
     r.agree_until = agree_until;
-    r.value = figure_value(*family.scene, column, figure, agree_until);
-    std::vector<ConvergenceLevel> mesh, step, contact;
-    for (const StudyRun* run : family.comparable) {
-        const StudyVariant& v = run->variant;
-        const Real value = figure_value(*run, column, figure, agree_until);
-        if (is_mesh(v)) mesh.push_back({std::exp2(Real{-1} * v.refine), value});
-        if (is_step(v)) step.push_back({v.step, value});
-        if (is_contact(v)) contact.push_back({v.tolerance, value});
-        if (v.draw != 0 && std::isfinite(value)) quantity.noise = std::max(quantity.noise, std::abs(value - r.value));
-        if (v.element) quantity.elements.emplace_back(v, value);
-    }
-    constexpr Real rounding = 1e-12;
-    Real noise = std::max(rounding * scale, quantity.noise);
-    quantity.contact = Convergence(contact, {1, 1}, noise);
-    if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());  // the solver's error is noise, too
-    quantity.mesh = Convergence(mesh, mesh_theory(what), noise);
-    quantity.step = Convergence(step, step_theory(*family.scene), noise);
-    r.expected_mesh_order = mesh_theory(what).least;
-    r.expected_step_order = step_theory(*family.scene).least;
-    // A part that the study has no runs for is zero: rigid bodies have no mesh error, scenes without contacts no
-    // contact error.
-    const auto error = [&](const Convergence& convergence, auto belongs) {
-        const bool planned = std::ranges::any_of(
-            *family.all, [&](const StudyRun& run) { return belongs(run.variant) && !run.variant.is_scene(); });
-        return planned ? convergence.error() : 0;
-    };
-    r.mesh = error(quantity.mesh, is_mesh);
-    r.step = error(quantity.step, is_step);
-    r.contact = error(quantity.contact, is_contact);
-    r.noise = quantity.noise;
-    combine(quantity);
     judge(family, column, figure, agree_until, wanted, quantity);
+    for (const StudyRun& run : *family.all) {
+        const bool comparable = std::ranges::find(family.comparable, &run) != family.comparable.end();
+        r.run_values.push_back(comparable ? value_of(run) : no_value);
+        r.run_errors.push_back(comparable ? error_with(quantity, run.variant) : no_value);
+    }
     return quantity;
+}
+
+Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant) {
+    const StudyQuantity& r = quantity.result;
+    if (std::isnan(r.error) || r.verdict == StudyVerdict::singular) return r.error;
+    const auto at = [](const Convergence& convergence, Real h, Real otherwise) {
+        return convergence.shape() == ConvergenceShape::unmeasured ? otherwise : convergence.error_at(h);
+    };
+    Real mesh = at(quantity.mesh, std::exp2(Real{-1} * variant.refine), r.mesh);
+    if (variant.element && quantity.mesh.shape() != ConvergenceShape::unmeasured) {
+        mesh = no_value;
+        for (const auto& [run, value] : quantity.elements)
+            if (run.element == variant.element && run.refine == variant.refine) mesh = quantity.mesh.error_of(value);
+    }
+    return mesh + at(quantity.step, variant.step, r.step) + at(quantity.contact, variant.tolerance, r.contact) +
+           quantity.noise;
+}
+
+std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real scale, Real agree_until) {
+    const StudyColumn& scene = family.scene->columns[column];
+    std::vector<Real> band;
+    for (std::size_t row = 0; row < scene.values.size(); ++row) {
+        const bool agreed = family.scene->time[row] <= agree_until || is_statistic(scene);
+        const auto value_of = [&](const StudyRun& run) { return run.columns[column].values[row]; };
+        band.push_back(agreed ? measure_values(family, scene.what, scale, value_of).result.error : no_value);
+    }
+    return band;
 }
 
 }  // namespace skerry

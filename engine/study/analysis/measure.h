@@ -49,6 +49,13 @@ std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t colum
 MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFigure figure, Real scale,
                          Real agree_until, Real wanted);
 
+/// Half width of the error bar of the value that a run with these settings has. Finer meshes than those of the runs are
+/// predicted: infinity if that is impossible. NaN if unknown.
+Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant);
+
+/// Half width of the error bar of each row of a column.
+std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real scale, Real agree_until);
+
 /// True for a column that summarises all bodies. Its values remain meaningful in chaotic scenes.
 bool is_statistic(const StudyColumn& column);
 
