@@ -137,8 +137,8 @@ void add_middle_nodes(RawMesh& mesh) {
         middle.resize(elements.size());
         for (std::size_t i = 0; i < elements.size(); ++i)
             for (std::size_t e = 0; e < middle[i].size(); ++e)
-                middle[i][e] = middle_node(elements[i][second_order_edges[e][0]],
-                                           elements[i][second_order_edges[e][1]], mesh, known);
+                middle[i][e] = middle_node(elements[i][second_order_edges[e][0]], elements[i][second_order_edges[e][1]],
+                                           mesh, known);
     };
     add(mesh.tetrahedra, mesh.middle);
     add(mesh.triangles, mesh.triangle_middle);
