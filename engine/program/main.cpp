@@ -325,6 +325,55 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
     command.add_flag("--quiet", options.quiet, "print no progress and no table");
 }
 
+/// Reads a share: 0.01 or 1%.
+std::optional<double> read_share(std::string text) {
+    const bool percent = !text.empty() && text.back() == '%';
+    if (percent) text.pop_back();
+    double value = 0;
+    if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value) || !(value > 0)) return {};
+    return percent ? value / 100 : value;
+}
+
+void add_study(CLI::App& app, StudyOptions& options) {
+    CLI::App& command = *app.add_subcommand("study", "Determine the errors of the results of a scene");
+    command.footer(study_examples);
+    command.add_option("SCENE", options.scene, "scene file (JSON); `skerry schema` prints its format")->required();
+    command
+        .add_option_function<std::string>(
+            "--error", [&options](const std::string& text) { options.settings.error = *read_share(text); },
+            "wanted relative error, for which the cheapest settings are searched; default: 1%")
+        ->check(CLI::Validator(
+            [](std::string& text) {
+                return read_share(text) ? std::string() : "found " + text + ", expected a number above 0 such as 1%";
+            },
+            "SHARE"));
+    command
+        .add_option("--probe", options.settings.probes,
+                    "probe or body whose quantities get error bars, as NAME or NAME.QUANTITY; repeat the option for "
+                    "several; default: all probes of the scene, and place, contact force and largest stress of each "
+                    "body, and the energies")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+    add_number(command, "--seconds", options.settings.seconds,
+               "time at which the runs end [s]; default: \"seconds\" of the scene");
+    add_set(command, options.settings.assignments);
+    command
+        .add_option(
+            "--threads,--jobs", options.settings.threads,
+            "number of threads of the study; 0: one per core. The runs have one thread each, except very long ones")
+        ->check(CLI::Range(0, 1024));
+    command
+        .add_option(
+            "--budget", options.settings.budget,
+            "largest wall time of the study, divided by that of one run; finer meshes that do not fit are left out")
+        ->check(positive_number)
+        ->capture_default_str();
+    command.add_option("--out", options.out, "folder for the results; default: out/NAME_study, if SCENE is NAME.json");
+    command.add_flag("--redo", options.settings.redo,
+                     "replace runs in the folder that belong to another version of the scene or to other settings");
+    command.add_flag("--quiet", options.quiet, "print no progress and no report");
+}
+
 /// Throws SceneError that names an unknown command. CLI11 only says that a command is required.
 void require_known_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return;
@@ -361,12 +410,14 @@ int run_command_line(int argc, char** argv) {
     InspectOptions inspect_options;
     FillOptions fill_options;
     SweepOptions sweep_options;
+    StudyOptions study_options;
     add_run(app, run_options);
     add_view(app, view_options);
     add_solve(app, solve_options);
     add_inspect(app, inspect_options);
     add_fill(app, fill_options);
     add_sweep(app, sweep_options);
+    add_study(app, study_options);
     bool schema_of_sweeps = false;
     app.add_subcommand("schema", "Print the JSON schema of scenes")
         ->add_flag("--sweep", schema_of_sweeps, "print the JSON schema of the input files of `skerry sweep` instead");
@@ -386,6 +437,7 @@ int run_command_line(int argc, char** argv) {
     if (app.got_subcommand("fill")) return fill(fill_options);
     if (app.got_subcommand("materials")) return materials(materials_as_json);
     if (app.got_subcommand("sweep")) return sweep(sweep_options);
+    if (app.got_subcommand("study")) return study(study_options);
     std::cout << (schema_of_sweeps ? sweep_schema() : scene_schema());
     return exit_ok;
 }
