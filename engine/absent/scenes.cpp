@@ -18,5 +18,17 @@ std::string scene_schema() {
 StudyResult study(const std::filesystem::path&, const StudySettings&) {
     refuse_absent("study", "SKERRY_SCENES");
 }
+std::string study_text(const StudyResult&) {
+    refuse_absent("study_text", "SKERRY_SCENES");
+}
+std::string study_page(const StudyResult&) {
+    refuse_absent("study_page", "SKERRY_SCENES");
+}
+std::string study_json(const StudyResult&) {
+    refuse_absent("study_json", "SKERRY_SCENES");
+}
+void write_cheapest_scene(const std::filesystem::path&, const StudyResult&, const std::filesystem::path&) {
+    refuse_absent("write_cheapest_scene", "SKERRY_SCENES");
+}
 
 }  // namespace skerry

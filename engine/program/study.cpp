@@ -10,9 +10,8 @@
 #include "engine/program/require_writable.h"
 #include "engine/program/signal_guard.h"
 #include "engine/program/sweep/case_progress.h"
-#include "engine/study/report/report.h"
-#include "engine/study/study_json.h"
 #include "skerry/error.h"
+#include "skerry/study.h"
 
 namespace skerry {
 
@@ -56,7 +55,7 @@ std::string quantities_csv(const StudyResult& result) {
 std::vector<std::filesystem::path> write_results(const StudyOptions& options, const StudyFiles& files,
                                                  const StudyResult& result) {
     std::vector<std::filesystem::path> written{files.json, files.csv, files.page};
-    write_file(files.json, [&](std::ostream& out) { out << study_json(result).dump(1) << "\n"; });
+    write_file(files.json, [&](std::ostream& out) { out << study_json(result); });
     write_file(files.csv, [&](std::ostream& out) { out << quantities_csv(result); });
     write_file(files.page, [&](std::ostream& out) { out << study_page(result); });
     if (result.cheapest) {

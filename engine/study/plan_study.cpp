@@ -1,10 +1,12 @@
 #include "engine/study/plan_study.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <iterator>
+#include <utility>
 
 #include "engine/scene/run_plan.h"
-#include "engine/study/run_file.h"
 #include "engine/study/study_columns.h"
 
 namespace skerry {
@@ -16,19 +18,31 @@ std::string number_json(double value) {
     return Json(value).dump();
 }
 
-/// True if the element kind of the body matters, and an assignment can change it. Bodies of included scenes belong to
-/// another file.
-bool has_elements(const StudiedScene& scene, const BodyEntry& body) {
-    return body.mesh && body.dynamics != BodyDynamics::rigid && body.place.file() == scene.path;
+std::vector<ElementKind> elements_of(const SceneFile& file) {
+    std::vector<ElementKind> kinds;
+    for (const BodyEntry& body : file.bodies) kinds.push_back(body.element);
+    return kinds;
 }
 
 /// Adds the runs in which all bodies have linear, or all have smoothed elements, unless they have them anyway.
 void add_element_runs(const StudiedScene& scene, std::vector<PlannedRun>& plan) {
-    for (const ElementKind kind : {ElementKind::linear, ElementKind::smoothed})
-        if (std::ranges::any_of(scene.file.bodies, [&](const BodyEntry& body) {
-                return has_elements(scene, body) && body.element != kind;
-            }))
+    for (const ElementKind kind : {ElementKind::linear, ElementKind::smoothed}) {
+        std::vector<std::string> changed = scene.assignments;
+        for (std::string& assignment : element_assignments(scene.file, scene.path, kind))
+            changed.push_back(std::move(assignment));
+        if (elements_of(read_scene_file(scene.path, changed)) != elements_of(scene.file))
             plan.push_back({{.element = kind}, kind == ElementKind::linear ? 1.0 : 2.0, {}});
+    }
+}
+
+/// Adds the run with the meshes at a level, or the reason why the scene does not have it.
+void add_level_run(const StudiedScene& scene, int level, std::vector<PlannedRun>& plan) {
+    if (scene.levels.meshes.empty()) return;
+    // A level has eight times the tetrahedra of the next coarser one, and explicit bodies take steps half as long.
+    const double factor = scene.has_explicit ? 16 : 8;
+    plan.push_back({{.refine = level}, std::pow(factor, level), {}});
+    if (level < scene.levels.coarsest) plan.back().reason = "no coarser meshes: " + scene.levels.why_not_coarser;
+    if (level > scene.levels.finest) plan.back().reason = "no finer meshes: " + scene.levels.why_not_finer;
 }
 
 }  // namespace
@@ -37,7 +51,9 @@ StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySe
     StudiedScene studied{.path = path,
                          .file = read_scene_file(path, settings.assignments),
                          .assignments = settings.assignments,
+                         .levels = {},
                          .settings = {}};
+    studied.levels = levels_of(studied.file, path);
     SceneOverrides overrides{.threads = 1};
     overrides.assignments = settings.assignments;
     overrides.fill_python = settings.fill_python;
@@ -59,8 +75,12 @@ std::vector<PlannedRun> plan_study(const StudiedScene& scene) {
     plan.push_back({{.step = 0.5}, 2, {}});
     constexpr double solving = 1.5;  // a contact solver needs about twice the sweeps, which take half of the time
     plan.push_back({{.tolerance = 0.01}, solving, {}});
+    add_level_run(scene, -1, plan);
+    if (scene.levels.coarsest <= -2) add_level_run(scene, -2, plan);
+    add_level_run(scene, 1, plan);
     if (!scene.has_explicit) plan.push_back({{.step = 2}, 0.5, {}});
     plan.push_back({{.step = 0.25}, 4, {}});
+    if (scene.levels.finest >= 2) add_level_run(scene, 2, plan);
     return plan;
 }
 
@@ -109,10 +129,9 @@ std::vector<std::string> variant_assignments(const StudiedScene& scene, const St
         if (variant.tolerance < 1)
             assignments.push_back("settings.max_iterations=" + std::to_string(scene.settings.max_iterations * more));
     }
-    if (variant.element)
-        for (const BodyEntry& body : scene.file.bodies)
-            if (has_elements(scene, body))
-                assignments.push_back(body.place.path() + ".element=" + std::string(name_of(*variant.element)));
+    const auto add = [&](std::vector<std::string> more) { std::ranges::move(more, std::back_inserter(assignments)); };
+    if (variant.refine != 0) add(scene.levels.assignments(variant.refine));
+    if (variant.element) add(element_assignments(scene.file, scene.path, *variant.element));
     return assignments;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/mesh_levels.h"
 #include "engine/scene/scene_file.h"
 #include "skerry/scene.h"
 #include "skerry/study.h"
@@ -16,6 +17,7 @@ struct StudiedScene {
     std::filesystem::path path;
     SceneFile file;
     std::vector<std::string> assignments;  // changes that all runs share
+    SceneLevels levels;
     Settings settings;
     bool has_explicit = false, has_implicit = false;  // kinds of deformable bodies
     double longest_call = 0;                          // longest simulated time of a call of advance [s]

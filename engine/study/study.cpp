@@ -6,10 +6,13 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <ostream>
 #include <utility>
 
 #include "engine/output/write_file.h"
+#include "engine/scene/assign.h"
 #include "engine/scene/case_hash.h"
+#include "engine/scene/parse_json.h"
 #include "engine/study/analysis/analyse.h"
 #include "engine/study/plan_study.h"
 #include "engine/study/run_file.h"
@@ -235,6 +238,21 @@ StudyResult study(const std::filesystem::path& scene, const StudySettings& setti
     check_settings(settings);
     if (!settings.folder.empty()) make_folder(settings.folder);
     return RunningStudy(scene, settings).run();
+}
+
+void write_cheapest_scene(const std::filesystem::path& scene, const StudyResult& result,
+                          const std::filesystem::path& file) {
+    if (!result.cheapest)
+        Complaint{.file = scene.string(),
+                  .object = "study",
+                  .field = {},
+                  .found = "a result without cheapest settings",
+                  .expected = "at least one quantity with a known error",
+                  .hint = {}}
+            .raise();
+    Json json = read_json(scene);
+    for (const std::string& assignment : result.cheapest->assignments) assign(assignment, scene, json);
+    write_file(file, [&](std::ostream& out) { out << json.dump(1) << "\n"; });
 }
 
 }  // namespace skerry

@@ -1,6 +1,5 @@
-#include "engine/study/study_json.h"
-
 #include "engine/study/run_file.h"
+#include "skerry/study.h"
 
 namespace skerry {
 
@@ -30,7 +29,7 @@ Json quantity_json(const StudyQuantity& q) {
 
 }  // namespace
 
-Json study_json(const StudyResult& result) {
+std::string study_json(const StudyResult& result) {
     Json json = {{"schema", "skerry.study/1"},        {"scene", result.scene},
                  {"quantities", Json::array()},       {"cheapest", nullptr},
                  {"agree_until", result.agree_until}, {"growth_rate", result.growth_rate},
@@ -41,7 +40,7 @@ Json study_json(const StudyResult& result) {
                             {"reaches", cheapest->reaches},         {"error", cheapest->error},
                             {"cpu_seconds", cheapest->cpu_seconds}, {"sentence", cheapest->sentence}};
     for (const StudyRun& run : result.runs) json["runs"].push_back(run_json(run));
-    return json;
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace skerry

@@ -175,5 +175,22 @@ struct StudySettings {
 /// holds runs of another scene.
 StudyResult study(const std::filesystem::path& scene, const StudySettings& settings = {});
 
+/// Returns one line per quantity with its error bar, the verdicts, the runs that are missing, and the cheapest
+/// settings. Long lists are cut; the page has them all.
+std::string study_text(const StudyResult& result);
+
+/// Returns a web page with a plot of error against CPU time, the time series with their error bars, and tables of all
+/// quantities and runs. The page is one file that needs no other files.
+std::string study_page(const StudyResult& result);
+
+/// Returns a JSON document with all numbers except the time series of the runs. A number that is not finite becomes
+/// null.
+std::string study_json(const StudyResult& result);
+
+/// Writes the scene with the cheapest settings, which `result` must have. Paths in the new file lead to the files of
+/// the scene. Throws SceneError.
+void write_cheapest_scene(const std::filesystem::path& scene, const StudyResult& result,
+                          const std::filesystem::path& file);
+
 }  // namespace skerry
 #pragma GCC visibility pop

@@ -4,8 +4,8 @@
 
 #include "engine/output/table/table_page.h"
 #include "engine/program/number_text.h"
-#include "engine/study/report/report.h"
 #include "engine/study/report/wording.h"
+#include "skerry/study.h"
 
 namespace skerry {
 

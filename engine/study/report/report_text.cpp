@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "engine/program/number_text.h"
-#include "engine/study/report/report.h"
 #include "engine/study/report/wording.h"
+#include "skerry/study.h"
 
 namespace skerry {
 
