@@ -5,7 +5,6 @@
 
 #include "engine/output/table/table_page.h"
 #include "engine/study/analysis/analyse.h"
-#include "engine/study/report/report.h"
 
 namespace skerry::test::study_report_test {
 
