@@ -236,7 +236,6 @@ private:
 
 StudyResult study(const std::filesystem::path& scene, const StudySettings& settings) {
     check_settings(settings);
-    if (!settings.folder.empty()) make_folder(settings.folder);
     return RunningStudy(scene, settings).run();
 }
 
