@@ -47,7 +47,8 @@ public:
           checkpoints_(checkpoints),
           progress_(progress),
           result_(result),
-          probes_(scene) {
+          probes_(scene),
+          errors_(scene.world) {
         if (options.series_figures && !scene.recorded.empty()) figures_.emplace(world_, scene.recorded);
     }
 
@@ -82,6 +83,8 @@ public:
         result_.checkpoints = checkpoints_.written();
         result_.checkpoints_failed = checkpoints_.failed();
         result_.probes = probes_.records();
+        errors_.finish(world_);
+        result_.errors = errors_.bodies();
         if (figures_) result_.series = figures_->all();
     }
 
@@ -120,6 +123,7 @@ private:
         if (!(sampled > 0)) return;
         probes_.sample(world_, sampled);
         outputs_.sample(world_);
+        errors_.sample(world_);
         if (figures_) figures_->sample(world_);
     }
     void write_checkpoint(long frame, int sample) {
@@ -141,6 +145,7 @@ private:
     Progress& progress_;
     RunResult& result_;
     ProbeRecorder probes_;
+    ErrorEstimator errors_;
     std::optional<SeriesFigures> figures_;
     std::uint64_t steps_ = 0;  // number of steps since the run was started or resumed
 };

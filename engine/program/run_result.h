@@ -10,6 +10,7 @@
 #include "engine/output/writer.h"
 #include "engine/program/commands.h"
 #include "engine/program/probe_recorder.h"
+#include "skerry/estimate.h"
 #include "skerry/scene.h"
 
 namespace skerry {
@@ -42,6 +43,7 @@ struct RunResult {
     Real peak_kinetic_energy = 0;  // largest kinetic energy at the end of a frame [J]
     Real mean_edge = 0;            // mean edge length of the surfaces, averaged over the bodies [m]
     WorldReport report;
+    std::vector<ErrorEstimate> errors;  // by body; of the part of the run after --restart
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;
     std::vector<BrokenTie> broken_ties;

@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "engine/estimate/mesh_error.h"
+#include "engine/world/world_state.h"
+#include "skerry/estimate.h"
+
+namespace skerry {
+
+namespace {
+
+/// Errors of the meshes of all bodies, each at the sample with the largest elastic energy of the body.
+class MeshErrors {
+public:
+    /// `all`: also samples sleeping bodies that were not sampled before.
+    void sample(const World& world, bool all) {
+        const Model& model = WorldAccess::state_of(world).model;
+        for (const BodyHandle handle : world.bodies()) {
+            const auto body = static_cast<std::size_t>(model.row(handle, "ErrorEstimator::sample"));
+            const bool is_new = !found_.contains(handle);
+            if (model.bodies.asleep[body] != 0 && !(all && is_new)) continue;
+            const MeshError error = measure_mesh_error(model, body);
+            if (!(error.stored > (is_new ? 0 : found_[handle].stored))) continue;
+            found_[handle] = {.stored = error.stored,
+                              .mesh = error.mesh(),
+                              .deflection = model.yields(body) ? not_estimated : error.deflection(),
+                              .stress = error.stress,
+                              .worst = static_cast<Index>(std::ranges::max_element(error.error) - error.error.begin()),
+                              .time = world.time()};
+        }
+    }
+
+    void add_to(std::vector<ErrorEstimate>& bodies) const {
+        for (ErrorEstimate& body : bodies) {
+            const auto found = found_.find(body.body);
+            if (found == found_.end()) continue;
+            body.mesh = found->second.mesh;
+            body.deflection = found->second.deflection;
+            body.stress = found->second.stress;
+            body.worst_tetrahedron = found->second.worst;
+            body.time = found->second.time;
+        }
+    }
+
+private:
+    struct Found {
+        Real stored, mesh, deflection, stress;
+        Index worst;
+        Real time;
+    };
+    std::map<BodyHandle, Found> found_;
+};
+
+}  // namespace
+
+struct ErrorEstimator::Impl {
+    MeshErrors mesh;
+    std::vector<ErrorEstimate> bodies;
+    std::uint64_t steps = 0;  // steps in which something moved, at the last sample
+
+    /// Steps in which something moved, since the world was made.
+    static std::uint64_t steps_of(const World& world) {
+        const RunCounters& counters = WorldAccess::state_of(world).record.counters;
+        return counters.steps - counters.resting_steps;
+    }
+
+    void take(const World& world, bool last) {
+        steps = steps_of(world);
+        mesh.sample(world, last);
+        bodies.clear();
+        for (const BodyHandle body : world.bodies()) bodies.push_back({.body = body, .name = world.name(body)});
+        mesh.add_to(bodies);
+    }
+};
+
+ErrorEstimator::ErrorEstimator(const World& world) : impl_(std::make_unique<Impl>()) {
+    impl_->steps = Impl::steps_of(world);
+}
+ErrorEstimator::~ErrorEstimator() = default;
+ErrorEstimator::ErrorEstimator(ErrorEstimator&&) noexcept = default;
+ErrorEstimator& ErrorEstimator::operator=(ErrorEstimator&&) noexcept = default;
+
+void ErrorEstimator::sample(const World& world) {
+    // A sample takes the computing time of about ten explicit steps, and that of less than one implicit step.
+    constexpr std::uint64_t explicit_steps = 1000, implicit_steps = 50;
+    const bool is_implicit = WorldAccess::state_of(world).model.implicit_nodes.displacement.size() > 0;
+    if (Impl::steps_of(world) - impl_->steps >= (is_implicit ? implicit_steps : explicit_steps))
+        impl_->take(world, false);
+}
+
+void ErrorEstimator::finish(const World& world) {
+    impl_->take(world, true);
+}
+
+std::vector<ErrorEstimate> ErrorEstimator::bodies() const {
+    return impl_->bodies;
+}
+
+}  // namespace skerry
