@@ -23,7 +23,7 @@ class StepError {
 public:
     /// Takes a sample. The first sample that contains a body stores the start of its motion.
     void sample(const World& world);
-    /// Sets ErrorEstimate::step of the bodies that have moved.
+    /// Sets ErrorEstimate::step, and deformation of bodies that deform.
     void add_to(std::vector<ErrorEstimate>& bodies) const;
 
 private:
