@@ -1,5 +1,6 @@
 #include "engine/estimate/contact_area.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -11,9 +12,8 @@ namespace skerry {
 
 namespace {
 
-// Radius of curvature of a smooth surface, over its mean edge length. At edges and corners of a mesh the radius is
-// shorter, on flat faces longer.
-constexpr Real least_radius = 1.5, most_radius = 1000;
+// Curvature times mean edge length at an edge or corner of a mesh, at least, and on a flat face, at most.
+constexpr Real sharp = 0.67, flat = 1e-3;
 
 /// Mean curvature of a sphere or capsule; 0 for other shapes, which are flat or have sharp edges [1/m].
 Real curvature_of(const ColliderGeometry& geometry) {
@@ -41,6 +41,7 @@ Real mean_of_nodes(const Contact& contact, bool first, std::span<const Real> of_
 struct Patch {
     Real force = 0;                // [N]
     Real curvature = 0, edge = 0;  // [N/m, N m]
+    Real sharpest = 0;             // largest curvature of a contact times the edge length there
 };
 
 }  // namespace
@@ -104,14 +105,16 @@ void ContactArea::sample(const World& world) {
             Patch& patch = patches[{body, first ? contact.second : contact.first, contact.collider}];
             patch.force += force;
             patch.curvature += force * curvature;
-            patch.edge += force * mean_of_nodes(contact, first, surface_of(world, body).edge);
+            const Real edge = mean_of_nodes(contact, first, surface_of(world, body).edge);
+            patch.edge += force * edge;
+            patch.sharpest = std::max(patch.sharpest, curvature * edge);
         }
     }
     for (const auto& [objects, patch] : patches) {
         const auto& [body, other, collider] = objects;
         const Real edge = patch.edge / patch.force, radius = patch.force / patch.curvature;
         Area& area = areas_[body];
-        if (!(patch.force > area.force) || !(radius > least_radius * edge && radius < most_radius * edge)) continue;
+        if (!(patch.force > area.force) || patch.sharpest > sharp || !(edge / radius > flat)) continue;
         const Real compliance = compliance_of(world, body) + compliance_of(world, other);
         area = {patch.force, std::cbrt(0.75 * patch.force * radius * compliance), edge};
     }

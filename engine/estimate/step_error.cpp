@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "engine/world/edit/rigid_bodies.h"
@@ -14,8 +15,9 @@ namespace skerry {
 
 /// The steps between two samples.
 struct StepError::Interval {
-    Real seconds;  // duration [s]
-    Real step;     // mean length of the steps [s]
+    Real seconds;                   // duration [s]
+    Real step;                      // mean length of the steps [s]
+    std::set<BodyHandle> collided;  // bodies that touch another body
 };
 
 namespace {
@@ -102,6 +104,15 @@ std::map<BodyHandle, AttachmentHandle> holders_of(const World& world) {
     return holders;
 }
 
+/// Bodies that touch another body.
+std::set<BodyHandle> touching(const World& world) {
+    std::set<BodyHandle> found;
+    for (const Contact& contact : world.contacts())
+        if (world.alive(contact.first) && world.alive(contact.second) && !contact.impulse.isZero(0))
+            found.insert({contact.first, contact.second});
+    return found;
+}
+
 }  // namespace
 
 StepError::Motion StepError::begin(const World& world, BodyHandle body, std::optional<AttachmentHandle> holder) {
@@ -110,6 +121,7 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
     Motion motion{.start_time = world.time(),
                   .start = {position.begin(), position.end()},
                   .start_velocity = world.velocity(body),
+                  .velocity = world.velocity(body).velocity,
                   .holder = holder,
                   .mesh = {Vec3::Zero(), Mat3::Identity()},
                   .moved = least_motion * world.mean_edge(body)};
@@ -124,19 +136,28 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
 }
 
 /// With symplectic Euler, given velocities count as those of half a step before the start, and rigid motion has an
-/// error of the same size: the change of the velocity since the start times half a step.
+/// error of the same size: the change of the velocity since the start times half a step. Collisions of bodies turn an
+/// error of the place into an error of the direction in which a body continues.
 Real StepError::rigid_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {
     if (motion.holder || world.settings().integrator == Integrator::leapfrog) return 0;
     const Vec3 center = world.center_of_mass(body);
     const std::span<const Vec3> position = world.positions(body);
     const Real radius = mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - center); });
-    const Twist now = world.velocity(body), then = motion.start_velocity;
+    const Twist now = world.velocity(body), start = motion.start_velocity;
     const Real change =
-        (now.velocity - then.velocity).norm() + radius * (now.angular_velocity - then.angular_velocity).norm();
+        (now.velocity - start.velocity).norm() + radius * (now.angular_velocity - start.angular_velocity).norm();
     if (motion.acceleration < 0) motion.acceleration = change / interval.seconds;
     // Impacts change the velocity without such an error.
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
-    return std::min(change, accelerated) * motion.first_step / 2;
+    const Real error = std::min(change, accelerated) * motion.first_step / 2 + motion.deflected;
+    if (interval.collided.contains(body)) {
+        const Real kick = (now.velocity - motion.velocity - interval.seconds * world.settings().gravity).norm();
+        motion.deflection_rate += kick * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
+    }
+    motion.velocity = now.velocity;
+    motion.deflection_rate = std::min(motion.deflection_rate, now.velocity.norm());
+    motion.deflected += interval.seconds * motion.deflection_rate;
+    return error;
 }
 
 Real StepError::deformation_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {
@@ -184,7 +205,9 @@ void StepError::sample(const World& world) {
     const std::uint64_t steps = WorldAccess::state_of(world).record.counters.steps;
     const std::map<BodyHandle, AttachmentHandle> holders = holders_of(world);
     const auto taken = static_cast<Real>(steps - steps_);
-    const Interval interval{world.time() - time_, (world.time() - time_) / taken};
+    Interval interval{world.time() - time_, (world.time() - time_) / taken, touching(world)};
+    interval.collided.insert(touching_.begin(), touching_.end());
+    touching_ = touching(world);
     for (const BodyHandle body : world.bodies()) {
         const auto holder = holders.find(body);
         const auto held = holder == holders.end() ? std::nullopt : std::optional(holder->second);
