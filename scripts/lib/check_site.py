@@ -16,7 +16,7 @@ from browser import open_browser
 
 # Words that users search for, and a page that the search must list.
 SEARCHES = {"friction": "docs/methods/friction.html", "pressure": "docs/methods/cavities.html",
-            "tie": "docs/methods/ties.html", "young_modulus": "reference/scene.html",
+            "tie": "docs/methods/ties.html", "too slow": "docs/why.html", "young_modulus": "reference/scene.html",
             "add_body": "reference/python/skerry.World.html", "SpringSettings": "reference/cpp/spring.html"}
 LOADED = {("script", "src"), ("img", "src"), ("iframe", "src"), ("link", "href"), ("source", "src"), ("video", "src")}
 
