@@ -2,7 +2,10 @@
 #include <cmath>
 #include <map>
 
+#include "engine/estimate/contact_area.h"
+#include "engine/estimate/contact_error.h"
 #include "engine/estimate/mesh_error.h"
+#include "engine/estimate/step_error.h"
 #include "engine/world/world_state.h"
 #include "skerry/estimate.h"
 
@@ -56,8 +59,13 @@ private:
 
 struct ErrorEstimator::Impl {
     MeshErrors mesh;
+    StepError step;
+    ContactError contact;
+    ContactArea area;
     std::vector<ErrorEstimate> bodies;
-    std::uint64_t steps = 0;  // steps in which something moved, at the last sample
+    // Steps in which something moved, at the last sample of the mesh, and at the last sample of motion and contacts.
+    std::uint64_t steps = 0, motion_steps = 0;
+    bool has_moved = false;  // true after the first sample with motion
 
     /// Steps in which something moved, since the world was made.
     static std::uint64_t steps_of(const World& world) {
@@ -65,32 +73,53 @@ struct ErrorEstimator::Impl {
         return counters.steps - counters.resting_steps;
     }
 
-    void take(const World& world, bool last) {
+    void sample_motion(const World& world) {
+        has_moved = steps_of(world) > motion_steps;
+        motion_steps = steps_of(world);
+        step.sample(world);
+        contact.sample(world);
+        area.sample(world);
+    }
+    void sample_mesh(const World& world, bool last) {
         steps = steps_of(world);
         mesh.sample(world, last);
+    }
+    void list(const World& world) {
         bodies.clear();
         for (const BodyHandle body : world.bodies()) bodies.push_back({.body = body, .name = world.name(body)});
         mesh.add_to(bodies);
+        step.add_to(bodies);
+        contact.add_to(bodies);
+        area.add_to(bodies);
     }
 };
 
 ErrorEstimator::ErrorEstimator(const World& world) : impl_(std::make_unique<Impl>()) {
     impl_->steps = Impl::steps_of(world);
+    impl_->sample_motion(world);
 }
 ErrorEstimator::~ErrorEstimator() = default;
 ErrorEstimator::ErrorEstimator(ErrorEstimator&&) noexcept = default;
 ErrorEstimator& ErrorEstimator::operator=(ErrorEstimator&&) noexcept = default;
 
 void ErrorEstimator::sample(const World& world) {
-    // A sample takes the computing time of about ten explicit steps, and that of less than one implicit step.
-    constexpr std::uint64_t explicit_steps = 1000, implicit_steps = 50;
+    // A sample of the mesh takes the computing time of about ten explicit steps, and that of less than one implicit
+    // step. A sample of motion and contacts takes that of half an explicit step, and of a fifth of an implicit one.
+    constexpr std::uint64_t explicit_steps = 1000, implicit_steps = 50, explicit_motion = 50, implicit_motion = 20;
     const bool is_implicit = WorldAccess::state_of(world).model.implicit_nodes.displacement.size() > 0;
-    if (Impl::steps_of(world) - impl_->steps >= (is_implicit ? implicit_steps : explicit_steps))
-        impl_->take(world, false);
+    const std::uint64_t steps = Impl::steps_of(world);
+    const bool starts = !impl_->has_moved && steps > impl_->motion_steps;
+    const bool moved = steps - impl_->motion_steps >= (is_implicit ? implicit_motion : explicit_motion);
+    const bool deformed = steps - impl_->steps >= (is_implicit ? implicit_steps : explicit_steps);
+    if (starts || moved) impl_->sample_motion(world);
+    if (deformed) impl_->sample_mesh(world, false);
+    if (starts || moved || deformed) impl_->list(world);
 }
 
 void ErrorEstimator::finish(const World& world) {
-    impl_->take(world, true);
+    impl_->sample_motion(world);
+    impl_->sample_mesh(world, true);
+    impl_->list(world);
 }
 
 std::vector<ErrorEstimate> ErrorEstimator::bodies() const {

@@ -10,6 +10,7 @@
 #include "engine/mesh/manifold_fault.h"
 #include "engine/program/checkpoint.h"
 #include "engine/program/commands.h"
+#include "engine/program/contact_area_text.h"
 #include "engine/program/nearest_text.h"
 #include "engine/program/number_text.h"
 #include "engine/program/plan_warnings.h"
@@ -180,15 +181,18 @@ void count_bodies(const World& world, RunResult& result) {
     }
 }
 
-/// Returns one text for each mesh, material and kind of element with parts that are too stiff in bending. The text
-/// names one body with them. Rigid bodies do not bend.
-std::vector<std::string> thin_parts(const ScenePlan& plan, const World& world) {
+/// Returns one text for each mesh, material and kind of element that is too stiff in bending. The text names one body
+/// of this kind. Bodies that hardly deformed in the run, and rigid bodies, are left out.
+std::vector<std::string> thin_parts(const ScenePlan& plan, const World& world, std::span<const ErrorEstimate> errors) {
+    constexpr Real least_deformation = 0.01;  // share of the displacement of a body below which deformation is ignored
     std::vector<std::string> found;
     std::set<std::tuple<std::size_t, std::size_t, std::vector<std::pair<int, std::size_t>>, ElementKind>> seen;
     const std::vector<BodyHandle> bodies = bodies_in_order(world);
     for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
         const BodyPlan& body = plan.bodies[b];
+        const auto error = std::ranges::find(errors, bodies[b], &ErrorEstimate::body);
         if (world.dynamics(bodies[b]) == BodyDynamics::rigid ||
+            (error != errors.end() && error->deformation < least_deformation) ||
             !seen.emplace(body.mesh, body.material, body.materials, body.settings.element).second)
             continue;
         const std::string text =
@@ -265,7 +269,6 @@ RunResult simulate(const RunOptions& asked) {
     memory.scene = std::filesystem::absolute(options.scene);
     memory.assignments = options.overrides.assignments;
     result.bad_boundaries = bad_boundaries(plan, world);
-    result.thin_parts = thin_parts(plan, world);
     result.plan_warnings = plan_warnings(plan);
     if (!options.quiet) print_lines("WARNING", result.plan_warnings);
     result.scene = scene.name;
@@ -298,6 +301,8 @@ RunResult simulate(const RunOptions& asked) {
     }
 
     result.report = world.report();
+    result.thin_parts = thin_parts(plan, world, result.errors);
+    result.contact_areas = contact_area_texts(plan, world, result.errors);
     result.broken_ties = broken_ties(plan, world);
     if (result.report.steps > 0 && result.report.max_contacts == 0) result.nearest = nearest_text(world);
     if (std::string distrust = result.report.distrust(); result.status == "ok" && !distrust.empty()) {

@@ -51,7 +51,8 @@ struct RunResult {
     std::vector<std::pair<std::string, std::string>> outputs_failed;
     std::vector<std::string> plan_warnings;   // warnings about values in the scene
     std::vector<std::string> bad_boundaries;  // one sentence for each mesh whose boundary is not a closed manifold
-    std::vector<std::string> thin_parts;      // one sentence for each mesh with a part that is too stiff in bending
+    std::vector<std::string> thin_parts;      // one sentence for each mesh that is too stiff in bending
+    std::vector<std::string> contact_areas;   // one sentence for each body with too small contact areas for its mesh
     std::vector<std::string> notes;           // remarks about the input that do not question the result
     std::string nearest;                      // result of nearest_text() for a run without any contact, else empty
     std::vector<std::pair<std::string, double>> series;  // figures of the time series of the probes, see SeriesFigures

@@ -25,6 +25,10 @@ Json errors_of(const RunResult& result) {
                           {"stress", number_or_null(of.stress)},
                           {"step", number_or_null(of.step)},
                           {"contact", number_or_null(of.contact)},
+                          {"deformation", number_or_null(of.deformation)},
+                          {"overlap", number_or_null(of.overlap)},
+                          {"contact_radius", number_or_null(of.contact_radius)},
+                          {"contact_edge", number_or_null(of.contact_edge)},
                           {"worst_tetrahedron", of.worst_tetrahedron},
                           {"time", number_or_null(of.time)}});
     return errors;

@@ -25,9 +25,19 @@ struct ErrorEstimate {
     // Error of a displacement under given loads, due to the mesh. Positive if the mesh is too stiff, negative if it is
     // too soft. Averaged like `mesh`.
     Real deflection = not_estimated;
-    Real stress = not_estimated;   // error of the largest von Mises stress at the nodes, due to the mesh
-    Real step = not_estimated;     // error of the motion, due to the length of the steps
-    Real contact = not_estimated;  // error of the contact impulses, due to the tolerance of the solver
+    Real stress = not_estimated;  // error of the largest von Mises stress at the nodes, due to the mesh
+    // Error of the motion, due to the length of the steps: largest distance of the nodes from where infinitely short
+    // steps would take them, over their largest displacement from the start, both as root mean squares.
+    Real step = not_estimated;
+    // Largest displacement by deformation over the largest displacement from the start, both as root mean squares.
+    Real deformation = not_estimated;
+    // Error of the contact impulses, due to the tolerance of the solver: mean of the errors of the solver, weighted by
+    // impulse. Regions that were left unsolved count with their errors.
+    Real contact = not_estimated;
+    Real overlap = not_estimated;  // largest overlap with another object at a sample, 0 if there is none [m]
+    // Radius of the most loaded contact area by the theory of Hertz, and mean edge length of the mesh there [m]. Not
+    // estimated where flat faces, edges or corners touch.
+    Real contact_radius = not_estimated, contact_edge = not_estimated;
     Index worst_tetrahedron = -1;  // tetrahedron with the largest error of the stress, -1 if there is none
     Real time = not_estimated;     // time of the sample with the largest elastic energy [s]
 };
