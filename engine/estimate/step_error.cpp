@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -17,7 +18,7 @@ namespace skerry {
 struct StepError::Interval {
     Real seconds;                   // duration [s]
     Real step;                      // mean length of the steps [s]
-    std::set<BodyHandle> collided;  // bodies that touch another body
+    std::set<BodyHandle> collided;  // bodies that began or ceased to touch another body
 };
 
 namespace {
@@ -105,7 +106,7 @@ std::map<BodyHandle, AttachmentHandle> holders_of(const World& world) {
 }
 
 /// Bodies that touch another body.
-std::set<BodyHandle> touching(const World& world) {
+std::set<BodyHandle> touching_bodies(const World& world) {
     std::set<BodyHandle> found;
     for (const Contact& contact : world.contacts())
         if (world.alive(contact.first) && world.alive(contact.second) && !contact.impulse.isZero(0))
@@ -124,7 +125,7 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
                   .velocity = world.velocity(body).velocity,
                   .holder = holder,
                   .mesh = {Vec3::Zero(), Mat3::Identity()},
-                  .moved = least_motion * world.mean_edge(body)};
+                  .still = least_motion * world.mean_edge(body)};
     if (holder) {
         const RigidPose& added = model_of(world).body_records[row_of(world, body)].start;
         const Mat3 to_frame = frame.pose.rotation.transpose();
@@ -205,9 +206,11 @@ void StepError::sample(const World& world) {
     const std::uint64_t steps = WorldAccess::state_of(world).record.counters.steps;
     const std::map<BodyHandle, AttachmentHandle> holders = holders_of(world);
     const auto taken = static_cast<Real>(steps - steps_);
-    Interval interval{world.time() - time_, (world.time() - time_) / taken, touching(world)};
-    interval.collided.insert(touching_.begin(), touching_.end());
-    touching_ = touching(world);
+    Interval interval{world.time() - time_, (world.time() - time_) / taken, {}};
+    std::set<BodyHandle> touching = touching_bodies(world);
+    std::ranges::set_symmetric_difference(touching, touching_,
+                                          std::inserter(interval.collided, interval.collided.end()));
+    touching_.swap(touching);
     for (const BodyHandle body : world.bodies()) {
         const auto holder = holders.find(body);
         const auto held = holder == holders.end() ? std::nullopt : std::optional(holder->second);

@@ -46,7 +46,8 @@ private:
         Real lost = 0;     // amplitude of the vibrations that the theta method has damped [m]
         Real largest = 0;  // largest displacement by deformation so far [m]
         Real error = 0;    // largest error so far [m]
-        Real moved = 0;    // largest displacement from the start so far, at least least_motion edges [m]
+        Real moved = 0;    // largest displacement from the start so far [m]
+        Real still = 0;    // largest displacement that counts as rest [m]
     };
     struct Interval;
 

@@ -29,7 +29,8 @@ struct ErrorEstimate {
     // Error of the motion, due to the length of the steps: largest distance of the nodes from where infinitely short
     // steps would take them, over their largest displacement from the start, both as root mean squares.
     Real step = not_estimated;
-    // Largest displacement by deformation over the largest displacement from the start, both as root mean squares.
+    // Largest displacement by deformation over the largest displacement from the start, both as root mean squares. Not
+    // estimated for a body at rest.
     Real deformation = not_estimated;
     // Error of the contact impulses, due to the tolerance of the solver: mean of the errors of the solver, weighted by
     // impulse. Regions that were left unsolved count with their errors.
