@@ -15,7 +15,7 @@ constexpr Real safety = 1.5;
 constexpr Real most_remainder = 2;
 constexpr Real assumed_order = 1;  // order of two levels
 // An observed order is near the theory between these shares of the least and the largest order of the theory.
-constexpr Real least_share = 0.5, most_share = 1.5;
+constexpr Real near_least = 0.5, near_most = 1.5;
 
 }  // namespace
 
@@ -46,12 +46,12 @@ void Convergence::find_order(TheoryOrder theory, Real noise) {
     const Real coarse_difference = levels_[n - 3].value - middle.value;
     const Real largest = std::max(std::abs(coarse_difference), std::abs(difference));
     order_ = std::log(std::abs(coarse_difference / difference)) / std::log(ratio);
-    const bool fast = order_ > most_share * theory.most;
+    const bool fast = order_ > near_most * theory.most;
     if (coarse_difference * difference < 0 && !fast) {
         shape_ = ConvergenceShape::oscillating;
         used_order_ = 0;
         remainder_ = order_ > 0 ? largest - std::abs(difference) : largest;
-    } else if (order_ < least_share * theory.least) {
+    } else if (order_ < near_least * theory.least) {
         shape_ = ConvergenceShape::slow;
         used_order_ = 0;
         remainder_ = most_remainder * std::abs(coarse_difference + difference);

@@ -20,16 +20,16 @@ std::string quantity_line(const StudyQuantity& q, std::size_t width) {
     if (text.error.empty()) return line + ", " + std::string(name_of(q.verdict)) + "\n";
     line += " +- " + text.error;
     std::string parts;
-    struct Part {
+    struct BarPart {
         const char* name;
         Real error;
         const std::string& text;
     };
-    constexpr double least_share = 0.01;  // smaller parts of an error bar are not shown
+    constexpr double shown_share = 0.01;  // smaller parts of an error bar are not shown
     for (const auto& [name, error, part] :
-         {Part{"mesh", q.mesh, text.mesh}, Part{"step", q.step, text.step}, Part{"contacts", q.contact, text.contact},
-          Part{"start", q.noise, text.noise}})
-        if (error > least_share * q.error) parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
+         {BarPart{"mesh", q.mesh, text.mesh}, BarPart{"step", q.step, text.step},
+          BarPart{"contacts", q.contact, text.contact}, BarPart{"start", q.noise, text.noise}})
+        if (error > shown_share * q.error) parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
     if (!parts.empty()) line += " (" + (text.share.empty() ? "" : text.share + ": ") + parts + ")";
     if (!text.orders.empty()) line += ", " + text.orders;
     if (q.verdict != StudyVerdict::known) line += ", " + std::string(name_of(q.verdict));
