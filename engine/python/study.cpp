@@ -15,7 +15,7 @@ namespace {
 /// that are done and of all runs. If Python raises an exception, all runs stop.
 StudyResult run_study(const std::string& scene, double error, const std::vector<std::string>& probes,
                       std::optional<Real> seconds, const std::vector<std::string>& assignments, int threads,
-                      double budget, const std::string& folder, bool redo, const std::string& python,
+                      std::optional<double> budget, const std::string& folder, bool redo, const std::string& python,
                       const nb::object& progress) {
     const StudySettings settings{.error = error,
                                  .probes = probes,
@@ -57,8 +57,8 @@ void bind_study(nb::module_& module) {
         .def("write_cheapest_scene", [](const StudyResult& result, const std::string& scene, const std::string& file) {
             write_cheapest_scene(scene, result, file);
         });
-    module.def("study", &run_study, nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg(), nb::arg(), nb::arg(),
-               nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
+    module.def("study", &run_study, nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg(), nb::arg(),
+               nb::arg().none(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
 }
 
 }  // namespace skerry::python

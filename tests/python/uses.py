@@ -30,6 +30,7 @@ box = sk.Mesh.box((0.1, 0.1, 0.1), (3, 3, 3))
 inside = np.abs(box.nodes[box.tetrahedra].mean(axis=1)).max(axis=1) < 0.1 / 6
 mesh = sk.Mesh(box.nodes, box.tetrahedra[~inside])
 quality: sk.MeshReport = mesh.inspect()
+finer: sk.Mesh = mesh.refine()
 dynamics: sk.Dynamics = "explicit"
 element: sk.ElementKind = "smoothed"
 cube: sk.Body = world.add_body(mesh, rubber, dynamics=dynamics, element=element, position=(0, 0, 0.0505), name="cube")

@@ -154,7 +154,7 @@ def study(
     seconds: float | None = None,
     overrides: Mapping[str, Json] | None = None,
     threads: int = 0,
-    budget: float = 15,
+    budget: float | None = None,
     folder: Path | None = None,
     redo: bool = False,
     progress: bool | Callable[[float, int, int], object] = False,
@@ -168,7 +168,8 @@ def study(
     scene: path of a JSON file. error: wanted relative error, for which the cheapest settings are searched. probes:
     names NAME or NAME.QUANTITY of probes and bodies, default: all. seconds: time at which the runs end, default: that
     of the scene [s]. overrides: as for load_scene(). threads: number of threads, 0: all cores. budget: largest time of
-    the study, divided by that of one run; finer meshes that do not fit are left out. folder: keeps the runs; a later
+    the study, divided by that of one run with one thread; finer meshes and other runs that do not fit are left out,
+    default: 15, or more as long as the study takes less than 5 s. folder: keeps the runs; a later
     study of the same scene continues with them. redo: True replaces runs of another scene in the folder. progress: True
     writes the share that is done to the standard error output; a function is called with this share and the numbers of
     the runs that are done and of all runs.
@@ -188,7 +189,7 @@ def study(
         None if seconds is None else real(seconds, "study: seconds"),
         assignments_of(overrides),
         counted(threads, "study: threads"),
-        real(budget, "study: budget"),
+        None if budget is None else real(budget, "study: budget"),
         "" if folder is None else path_text(folder, "folder"),
         flag(redo, "study: redo"),
         os.environ.get("SKERRY_FILL_PYTHON", sys.executable),

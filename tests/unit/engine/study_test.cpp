@@ -195,13 +195,18 @@ TEST_CASE("the budget leaves out the costly runs, which are the less important o
     CHECK(wall_time({4, 1, 1, 2}, 1) == 8);
     CHECK(wall_time({1, 1, 1, 1}, 2) == 2);
     CHECK(wall_time({17, 1, 1, 1}, 2) == Approx(17 / 1.7 + 1.5));  // the long run gets both threads
-    std::vector<PlannedRun> plan{{{}, 1, {}},           {{.draw = 1}, 1, {}},   {{.draw = 2}, 1, {}},
-                                 {{.step = 0.5}, 2, {}}, {{.refine = 1}, 16, {}}, {{.step = 0.25}, 4, {}}};
+    std::vector<PlannedRun> plan{{{}, 1, {}},
+                                 {{.draw = 1}, 1, {}},
+                                 {{.draw = 2}, 1, {}},
+                                 {{.step = 0.5}, 2, {}},
+                                 {{.refine = 1}, 16, {}},
+                                 {{.step = 0.25}, 4, {}}};
     keep_to_budget(10, 1, plan);
     std::vector<bool> made;
     for (const PlannedRun& run : plan) made.push_back(run.reason.empty());
     CHECK(made == std::vector<bool>{true, true, true, true, false, true});
-    CHECK(plan[4].reason == "with it the study would take about 21 times as long as one run, more than the budget of 10");
+    CHECK(plan[4].reason ==
+          "with it the study would take about 21 times as long as one run, more than the budget of 10");
 }
 
 TEST_CASE("a perturbation moves free nodes by at most 1e-12 m and leaves held nodes") {
@@ -249,9 +254,8 @@ TEST_CASE("the cheapest scene has at most the wanted error against the best valu
         REQUIRE(scene.world.advance(scene.probe_step).ok());
         recorder.sample(scene.world);
     }
-    const std::size_t column =
-        static_cast<std::size_t>(std::ranges::find(recorder.columns(), "displacement_z", &SeriesColumn::quantity) -
-                                 recorder.columns().begin());
+    const std::size_t column = static_cast<std::size_t>(
+        std::ranges::find(recorder.columns(), "displacement_z", &SeriesColumn::quantity) - recorder.columns().begin());
     CHECK(std::abs(recorder.row(10)[column] - tip.best) <= 0.2 * tip.scale);
 }
 
