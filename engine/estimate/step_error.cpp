@@ -229,7 +229,10 @@ void StepError::sample(const World& world) {
 void StepError::add_to(std::vector<ErrorEstimate>& bodies) const {
     for (ErrorEstimate& estimate : bodies) {
         const auto motion = motions_.find(estimate.body);
-        if (motion != motions_.end()) estimate.step = std::min(Real{1}, motion->second.error / motion->second.moved);
+        if (motion == motions_.end()) continue;
+        const Motion& of = motion->second;
+        estimate.step = std::min(Real{1}, of.error / std::max(of.moved, of.still));
+        if (!of.deformation.displacement.empty() && of.moved > of.still) estimate.deformation = of.largest / of.moved;
     }
 }
 
