@@ -24,52 +24,51 @@ namespace skerry {
 
 namespace {
 
-/// Numbers of the recovered values at the corners of the tetrahedra of a body. At an interface of materials each
-/// material has its own values.
-class CornerValues {
+/// Recovered stress at the corners of the tetrahedra of a body.
+///
+/// At edges and corners of the surface and at interfaces of materials, World::node_stress extrapolates, or mixes
+/// materials. There the recovered stress is the mean of the tetrahedra of one material around the node instead, which
+/// is more robust in thin walls.
+class CornerStress {
 public:
-    CornerValues(const Model& model, std::size_t body)
-        : tetrahedra_(model.body_records[body].tetrahedra), material_(model.body_records[body].tetrahedron_material) {
-        values_ = all_nodes(model, body);
-        if (material_.empty()) return;
-        const std::size_t node_count = values_.size();
-        around_.resize(node_count);
-        for (std::size_t t = 0; t < tetrahedra_.size(); ++t)
-            for (const Index n : tetrahedra_[t]) {
-                std::vector<Index>& around = around_[static_cast<std::size_t>(n)];
-                const auto at = std::ranges::lower_bound(around, material_[t]);
-                if (at == around.end() || *at != material_[t]) around.insert(at, material_[t]);
+    CornerStress(const BodyRecord& record, const NodeFields& nodes, std::span<const Mat3> of_tetrahedra,
+                 std::span<const Real> volume)
+        : record_(record), nodes_(nodes), materials_(record.tetrahedron_material) {
+        std::ranges::sort(materials_);
+        materials_.erase(std::unique(materials_.begin(), materials_.end()), materials_.end());
+        sums_.resize(nodes.stress.size() * std::max<std::size_t>(1, materials_.size()));
+        for (std::size_t t = 0; t < volume.size(); ++t)
+            for (std::size_t corner = 0; corner < 4; ++corner) {
+                Sum& sum = sums_[place(t, corner)];
+                sum.stress += volume[t] * of_tetrahedra[t];
+                sum.volume += volume[t];
             }
-        values_.clear();
-        for (std::size_t n = 0; n < node_count; ++n) {
-            first_.push_back(values_.size());
-            for (std::size_t m = 0; m < around_[n].size(); ++m)
-                values_.push_back(side_of_node(static_cast<Index>(n), static_cast<Index>(m), node_count));
-        }
     }
 
-    /// Numbers for RecoveryPlan::nodes.
-    std::span<const Index> all() const { return values_; }
-
-    /// Places in all() of the corners of a tetrahedron.
-    std::array<std::size_t, 4> of(std::size_t tetrahedron) const {
-        std::array<std::size_t, 4> places{};
-        for (std::size_t k = 0; k < 4; ++k) {
-            const auto n = static_cast<std::size_t>(tetrahedra_[tetrahedron][k]);
-            places[k] = around_.empty() ? n
-                                        : first_[n] + static_cast<std::size_t>(
-                                                          std::ranges::lower_bound(around_[n], material_[tetrahedron]) -
-                                                          around_[n].begin());
-        }
-        return places;
+    Mat3 of(std::size_t tetrahedron, std::size_t corner) const {
+        const auto n = static_cast<std::size_t>(record_.tetrahedra[tetrahedron][corner]);
+        if (!nodes_.extrapolated[n]) return nodes_.stress[n];
+        const Sum& sum = sums_[place(tetrahedron, corner)];
+        return sum.stress / sum.volume;
     }
 
 private:
-    std::span<const std::array<Index, 4>> tetrahedra_;
-    std::span<const Index> material_;
-    std::vector<Index> values_;
-    std::vector<std::vector<Index>> around_;  // by node: materials around the node, ascending; empty for one material
-    std::vector<std::size_t> first_;          // by node: place of its first value
+    struct Sum {
+        Mat3 stress = Mat3::Zero();  // times the volume
+        Real volume = 0;
+    };
+
+    std::size_t place(std::size_t tetrahedron, std::size_t corner) const {
+        const auto n = static_cast<std::size_t>(record_.tetrahedra[tetrahedron][corner]);
+        if (materials_.empty()) return n;
+        const auto material = std::ranges::lower_bound(materials_, record_.tetrahedron_material[tetrahedron]);
+        return n + nodes_.stress.size() * static_cast<std::size_t>(material - materials_.begin());
+    }
+
+    const BodyRecord& record_;
+    const NodeFields& nodes_;
+    std::vector<Index> materials_;  // of the body, ascending; empty if there is one
+    std::vector<Sum> sums_;         // by material and node
 };
 
 Real sum(std::span<const Real> values) {
@@ -102,14 +101,15 @@ public:
         std::vector<Mat3> of_elements(static_cast<std::size_t>(body_.blocks.size()) * element_lanes);
         kernels().cauchy_stress(body_.elements, body_.blocks, body_.position, of_elements);
         add_elements(of_elements);
-        const CornerValues corners(model, body);
-        const NodeFields recovered = body_.node_fields(corners.all());
+        const NodeFields nodes = body_.node_fields(all_nodes(model, body));
         const std::vector<Mat3> of_tetrahedra = kernels().stress_of_tetrahedra(body_.cover, of_elements, count);
-        for (std::size_t t = 0; t < count; ++t) add_tetrahedron(t, of_tetrahedra[t], corners.of(t), recovered.stress);
+        for (std::size_t t = 0; t < count; ++t) error_.volume[t] = six_volumes(record_.tetrahedra[t], rest_) / 6;
+        const CornerStress recovered(record_, nodes, of_tetrahedra, error_.volume);
+        for (std::size_t t = 0; t < count; ++t) add_tetrahedron(t, of_tetrahedra[t], recovered);
         // The exact stress is balanced: its product with the strain of the displacements is the stored energy. So the
         // recovered stress is scaled.
         if (mixed_ > 0) error_.missing = error_.stored * (error_.stored * recovered_ / (mixed_ * mixed_) - 1);
-        find_peak(corners, recovered);
+        find_peak(nodes);
     }
 
     MeshError take() { return std::move(error_); }
@@ -175,8 +175,7 @@ private:
         return Eigen::Quaternion<Real>(q[0], q[1], q[2], q[3]).toRotationMatrix();
     }
 
-    void add_tetrahedron(std::size_t t, const Mat3& of_elements, const std::array<std::size_t, 4>& corners,
-                         std::span<const Mat3> recovered) {
+    void add_tetrahedron(std::size_t t, const Mat3& of_elements, const CornerStress& recovered) {
         const std::size_t block = block_[t];
         const EnergyNorm& norm = norm_of(block);
         const Mat3 F = gradient_of(t);
@@ -187,13 +186,13 @@ private:
         // sums.
         Real error = 0, energy = 0;
         StressCoordinates total = StressCoordinates::Zero();
-        for (const std::size_t corner : corners) {
-            const StressCoordinates at = coordinates(recovered[corner]);
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const StressCoordinates at = coordinates(recovered.of(t, corner));
             error += (at - own).squaredNorm();
             energy += at.squaredNorm();
             total += at;
         }
-        const Real volume = error_.volume[t] = six_volumes(record_.tetrahedra[t], rest_) / 6;
+        const Real volume = error_.volume[t];
         error_.energy[t] = volume * own.squaredNorm();
         error_.error[t] = volume / 20 * (error + (total - 4 * own).squaredNorm());
         recovered_ += volume / 20 * (energy + total.squaredNorm());
@@ -207,21 +206,21 @@ private:
     /// The error of the recovered stress is of second order in the length of the edges, that of the tetrahedra of first
     /// order. The former is therefore estimated by the square of the relative error of the tetrahedra around the node.
     /// Where the stress is extrapolated over two rings of tetrahedra, lengths are twice as large.
-    void find_peak(const CornerValues& corners, const NodeFields& recovered) {
-        std::size_t peak = 0;
-        for (std::size_t i = 0; i < recovered.stress.size(); ++i) {
-            const Real stress = von_mises(recovered.stress[i]);
+    void find_peak(const NodeFields& nodes) {
+        Index peak = 0;
+        for (std::size_t n = 0; n < nodes.stress.size(); ++n) {
+            const Real stress = von_mises(nodes.stress[n]);
             if (!(stress > error_.largest_stress)) continue;
             error_.largest_stress = stress;
-            peak = i;
+            peak = static_cast<Index>(n);
         }
         Real energy = 0, error = 0;
         for (std::size_t t = 0; t < error_.energy.size(); ++t) {
-            if (std::ranges::count(corners.of(t), peak) == 0) continue;
+            if (std::ranges::count(record_.tetrahedra[t], peak) == 0) continue;
             energy += error_.energy[t];
             error += error_.error[t];
         }
-        const Real longer = recovered.extrapolated[peak] ? 2 : 1;
+        const Real longer = nodes.extrapolated[static_cast<std::size_t>(peak)] ? 2 : 1;
         error_.stress = std::min<Real>(1, longer * longer * share_of(error, energy));
     }
 

@@ -29,7 +29,7 @@ public:
           smooth_(rest_.size(), no_index),
           near_(body.tetrahedra.size()) {
         turn_rest();
-        for (const Index n : nodes) want(node_of(n));
+        for (const Index n : nodes) want(n);
         near_elements_ = ElementsNear(body.cover, near_);
         list_corners();
         plan_.nodes.assign(nodes.begin(), nodes.end());
@@ -37,7 +37,7 @@ public:
         place_elements();
         for (std::size_t n = 0; n < rest_.size(); ++n)
             if (smooth_[n] != no_index) add_smooth(static_cast<Index>(n));
-        for (const Index value : nodes) add_value(value);
+        for (const Index n : nodes) add_value(n);
     }
 
     RecoveryPlan take() { return std::move(plan_); }
@@ -88,9 +88,6 @@ private:
     bool has_strain(Index place) const {
         return body_.elements.part[block_of(static_cast<std::size_t>(place))] != ElementPart::volume;
     }
-    Index node_count() const { return static_cast<Index>(rest_.size()); }
-    /// Node of a number that may come from side_of_node.
-    Index node_of(Index value) const { return value % node_count(); }
     Vec3 rest(Index n) const { return rest_[static_cast<std::size_t>(n)]; }
 
     void place_elements() {
@@ -213,14 +210,12 @@ private:
                                inner_volume > 0 ? patches_.node_volume(n) / inner_volume : 0});
     }
 
-    void add_value(Index value) {
-        const Index n = node_of(value);
+    void add_value(Index n) {
         const bool is_smooth = patches_.kind(n) != NodeKind::other;
         plan_.smooth_of.push_back(is_smooth ? smooth_[static_cast<std::size_t>(n)] : no_index);
         std::vector<Share> donors, strained, volumetric;
         if (!is_smooth) {
-            std::vector<Index> materials = patches_.materials_around(n);
-            if (value != n) materials = {materials[static_cast<std::size_t>(value / node_count() - 1)]};
+            const std::vector<Index> materials = patches_.materials_around(n);
             Real whole = 0;
             for (const Index material : materials) whole += patches_.node_volume(n, material);
             if (whole > 0)

@@ -29,9 +29,7 @@ struct RecoveryMesh {
 /// stays valid when the rows of the body move in the tables. A place is the index of a lane in the listed blocks.
 /// Lengths are measured in the frame of the element gradients.
 struct RecoveryPlan {
-    // Nodes to recover, in the order of the results. At an interface of materials the value of a node is the mean over
-    // all sides, and the number side_of_node() names the value of one side.
-    std::vector<Index> nodes;
+    std::vector<Index> nodes;  // nodes to recover, in the order of the results
     std::vector<Index> block;  // blocks whose elements are needed, ascending
     std::vector<Vec3> center;  // by place: centroid of the tetrahedra that the element covers [m]
 
@@ -74,13 +72,6 @@ struct RecoveryPlan {
     Ragged<Share> donors, strained_around, volumetric_around;
 };
 
-/// Number of the value at a node within one material, which counts among the materials of the tetrahedra around the
-/// node in ascending order. `node_count`: number of nodes of the body.
-inline Index side_of_node(Index node, Index material, std::size_t node_count) {
-    return node + (material + 1) * static_cast<Index>(node_count);
-}
-
-/// `nodes`: numbers of nodes, or results of side_of_node.
 RecoveryPlan plan_recovery(const RecoveryMesh& body, std::span<const Index> nodes);
 
 }  // namespace skerry
