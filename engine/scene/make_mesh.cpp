@@ -1,6 +1,5 @@
 #include "engine/scene/make_mesh.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

@@ -60,6 +60,18 @@ class FillTest(ProgramCase):
         for part in ("Netgen", "volume", "the surface is unchanged", "quality", "stable with", "written"):
             self.assertIn(part, said)
 
+    def test_a_surface_in_millimetres_is_scaled(self):
+        self.need_netgen()
+        out, scene = self.folder / "cube.msh", self.folder / "drop.json"
+        said = self.skerry("fill", self.cube, out, "--scene", scene, "--scale", 0.001, "--edge", 0.0011).stdout
+        self.assertIn("the surface is unchanged", said)
+        found = json.loads(self.skerry("inspect", out, "--json").stdout)
+        self.assertAlmostEqual(found["volume"] * 1e9, 1, places=12)
+        visual = json.loads(scene.read_text())["bodies"][0]["visual"]
+        self.assertEqual(visual, {"file": "cube.obj", "scale": 0.001})
+        self.skerry("run", scene, "--seconds", 0.001)
+        self.assert_refused("fill", self.cube, out, "--scale", 0.001, "--edge", 1.1, said=["edge", "after scaling"])
+
     def test_the_example_of_a_filled_surface_runs(self):
         self.need_netgen()
         for name in ("keys/filled.json", "meshes/pebble.obj"):
@@ -111,6 +123,23 @@ class FillTest(ProgramCase):
         found = self.skerry("inspect", self.scene_of(scale=0.001, edge=1.1)).stdout
         self.assertNotIn("another unit", found)
         self.assertEqual(len(list(self.folder.glob("cube.obj.*.msh"))), 1)
+
+    def test_the_meshes_of_files_and_surfaces_are_refined_and_made_coarser(self):
+        self.need_netgen()
+        counts = [self.tetrahedra(self.scene_of(refine=n)) for n in (0, 1)]
+        self.assertEqual(counts[1], 8 * counts[0])
+        mesh = self.folder / "cube.msh"
+        self.skerry("fill", self.cube, mesh)
+        mean_edge = json.loads(self.skerry("inspect", mesh, "--json").stdout)["mean_edge"]
+        given, wanted = self.folder / "given", "4 1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 2 3\n"
+        self.stub(f"head -n 1 > {given}\ncat > /dev/null\nprintf '{wanted}' >&3")
+        body = {"mesh": {"file": "cube.msh", "refine": -1}, "material": "rubber", "position": [0, 0, 2]}
+        scene = self.write("coarse.json", {**SCENE, "bodies": [body], "probes": []})
+        self.assertEqual(self.tetrahedra(scene), 1)
+        self.assertAlmostEqual(float(given.read_text().split()[2]), 2 * mean_edge, places=12)
+
+    def tetrahedra(self, scene):
+        return json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"][0]["mesh"]["tetrahedra"]
 
     def test_keys_of_a_surface_need_a_surface(self):
         box = {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}, "edge": 0.1}
