@@ -126,20 +126,26 @@ class FillTest(ProgramCase):
 
     def test_the_meshes_of_files_and_surfaces_are_refined_and_made_coarser(self):
         self.need_netgen()
-        counts = [self.tetrahedra(self.scene_of(refine=n)) for n in (0, 1)]
+        counts = [json.loads(self.skerry("inspect", self.scene_of(refine=n), "--json").stdout)["body_kinds"][0]["mesh"]
+                  ["tetrahedra"] for n in (0, 1)]
         self.assertEqual(counts[1], 8 * counts[0])
-        mesh = self.folder / "cube.msh"
-        self.skerry("fill", self.cube, mesh)
-        mean_edge = json.loads(self.skerry("inspect", mesh, "--json").stdout)["mean_edge"]
-        given, wanted = self.folder / "given", "4 1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 2 3\n"
-        self.stub(f"head -n 1 > {given}\ncat > /dev/null\nprintf '{wanted}' >&3")
-        body = {"mesh": {"file": "cube.msh", "refine": -1}, "material": "rubber", "position": [0, 0, 2]}
+        mesh = ROOT / "scenes/meshes/torus.msh"
+        shutil.copy(mesh, self.folder)
+        mean_edge = json.loads(self.skerry("inspect", mesh, "--json").stdout)["edge"]["mean"]
+        given = self.folder / "given"
+        body = {"mesh": {"file": "torus.msh", "refine": -1}, "material": "rubber", "position": [0, 0, 2]}
         scene = self.write("coarse.json", {**SCENE, "bodies": [body], "probes": []})
-        self.assertEqual(self.tetrahedra(scene), 1)
-        self.assertAlmostEqual(float(given.read_text().split()[2]), 2 * mean_edge, places=12)
-
-    def tetrahedra(self, scene):
-        return json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"][0]["mesh"]["tetrahedra"]
+        for size, code in ((0.06, 0), (0.01, 2)):
+            for cached in self.folder.glob("torus.msh.*"):
+                cached.unlink()
+            mesh_text = f"4 1\\n0 0 0\\n{size} 0 0\\n0 {size} 0\\n0 0 {size}\\n0 1 2 3\\n"
+            self.stub(f"head -n 1 > {given}\ncat > /dev/null\nprintf '{mesh_text}' >&3")
+            said = self.skerry("inspect", scene, "--json", code=code)
+            if code == 0:
+                self.assertEqual(json.loads(said.stdout)["body_kinds"][0]["mesh"]["tetrahedra"], 1)
+            else:
+                self.assertIn("refine: found a mesh with a mean edge of 0.0121", said.stderr)
+        self.assertAlmostEqual(float(given.read_text().split()[2]), 2 * mean_edge, places=9)
 
     def test_keys_of_a_surface_need_a_surface(self):
         box = {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}, "edge": 0.1}
