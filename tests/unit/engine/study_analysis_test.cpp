@@ -129,7 +129,9 @@ TEST_CASE("differences that do not fall as the theory says give a long bar and n
     }
     const StudyQuantity q = only_quantity(analyse(displacement_runs(-0.2, 0.4, 0, 1, 0), {}));
     CHECK(q.verdict == StudyVerdict::irregular);
-    CHECK(q.sentence.find("order 0.4, 2 expected") != std::string::npos);
+    CHECK(q.sentence == "the mesh error does not fall as it should, so the value is not extrapolated");
+    CHECK(q.mesh_order == Approx(0.4));
+    CHECK(q.expected_mesh_order == 2);
     CHECK(q.error > 0.2 * 0.1);
     CHECK(std::isnan(q.best));
 }
