@@ -79,7 +79,7 @@ QuantityText quantity_text(const StudyQuantity& q) {
         text.best = to_digit_of(in_unit(q.best), in_unit(q.best_error));
         text.best_error = in_unit(q.best_error) > 0 ? part(q.best_error) : "0";
     }
-    if (has_error && q.scale > 0) text.share = short_number(100 * q.error / q.scale, 2) + " %";
+    if (has_error && in_unit(q.error) > 0 && q.scale > 0) text.share = short_number(100 * q.error / q.scale, 2) + " %";
     text.orders = order_text("order", q.mesh_order, q.expected_mesh_order);
     // The order of the steps is of interest if the steps have a good part of the error.
     constexpr Real share = 0.2;
