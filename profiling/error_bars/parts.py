@@ -5,6 +5,7 @@ import math
 
 E, RHO = 1e5, 1000.0  # Young's modulus [Pa] and density [kg/m^3] of most items
 C = math.sqrt(E / RHO)  # speed of waves along a bar [m/s]
+PERIODS = 2.5  # after 2.5 periods with critical damping less than 1e-5 of the way to rest is left
 
 
 @dataclasses.dataclass
@@ -15,7 +16,7 @@ class Item:
     probe: str  # PROBE.QUANTITY, a column of the series
     truth: float  # known value of the column
     formula: str
-    at: str = "end"  # "end": value at the end of the run; "max": largest absolute value
+    at: str = "end"  # value at the end of the run; "min" or "max": least or largest value
     doubt: float = 0  # relative error of the known value
     meshes: dict = dataclasses.field(default_factory=dict)  # content of mesh files by name
 
@@ -55,6 +56,24 @@ def period(length, height, modulus=E):
 def critical(time):
     """Material damping that lets a vibration of a given period settle fastest [1/s]"""
     return 4 * math.pi / time
+
+
+def drag(time):
+    """Critical damping of the motion as a whole. The damping of a material leaves out rigid motion, which rollers allow."""
+    return {"kind": "drag", "rate": critical(time)}
+
+
+def bar(length, height, cells, load, *, nu=0.3, modulus=E, down=0.0, model="linear", width=None, **keys):
+    """A bar along x, held at x = -length/2. `load` is a shear stress on its end, `down` an acceleration along -z; `keys` are
+    keys of the body."""
+    time = period(length, height, modulus)
+    body = {"name": "bar", "mesh": box((length, width or height, height), cells), "material": "rubber",
+            "pin": {"box": slab(0, -length / 2)}, **keys}
+    load = {"kind": "traction", "body": "bar", "box": slab(0, length / 2), "traction": [0, 0, load]}
+    forces = {"settings": {"gravity": [0, 0, -down]}} if down else {"loads": [load]}
+    return scene((PERIODS + 2 * height / length) * time, [body],
+                 {"rubber": elastic(nu, E=modulus, damping=critical(time), model=model)},
+                 [{"name": "tip", "quantity": "motion", "body": "bar", "point": [length / 2, 0, 0]}], **forces)
 
 
 def rk4(rate, state, seconds, steps=20000):
