@@ -362,12 +362,10 @@ void add_study(CLI::App& app, StudyOptions& options) {
             "--threads,--jobs", options.settings.threads,
             "number of threads of the study; 0: one per core. The runs have one thread each, except very long ones")
         ->check(CLI::Range(0, 1024));
-    command
-        .add_option(
-            "--budget", options.settings.budget,
-            "largest wall time of the study, divided by that of one run; finer meshes that do not fit are left out")
-        ->check(positive_number)
-        ->capture_default_str();
+    add_number(
+        command, "--budget", options.settings.budget,
+        "largest wall time of the study, divided by that of one run with one thread; finer meshes and other runs "
+        "that do not fit are left out; default: 15, or more as long as the study takes less than 5 s");
     command.add_option("--out", options.out, "folder for the results; default: out/NAME_study, if SCENE is NAME.json");
     command.add_flag("--redo", options.settings.redo,
                      "replace runs in the folder that belong to another version of the scene or to other settings");

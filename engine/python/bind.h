@@ -32,6 +32,7 @@ void bind_problem(nb::module_& module);
 void bind_recorder(nb::module_& module);
 void bind_rollout(nb::module_& module);
 void bind_scene(nb::module_& module);
+void bind_study(nb::module_& module);
 void bind_visual_surface(nb::module_& module);
 void bind_world(nb::module_& module);
 

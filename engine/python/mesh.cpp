@@ -13,6 +13,7 @@
 #include "engine/python/mesh_sets.h"
 #include "engine/python/world/parts.h"
 #include "skerry/fill.h"
+#include "skerry/refine.h"
 #include "skerry/surface_check.h"
 
 namespace skerry::python {
@@ -217,6 +218,7 @@ void bind_mesh(nb::module_& module) {
         return arrays_of(surface);
     });
     module.def("inspect", &inspect_mesh);
+    module.def("refine", [](const Mesh& mesh) { return without_gil([&] { return mesh::refine(mesh); }); });
     module.def("check_surface", &check_surface);
 }
 

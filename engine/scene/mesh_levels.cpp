@@ -97,7 +97,8 @@ std::string why_not(const MeshEntry& mesh, int refine, bool rigid, NamedParts* p
     if (std::abs(refine) > most_refinements)
         return "values are limited to " + std::to_string(most_refinements) + " refinements";
     if (const int most = halvings_of(mesh); refine < -most)
-        return "its numbers of cells can be divided by two " + std::to_string(most) + " times without remainder";
+        return "its numbers of cells can be halved without remainder only for values of at least " +
+               std::to_string(-most);
     if (rigid && mesh.file && refine < 0) return "only deformable bodies get coarser meshes in place of a file";
     const bool divides = (mesh.file || mesh.surface || mesh.table) && refine > 0;
     if (refine == 0 || divides || parts == nullptr) return {};

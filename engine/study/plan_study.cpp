@@ -107,7 +107,7 @@ void keep_to_budget(double budget, int threads, std::vector<PlannedRun>& plan) {
         std::vector<double>& phase = i < independent_runs ? first : second;
         phase.push_back(plan[i].cost);
         const double wall = wall_time(first, threads) + wall_time(second, threads);
-        if (i == 0 || wall <= budget) continue;
+        if (i < independent_runs || wall <= budget) continue;
         phase.pop_back();
         plan[i].reason = "with it the study would take about " + short_text(wall) +
                          " times as long as one run, more than the budget of " + short_text(budget);

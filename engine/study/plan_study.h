@@ -42,8 +42,8 @@ inline constexpr std::size_t independent_runs = 3;
 double wall_time(std::vector<double> costs, int threads);
 /// True if a run takes so long that it gets all threads, one run after the other.
 bool gets_all_threads(double cost, double total, int threads);
-/// Leaves out the runs that need longer than `budget` times the wall time of the first run together with all more
-/// important runs.
+/// Leaves out each run with which the study would take longer than `budget` times the first run, together with the more
+/// important runs that fit. The first three runs are always made.
 void keep_to_budget(double budget, int threads, std::vector<PlannedRun>& plan);
 
 /// Assignments with which `skerry run --set` runs a variant. `mean_step`: mean step of the unchanged scene [s].

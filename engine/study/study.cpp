@@ -6,13 +6,10 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <ostream>
 #include <utility>
 
-#include "engine/output/write_file.h"
-#include "engine/scene/assign.h"
 #include "engine/scene/case_hash.h"
-#include "engine/scene/parse_json.h"
+#include "engine/scene/write_scene.h"
 #include "engine/study/analysis/analyse.h"
 #include "engine/study/plan_study.h"
 #include "engine/study/run_file.h"
@@ -36,7 +33,7 @@ void require_positive(const char* field, double value, const char* expected) {
 
 void check_settings(const StudySettings& settings) {
     require_positive("error", settings.error, "a relative error > 0, for example 0.01");
-    require_positive("budget", settings.budget, "a number > 0");
+    if (settings.budget) require_positive("budget", *settings.budget, "a number > 0");
     if (settings.seconds) require_positive("seconds", *settings.seconds, "a time > 0 (s)");
     if (settings.threads < 0)
         Complaint{.file = {},
@@ -94,7 +91,9 @@ private:
             return (variant.tolerance != 1 && runs_[0].max_contacts == 0) ||
                    (variant.step > 1 && variant.step * mean_step_ > scene_.longest_call * (1 + 1e-6));
         });
-        keep_to_budget(settings_.budget, threads_, plan_);
+        constexpr double usual_budget = 15, short_study = 5;  // [1], [s]
+        keep_to_budget(settings_.budget.value_or(std::max(usual_budget, short_study / runs_[0].cpu_seconds)), threads_,
+                       plan_);
     }
 
     /// Result of the runs, of which at least the first was made.
@@ -236,7 +235,6 @@ private:
 
 StudyResult study(const std::filesystem::path& scene, const StudySettings& settings) {
     check_settings(settings);
-    if (!settings.folder.empty()) make_folder(settings.folder);
     return RunningStudy(scene, settings).run();
 }
 
@@ -250,9 +248,7 @@ void write_cheapest_scene(const std::filesystem::path& scene, const StudyResult&
                   .expected = "at least one quantity with a known error",
                   .hint = {}}
             .raise();
-    Json json = read_json(scene);
-    for (const std::string& assignment : result.cheapest->assignments) assign(assignment, scene, json);
-    write_file(file, [&](std::ostream& out) { out << json.dump(1) << "\n"; });
+    write_scene(file, scene, result.cheapest->assignments);
 }
 
 }  // namespace skerry

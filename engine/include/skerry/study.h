@@ -155,9 +155,9 @@ struct StudySettings {
     std::optional<Real> seconds{};      // duration of the runs; empty: that of the scene [s]
     std::vector<std::string> assignments{};  // changes of the scene, as SceneOverrides::assignments
     int threads = 0;                         // number of threads of the study; 0: the number of cores
-    // Largest wall time of the study, divided by that of one run of the scene, > 0. The finest runs are left out if
-    // they do not fit.
-    double budget = 15;
+    // Largest wall time of the study, divided by that of one run of the scene with one thread, > 0. Less important runs
+    // that do not fit are left out. Empty: 15, or more as long as the study takes less than 5 s.
+    std::optional<double> budget{};
     // Folder that keeps the results of the runs. A later study of the same scene continues with them. Empty: none.
     std::filesystem::path folder{};
     bool redo = false;  // true: results in the folder that belong to another scene or other settings are replaced

@@ -333,6 +333,13 @@ class Mesh:
         nodes, triangles = _core.boundary(self._core)
         return SurfaceMesh(nodes=nodes, triangles=triangles)
 
+    def refine(self) -> Mesh:
+        """The mesh with each tetrahedron divided into eight by new nodes at the midpoints of its edges. The shape of
+        the surface stays the same, the new nodes follow the present ones, and parts have the labels and sets of the
+        whole. A set of nodes gets the midpoints of edges of faces whose nodes are all in the set, and of edges between
+        its nodes outside of such faces, as on a curve."""
+        return Mesh._of(_core.refine(self._core))
+
     def inspect(self) -> MeshReport:
         """Statistics of size, quality and faults."""
         return MeshReport(**_core.inspect(self._core))

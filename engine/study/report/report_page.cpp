@@ -51,14 +51,14 @@ PageJson run_rows(const StudyResult& result) {
 }
 
 PageJson summary_table(const StudyResult& result) {
-    PageJson rows = {{"quantity", "value", "error bar", "relative", "mesh", "step", "contacts", "start", "best value",
-                      "orders", "verdict", "remark"}};
+    PageJson rows = {{"quantity", "value", "error bar", "relative", "verdict", "mesh", "step", "contacts", "start",
+                      "best value", "orders", "remark"}};
     for (const StudyQuantity& q : result.quantities) {
         const QuantityText text = quantity_text(q);
         const auto bar = [](const std::string& error) { return error.empty() ? error : "\u00b1 " + error; };
-        rows.push_back({q.name, text.value + " " + text.unit, bar(text.error), text.share, text.mesh, text.step,
-                        text.contact, text.noise, text.best.empty() ? "" : text.best + " " + bar(text.best_error),
-                        text.orders, name_of(q.verdict), q.sentence});
+        rows.push_back({q.name, text.value + " " + text.unit, bar(text.error), text.share, name_of(q.verdict),
+                        text.mesh, text.step, text.contact, text.noise,
+                        text.best.empty() ? "" : text.best + " " + bar(text.best_error), text.orders, q.sentence});
     }
     return rows;
 }

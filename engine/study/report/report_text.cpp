@@ -50,7 +50,8 @@ std::string quantities_text(const StudyResult& result) {
     for (const StudyQuantity* q : shown) text += quantity_line(*q, width);
     if (left > 0) text += "  ... and " + std::to_string(left) + " more, in the page\n";
     if (negligible > 0)
-        text += "  ... and " + std::to_string(negligible) + " components that are smaller than the wanted error\n";
+        text += "  ... and " + std::to_string(negligible) + (negligible > 1 ? " components" : " component") +
+                " smaller than the wanted error\n";
     return text;
 }
 
@@ -80,6 +81,22 @@ std::string verdicts_text(const StudyResult& result) {
     }
     if (remarks.size() > most_remarks)
         text += "  ... and " + std::to_string(remarks.size() - most_remarks) + " more remarks, in the page\n";
+    return text;
+}
+
+/// One line for all runs that were left out for the same reason.
+std::string left_out_text(const StudyResult& result) {
+    std::vector<std::pair<std::string, std::string>> lines;  // reason and settings
+    for (const StudyRun& run : result.runs) {
+        if (run.status != StudyRunStatus::left_out) continue;
+        const auto same = std::ranges::find(lines, run.message, &std::pair<std::string, std::string>::first);
+        if (same == lines.end())
+            lines.emplace_back(run.message, variant_text(run.variant));
+        else
+            same->second += "; " + variant_text(run.variant);
+    }
+    std::string text;
+    for (const auto& [reason, settings] : lines) text += "left out: " + settings + ": " + reason + "\n";
     return text;
 }
 
@@ -114,6 +131,7 @@ std::string study_text(const StudyResult& result) {
     if (failed > 0) text += ", " + std::to_string(failed) + " without a result";
     if (left_out > 0) text += ", " + std::to_string(left_out) + " left out";
     text += "\n" + quantities_text(result) + verdicts_text(result);
+    text += left_out_text(result);
     for (std::size_t i = 0; i < std::min(most_remarks, result.sentences.size()); ++i)
         text += result.sentences[i] + "\n";
     if (result.sentences.size() > most_remarks)

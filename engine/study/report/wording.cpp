@@ -21,13 +21,14 @@ std::pair<Real, std::string> prefix_of(Real size, const std::string& unit) {
     return {1, ""};
 }
 
-/// Formats a value to the second digit of its error.
+/// Formats a value to the second digit of its error. An error may be its own value.
 std::string to_digit_of(Real value, Real error) {
-    constexpr int most_digits = 6;
+    constexpr int most_digits = 6, most_decimals = 4;
     if (!(error > 0) || !std::isfinite(error)) return short_number(value, most_digits);
     const int decimals = 1 - static_cast<int>(std::floor(std::log10(error)));
     const int before = value == 0 ? 1 : 1 + static_cast<int>(std::floor(std::log10(std::abs(value))));
-    if (before + decimals > most_digits || before > most_digits) return short_number(value, most_digits);
+    if (decimals > most_decimals || before + decimals > most_digits || before > most_digits)
+        return short_number(value, value == error ? 2 : most_digits);
     char text[64];
     std::snprintf(text, sizeof text, "%.*f", std::max(decimals, 0), value);
     return text;
@@ -58,7 +59,7 @@ QuantityText quantity_text(const StudyQuantity& q) {
     const bool has_error = std::isfinite(q.error);
     const auto [factor, prefix] = prefix_of(std::max(std::abs(q.value), has_error ? q.error : 0), q.unit);
     const auto part = [factor = factor](Real error) {
-        return error > 0 && std::isfinite(error) ? short_number(error / factor, 2) : std::string();
+        return error > 0 && std::isfinite(error) ? to_digit_of(error / factor, error / factor) : std::string();
     };
     QuantityText text;
     text.unit = q.unit == "1" ? "" : prefix + q.unit;
