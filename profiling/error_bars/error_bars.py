@@ -7,6 +7,7 @@ import csv
 import json
 import math
 import pathlib
+import shutil
 import subprocess
 import sys
 import time
@@ -36,16 +37,18 @@ def estimated_error(item, statistics):
 
 def study(program, item, folder, threads):
     """Runs an item and its study. Returns a row of the table."""
+    scene, text = folder / "scene.json", json.dumps({"name": item.name, **item.scene}, indent=1)
+    if scene.exists() and scene.read_text() != text:
+        shutil.rmtree(folder)  # runs of another version of the item
     folder.mkdir(parents=True, exist_ok=True)
-    scene = folder / "scene.json"
-    scene.write_text(json.dumps({"name": item.name, **item.scene}, indent=1))
+    scene.write_text(text)
     for name, text in item.meshes.items():
         (folder / name).write_text(text)
     subprocess.run([program, "run", scene, "--quiet", "--threads", "1", "--stats", folder / "stats.json"], check=True,
                    stderr=subprocess.DEVNULL)
     statistics = json.loads((folder / "stats.json").read_text())
     start = time.monotonic()
-    subprocess.run([program, "study", scene, "--quiet", "--redo", "--threads", str(threads), "--out",
+    subprocess.run([program, "study", scene, "--quiet", "--threads", str(threads), "--out",
                     folder / "study"], check=True)
     took = time.monotonic() - start
     with open(folder / "study" / "study.csv", newline="") as stream:

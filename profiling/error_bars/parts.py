@@ -76,7 +76,7 @@ def bar(length, height, cells, load, *, nu=0.3, modulus=E, down=0.0, model="line
                  [{"name": "tip", "quantity": "motion", "body": "bar", "point": [length / 2, 0, 0]}], **forces)
 
 
-def rk4(rate, state, seconds, steps=20000):
+def rk4(rate, state, seconds, steps=2000):
     """State after some seconds of the motion d state/dt = rate(state)."""
     h = seconds / steps
     for _ in range(steps):
@@ -91,7 +91,7 @@ def rk4(rate, state, seconds, steps=20000):
 def root(function, low, high):
     """Root of a function that changes its sign between low and high, by bisection."""
     sign = function(low) > 0
-    for _ in range(200):
+    for _ in range(50):
         middle = (low + high) / 2
         low, high = (middle, high) if (function(middle) > 0) == sign else (low, middle)
     return (low + high) / 2

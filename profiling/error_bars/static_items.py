@@ -24,7 +24,7 @@ def tension():
     body = {"name": "bar", "mesh": box((length, 0.1, 0.1), (8, 2, 2)), "material": "rubber",
             "pin": [roller(0, -length / 2), roller(1, -0.05), roller(2, -0.05)]}
     load = {"kind": "traction", "body": "bar", "box": slab(0, length / 2), "traction": [pull, 0, 0]}
-    return Item("bar_tension", scene(0.5, [body], {"rubber": elastic(nu, model="stable_neo_hookean")},
+    return Item("bar_tension", scene(0.9, [body], {"rubber": elastic(nu, model="stable_neo_hookean")},
                                      [{"name": "end", "quantity": "motion", "body": "bar", "point": [length / 2, 0, 0]}],
                                      loads=[load, drag(0.16)]),
                 "end.displacement_x", length * (stretch - 1), "uniaxial tension of the stable neo-Hookean law")
@@ -202,7 +202,7 @@ def balloon():
     def outside(wide):
         """Radial stress at the outer surface, for a hoop stretch `wide` of the inner one. Equation: d(R^2 S)/dR = 2 R H,
         with the nominal radial and hoop stress S and H."""
-        h, steps = (b - a) / 400, 400
+        h, steps = (b - a) / 100, 100
         r, q = wide * a, -p * wide**2 * a**2  # present radius, R^2 S
 
         def rates(at, r, q):
