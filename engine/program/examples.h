@@ -53,7 +53,7 @@ gravity off, and move the sliders of the scene. Plots show its probes. The serve
 contains a secret token: who knows it can control the run, so do not pass it on. On a machine with other users give
 --no-open, because they can read the arguments with which the browser is opened.
 At the end the program prints the simulated time, the speed, and the numbers of frames sent and dropped.
-Exit codes: 0 ended by Ctrl-C or after --seconds, 2 invalid input or a port in use.)";
+Exit codes: 0 ended by Ctrl-C, by SIGTERM or after --seconds, 2 invalid input or a port in use.)";
 
 inline constexpr const char* inspect_examples = R"(Examples:
   skerry inspect bunny.msh                                 sizes, quality, problems, tetrahedra that limit the step

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #ifdef __GLIBC__
@@ -14,6 +15,7 @@
 
 #include "engine/program/commands.h"
 #include "engine/program/examples.h"
+#include "engine/program/number_text.h"
 #include "engine/program/output_formats.h"
 #include "engine/program/sweep/cases/sweep_file.h"
 #include "engine/scene/place.h"
@@ -41,6 +43,21 @@ const CLI::Validator share(
                    : "found " + text + ", expected a number of at least 0 and below 1";
     },
     "0 <= NUMBER < 1");
+
+/// Validator that accepts numbers of the type of the bounds, within the bounds.
+template <class Number>
+CLI::Validator within(Number least, Number most) {
+    constexpr int digits = 10;
+    const std::string from = short_number(least, digits), to = short_number(most, digits);
+    return {[=](std::string& text) {
+                Number value{};
+                return CLI::detail::lexical_cast(text, value) && least <= value && value <= most
+                           ? std::string()
+                           : "found " + text + ", expected a " + (std::is_integral_v<Number> ? "whole " : "") +
+                                 "number from " + from + " to " + to;
+            },
+            from + " to " + to};
+}
 
 template <class Enum>
 std::vector<std::string> names_of_all() {
@@ -88,7 +105,7 @@ void add_count(CLI::App& app, const std::string& flag, std::optional<int>& targe
     constexpr int most = 2147483647;
     app.add_option_function<int>(
            flag, [&target](const int& value) { target = value; }, meaning)
-        ->check(CLI::Range(least, most));
+        ->check(within(least, most));
 }
 
 void add_outputs(CLI::App& command, RunOptions& options) {
@@ -143,7 +160,7 @@ void add_threads(CLI::App& command, SceneOverrides& overrides) {
         .add_option_function<int>(
             "--threads", [&overrides](const int& count) { overrides.threads = count; },
             "number of worker threads; 0: one per core")
-        ->check(CLI::Range(0, 1024));
+        ->check(within(0, 1024));
 }
 
 /// Adds the options for writing checkpoints and for resuming a run. Returns the option --restart.
@@ -191,11 +208,11 @@ void add_view(CLI::App& app, ViewOptions& options) {
     command
         .add_option("--rate", options.rate,
                     "simulated time per wall time: 1 is real time, 0.1 slow motion, 0 as fast as possible")
-        ->check(CLI::Range(0.0, 1000.0))
+        ->check(within(0.0, 1000.0))
         ->capture_default_str();
     command.add_flag("--paused", options.paused, "wait for the user to press play");
     command.add_option("--port", options.port, "port of the server; 0: a free port")
-        ->check(CLI::Range(0, 65535))
+        ->check(within(0, 65535))
         ->capture_default_str();
     command.add_flag("!--no-open", options.open, "only print the address, and do not open the browser");
     add_overrides(command, options.overrides);
@@ -223,7 +240,7 @@ void add_solve(CLI::App& app, SolveOptions& options) {
     command
         .add_option("--max-iterations", options.settings.max_iterations,
                     "largest number of sweeps over a contact region")
-        ->check(CLI::Range(1, 2147483647))
+        ->check(within(1, 2147483647))
         ->capture_default_str();
     command.add_option("--reactions", options.reactions,
                        "text file for the reactions: one line per contact with the normal and two tangential "

@@ -10,6 +10,7 @@
 #include "engine/mesh/manifold_fault.h"
 #include "engine/program/checkpoint.h"
 #include "engine/program/commands.h"
+#include "engine/program/contact_area_text.h"
 #include "engine/program/nearest_text.h"
 #include "engine/program/number_text.h"
 #include "engine/program/plan_warnings.h"
@@ -47,7 +48,8 @@ public:
           checkpoints_(checkpoints),
           progress_(progress),
           result_(result),
-          probes_(scene) {
+          probes_(scene),
+          errors_(scene.world) {
         if (options.series_figures && !scene.recorded.empty()) figures_.emplace(world_, scene.recorded);
     }
 
@@ -82,6 +84,8 @@ public:
         result_.checkpoints = checkpoints_.written();
         result_.checkpoints_failed = checkpoints_.failed();
         result_.probes = probes_.records();
+        errors_.finish(world_);
+        result_.errors = errors_.bodies();
         if (figures_) result_.series = figures_->all();
     }
 
@@ -120,6 +124,7 @@ private:
         if (!(sampled > 0)) return;
         probes_.sample(world_, sampled);
         outputs_.sample(world_);
+        errors_.sample(world_);
         if (figures_) figures_->sample(world_);
     }
     void write_checkpoint(long frame, int sample) {
@@ -141,6 +146,7 @@ private:
     Progress& progress_;
     RunResult& result_;
     ProbeRecorder probes_;
+    ErrorEstimator errors_;
     std::optional<SeriesFigures> figures_;
     std::uint64_t steps_ = 0;  // number of steps since the run was started or resumed
 };
@@ -175,15 +181,18 @@ void count_bodies(const World& world, RunResult& result) {
     }
 }
 
-/// Returns one text for each mesh, material and kind of element with parts that are too stiff in bending. The text
-/// names one body with them. Rigid bodies do not bend.
-std::vector<std::string> thin_parts(const ScenePlan& plan, const World& world) {
+/// Returns one text for each mesh, material and kind of element that is too stiff in bending. The text names one body
+/// of this kind. Bodies that hardly deformed in the run, and rigid bodies, are left out.
+std::vector<std::string> thin_parts(const ScenePlan& plan, const World& world, std::span<const ErrorEstimate> errors) {
+    constexpr Real least_deformation = 0.01;  // share of the displacement of a body below which deformation is ignored
     std::vector<std::string> found;
     std::set<std::tuple<std::size_t, std::size_t, std::vector<std::pair<int, std::size_t>>, ElementKind>> seen;
     const std::vector<BodyHandle> bodies = bodies_in_order(world);
     for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
         const BodyPlan& body = plan.bodies[b];
+        const auto error = std::ranges::find(errors, bodies[b], &ErrorEstimate::body);
         if (world.dynamics(bodies[b]) == BodyDynamics::rigid ||
+            (error != errors.end() && error->deformation < least_deformation) ||
             !seen.emplace(body.mesh, body.material, body.materials, body.settings.element).second)
             continue;
         const std::string text =
@@ -260,7 +269,6 @@ RunResult simulate(const RunOptions& asked) {
     memory.scene = std::filesystem::absolute(options.scene);
     memory.assignments = options.overrides.assignments;
     result.bad_boundaries = bad_boundaries(plan, world);
-    result.thin_parts = thin_parts(plan, world);
     result.plan_warnings = plan_warnings(plan);
     if (!options.quiet) print_lines("WARNING", result.plan_warnings);
     result.scene = scene.name;
@@ -294,6 +302,8 @@ RunResult simulate(const RunOptions& asked) {
     }
 
     result.report = world.report();
+    result.thin_parts = thin_parts(plan, world, result.errors);
+    result.contact_areas = contact_area_texts(plan, world, result.errors);
     result.broken_ties = broken_ties(plan, world);
     if (result.report.steps > 0 && result.report.max_contacts == 0) result.nearest = nearest_text(world);
     if (std::string distrust = result.report.distrust(); result.status == "ok" && !distrust.empty()) {

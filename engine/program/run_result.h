@@ -10,6 +10,7 @@
 #include "engine/output/writer.h"
 #include "engine/program/commands.h"
 #include "engine/program/probe_recorder.h"
+#include "skerry/estimate.h"
 #include "skerry/scene.h"
 
 namespace skerry {
@@ -42,6 +43,7 @@ struct RunResult {
     Real peak_kinetic_energy = 0;  // largest kinetic energy at the end of a frame [J]
     Real mean_edge = 0;            // mean edge length of the surfaces, averaged over the bodies [m]
     WorldReport report;
+    std::vector<ErrorEstimate> errors;  // by body; of the part of the run after --restart
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;
     std::vector<BrokenTie> broken_ties;
@@ -49,7 +51,8 @@ struct RunResult {
     std::vector<std::pair<std::string, std::string>> outputs_failed;
     std::vector<std::string> plan_warnings;   // warnings about values in the scene
     std::vector<std::string> bad_boundaries;  // one sentence for each mesh whose boundary is not a closed manifold
-    std::vector<std::string> thin_parts;      // one sentence for each mesh with a part that is too stiff in bending
+    std::vector<std::string> thin_parts;      // one sentence for each mesh that is too stiff in bending
+    std::vector<std::string> contact_areas;   // one sentence for each body with too small contact areas for its mesh
     std::vector<std::string> notes;           // remarks about the input that do not question the result
     std::string nearest;                      // result of nearest_text() for a run without any contact, else empty
     std::vector<std::pair<std::string, double>> series;  // figures of the time series of the probes, see SeriesFigures

@@ -16,6 +16,24 @@ Json number_or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json();
 }
 
+Json errors_of(const RunResult& result) {
+    Json errors = Json::array();
+    for (const ErrorEstimate& of : result.errors)
+        errors.push_back({{"body", of.name},
+                          {"mesh", number_or_null(of.mesh)},
+                          {"deflection", number_or_null(of.deflection)},
+                          {"stress", number_or_null(of.stress)},
+                          {"step", number_or_null(of.step)},
+                          {"contact", number_or_null(of.contact)},
+                          {"deformation", number_or_null(of.deformation)},
+                          {"overlap", number_or_null(of.overlap)},
+                          {"contact_radius", number_or_null(of.contact_radius)},
+                          {"contact_edge", number_or_null(of.contact_edge)},
+                          {"worst_tetrahedron", of.worst_tetrahedron},
+                          {"time", number_or_null(of.time)}});
+    return errors;
+}
+
 /// Returns the error estimates of the run. `warnings` describes the estimates that are too large.
 Json trust_of(const RunResult& result) {
     const WorldReport& r = result.report;
@@ -182,6 +200,7 @@ Json statistics_of(const RunResult& result) {
         {"max_penetration", r.max_penetration},
         {"max_gap_violation", r.max_gap_violation},
         {"mean_edge", result.mean_edge},
+        {"errors", errors_of(result)},
         {"trust", trust_of(result)},
         {"notes", result.notes},
         {"broken_ties", ties},

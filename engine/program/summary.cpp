@@ -78,6 +78,26 @@ std::string balance_text(const WorldReport& r) {
                                                 : percent(r.momentum_error_share));
 }
 
+/// Returns the largest estimated errors of all bodies, for example "mesh about 3 % of deflections (body 'arm') and 12 %
+/// of the largest stress (body 'arm'), steps about 0.1 % (body 'ball')".
+std::string errors_text(const std::vector<ErrorEstimate>& errors) {
+    std::string text;
+    const auto add = [&](const char* between, const std::string& before, Real ErrorEstimate::*error,
+                         const std::string& after) {
+        const ErrorEstimate* largest = nullptr;
+        for (const ErrorEstimate& of : errors)
+            if (std::abs(of.*error) > (largest ? std::abs(largest->*error) : 0)) largest = &of;
+        if (largest)
+            text += (text.empty() ? "" : between) + before + "about " + percent(std::abs(largest->*error)) + after +
+                    " (body '" + largest->name + "')";
+    };
+    add("", "mesh ", &ErrorEstimate::deflection, " of deflections");
+    add(" and ", text.empty() ? "mesh " : "", &ErrorEstimate::stress, " of the largest stress");
+    add(", ", "steps ", &ErrorEstimate::step, " of the motion");
+    add(", ", "contacts ", &ErrorEstimate::contact, " of the forces");
+    return text;
+}
+
 std::string probe_lines(const RunResult& result) {
     std::string text;
     for (const ProbeRecord& probe : result.probes)
@@ -119,11 +139,13 @@ std::string warning_lines(const RunResult& result) {
 std::string step_lines(const RunResult& result) {
     const WorldReport& r = result.report;
     if (r.steps == 0) return {};
+    const std::string errors = errors_text(result.errors);
     return summary_line("steps", grouped(r.steps) + " of " +
                                      with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
                                      " on average") +
            summary_line("time", time_text(result)) + summary_line("contacts", contacts_text(result)) +
-           summary_line("penetration", penetration_text(result)) + summary_line("balance", balance_text(r));
+           summary_line("penetration", penetration_text(result)) + summary_line("balance", balance_text(r)) +
+           (errors.empty() ? "" : summary_line("errors", errors));
 }
 
 std::string file_lines(const RunResult& result) {

@@ -35,6 +35,24 @@ std::string coordinate(Real value, const mesh::ThinPart& part) {
     return short_number(std::abs(value) < rounding * part.length ? 0 : value);
 }
 
+/// Least Poisson ratio at which elements of a kind are more than twice as stiff in bending as their material
+/// (docs/methods/elasticity.md 7.3).
+Real locks_from(ElementKind kind) {
+    return kind == ElementKind::linear ? 0.45 : kind == ElementKind::edge_smoothed ? 0.49 : 0.5;
+}
+
+std::string locking_text(const ElementsOfThinBody& elements) {
+    for (const MaterialZone& zone : elements.zones) {
+        const Real poisson_ratio = elements.materials[static_cast<std::size_t>(zone.material)].poisson_ratio;
+        if (!zone.tetrahedra.empty() && poisson_ratio >= locks_from(zone.kind))
+            return "elements of the kind \"" + std::string(name_of(zone.kind)) + "\" lock at a Poisson ratio of " +
+                   short_number(poisson_ratio) +
+                   ": in bending they are more than twice as stiff as the material: set \"element\" of the body to "
+                   "\"smoothed\"";
+    }
+    return {};
+}
+
 ElementsOfThinBody elements_of_body(const Mesh& mesh, const StepCase& of) {
     ElementsOfThinBody elements;
     elements.add(of.material, of.body.element);
@@ -56,7 +74,7 @@ std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3
     const ElementsOfThinBody elements = elements_of_body(mesh, of);
     std::vector<mesh::ThinPart> parts = mesh::thin_parts(mesh, boundary, elements.zones, elements.materials);
     std::erase_if(parts, [](const mesh::ThinPart& part) { return part.stiffness < reported_stiffness; });
-    if (parts.empty()) return {};
+    if (parts.empty()) return locking_text(elements);
     const mesh::ThinPart& part = parts.front();
     const Real layers = std::round(part.layers);
     // The excess of stiffness falls with the square of the size of the cells.

@@ -84,6 +84,7 @@ std::vector<std::string> warnings_of(const RunResult& result) {
         warnings.push_back(boundary +
                            "; contacts may fail there: repair the mesh (`skerry inspect MESH --repair NEW.msh`)");
     warnings.insert(warnings.end(), result.thin_parts.begin(), result.thin_parts.end());
+    warnings.insert(warnings.end(), result.contact_areas.begin(), result.contact_areas.end());
     const auto steps = static_cast<Real>(std::max<std::uint64_t>(r.steps, 1));
     const Real mean_step = result.seconds_simulated / steps;
     const std::string shorter = bad_start

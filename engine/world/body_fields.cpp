@@ -1,10 +1,10 @@
 // Stress, strain and stable steps of bodies, for each tetrahedron or node.
 #include <algorithm>
-#include <memory>
 #include <numeric>
 
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
+#include "engine/world/elements_of_body.h"
 #include "engine/world/kernels.h"
 #include "engine/world/node_fields.h"
 #include "engine/world/validate.h"
@@ -22,105 +22,92 @@ namespace {
 using OfElements = void (*)(const ElementInputs&, Range, std::span<const Vec3>, std::span<Mat3>);
 using OfTetrahedra = std::vector<Mat3> (*)(const ElementCover&, std::span<const Mat3>, std::size_t);
 
-/// The elements of an implicit body and the positions of its nodes in the mesh frame. Stress is computed in the mesh
-/// frame and then rotated to world axes.
-struct ImplicitElements {
-    std::shared_ptr<const OwnElements> own;
-    std::vector<Vec3> shape;
-
-    ImplicitElements(const Model& model, std::size_t row) {
-        const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[row]),
-                                    displacement =
-                                        rows_of(model.implicit_nodes.displacement, model.bodies.implicit[row]);
-        own = model.body_records[row].fields.elements([&] {
-            const ElementList list = model.elements_of_implicit(row);
-            OwnElements elements;
-            const AppendedElements appended = append_elements(list, rest, 0, 0, elements.table, elements.nodes);
-            elements.blocks = appended.blocks;
-            elements.covered = covered_tetrahedra(list, appended.element);
-            return elements;
-        });
-        shape.assign(rest.begin(), rest.end());
-        for (std::size_t n = 0; n < shape.size(); ++n) shape[n] += displacement[n];
-    }
-    ElementInputs inputs(const Model& model) const {
-        return ElementInputs::bind({}, own->table, own->nodes, model.materials);
-    }
-};
-
-void turn_with_frame(const Model& model, std::size_t row, std::span<Mat3> values) {
-    const Mat3 turn = pose_of_body(model, row).rotation;
-    for (Mat3& value : values) value = turn * value * turn.transpose();
-}
-
-/// Calls visit(elements, blocks, cover, positions, first_node, turn) for the elements of a body. `first_node`: first
-/// node of the body in `positions`. The argument `turn` is a function that rotates tensors from the mesh frame to world
-/// axes.
-auto with_elements(const Model& model, std::size_t row, auto&& visit) {
-    if (model.dynamics_of(row) == BodyDynamics::implicit_elastic) {
-        const ImplicitElements implicit(model, row);
-        const OwnElements& own = *implicit.own;
-        return visit(implicit.inputs(model), own.blocks, ElementCover{own.table.part, own.covered.view()},
-                     std::span<const Vec3>(implicit.shape), Index{0},
-                     [&](std::span<Mat3> values) { turn_with_frame(model, row, values); });
-    }
-    const Range blocks = model.bodies.blocks[row];
-    const ElementCover cover{rows_of(model.elements.part, blocks), model.body_records[row].element_tetrahedra.view()};
-    return visit(model.all_elements(), blocks, cover, model.nodes.position.span(), model.bodies.nodes[row].begin,
-                 [](std::span<Mat3>) {});
-}
-
 std::vector<Mat3> tetrahedron_field(const Model& model, std::size_t row, OfElements of_elements,
                                     OfTetrahedra of_tetrahedra) {
-    return with_elements(model, row,
-                         [&](const ElementInputs& elements, Range blocks, const ElementCover& cover,
-                             std::span<const Vec3> position, Index, auto&& turn) {
-                             std::vector<Mat3> values(static_cast<std::size_t>(blocks.size()) * element_lanes);
-                             of_elements(elements, blocks, position, values);
-                             turn(values);
-                             return of_tetrahedra(cover, values,
-                                                  static_cast<std::size_t>(model.bodies.tetrahedron_count[row]));
-                         });
+    const ElementsOfBody body(model, row);
+    std::vector<Mat3> values(static_cast<std::size_t>(body.blocks.size()) * element_lanes);
+    of_elements(body.elements, body.blocks, body.position, values);
+    body.turn(values);
+    return of_tetrahedra(body.cover, values, static_cast<std::size_t>(model.bodies.tetrahedron_count[row]));
 }
 
-/// Stress and strain at the given nodes of a body.
+/// Stress and strain at the given nodes of a body, in world axes.
 NodeFields fields_of_nodes(const Model& model, std::size_t row, std::span<const Index> nodes) {
-    const BodyRecord& record = model.body_records[row];
-    return with_elements(
-        model, row,
-        [&](const ElementInputs& elements, Range blocks, const ElementCover& cover, std::span<const Vec3> position,
-            Index first_node, auto&& turn) {
-            // Rigid bodies have no elements.
-            if (blocks.size() == 0)
-                return NodeFields{std::vector<Mat3>(nodes.size(), Mat3::Zero()),
-                                  std::vector<Mat3>(nodes.size(), Mat3::Zero())};
-            const auto plan = record.fields.plan(nodes, [&] {
-                return plan_recovery({.elements = elements,
-                                      .blocks = blocks,
-                                      .cover = cover,
-                                      .tetrahedra = record.tetrahedra,
-                                      .surface = record.surface,
-                                      .material_of_tetrahedra = record.tetrahedron_material,
-                                      .rest_position = rows_of(model.nodes.rest_position, model.bodies.nodes[row]),
-                                      .first_node = first_node},
-                                     nodes);
-            });
-            NodeFields fields = recover_nodes(
-                *plan, {.elements = elements, .blocks = blocks, .position = position, .first_node = first_node},
-                kernels().element_fields);
-            turn(fields.stress);
-            turn(fields.strain);
-            return fields;
-        });
+    const ElementsOfBody body(model, row);
+    NodeFields fields = body.node_fields(nodes);
+    body.turn(fields.stress);
+    body.turn(fields.strain);
+    return fields;
 }
 
 NodeFields fields_of_nodes(const Model& model, std::size_t row) {
-    std::vector<Index> nodes(static_cast<std::size_t>(model.bodies.nodes[row].size()));
-    std::iota(nodes.begin(), nodes.end(), Index{0});
-    return fields_of_nodes(model, row, nodes);
+    return fields_of_nodes(model, row, all_nodes(model, row));
 }
 
 }  // namespace
+
+ElementsOfBody::ElementsOfBody(const Model& model, std::size_t row)
+    : model_(model), row_(row), is_implicit_(model.dynamics_of(row) == BodyDynamics::implicit_elastic) {
+    const BodyRecord& record = model.body_records[row];
+    if (!is_implicit_) {
+        elements = model.all_elements();
+        blocks = model.bodies.blocks[row];
+        cover = {rows_of(model.elements.part, blocks), record.element_tetrahedra.view()};
+        position = model.nodes.position.span();
+        first_node = model.bodies.nodes[row].begin;
+        built = record.built;
+        return;
+    }
+    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[row]),
+                                displacement = rows_of(model.implicit_nodes.displacement, model.bodies.implicit[row]);
+    own_ = record.fields.elements([&] {
+        const ElementList list = model.elements_of_implicit(row);
+        OwnElements own;
+        const AppendedElements appended = append_elements(list, rest, 0, 0, own.table, own.nodes);
+        own.blocks = appended.blocks;
+        own.covered = covered_tetrahedra(list, appended.element);
+        return own;
+    });
+    shape_.assign(rest.begin(), rest.end());
+    for (std::size_t n = 0; n < shape_.size(); ++n) shape_[n] += displacement[n];
+    elements = ElementInputs::bind({}, own_->table, own_->nodes, model.materials);
+    blocks = own_->blocks;
+    cover = {own_->table.part, own_->covered.view()};
+    position = shape_;
+}
+
+void ElementsOfBody::turn(std::span<Mat3> values) const {
+    if (!is_implicit_) return;
+    const Mat3 turn = pose_of_body(model_, row_).rotation;
+    for (Mat3& value : values) value = turn * value * turn.transpose();
+}
+
+NodeFields ElementsOfBody::node_fields(std::span<const Index> nodes) const {
+    if (blocks.size() == 0)
+        return {std::vector<Mat3>(nodes.size(), Mat3::Zero()), std::vector<Mat3>(nodes.size(), Mat3::Zero()),
+                std::vector<bool>(nodes.size())};
+    const BodyRecord& record = model_.body_records[row_];
+    const auto plan = record.fields.plan(nodes, [&] {
+        return plan_recovery({.elements = elements,
+                              .blocks = blocks,
+                              .cover = cover,
+                              .tetrahedra = record.tetrahedra,
+                              .surface = record.surface,
+                              .material_of_tetrahedra = record.tetrahedron_material,
+                              .rest_position = rows_of(model_.nodes.rest_position, model_.bodies.nodes[row_]),
+                              .first_node = first_node},
+                             nodes);
+    });
+    return recover_nodes(*plan,
+                         {.elements = elements, .blocks = blocks, .position = position, .first_node = first_node},
+                         kernels().element_fields);
+}
+
+std::vector<Index> all_nodes(const Model& model, std::size_t row) {
+    std::vector<Index> nodes(static_cast<std::size_t>(model.bodies.nodes[row].size()));
+    std::iota(nodes.begin(), nodes.end(), Index{0});
+    return nodes;
+}
 
 std::vector<Mat3> World::stress(BodyHandle body) const {
     return tetrahedron_field(state_->model, static_cast<std::size_t>(state_->model.row(body, "stress")),

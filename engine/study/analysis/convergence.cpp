@@ -15,7 +15,7 @@ constexpr Real safety = 1.5;
 constexpr Real most_remainder = 2;
 constexpr Real assumed_order = 1;  // order of two levels
 // An observed order is near the theory between these shares of the least and the largest order of the theory.
-constexpr Real least_share = 0.5, most_share = 1.5;
+constexpr Real near_least = 0.5, near_most = 1.5;
 
 }  // namespace
 
@@ -32,30 +32,32 @@ void Convergence::find_order(TheoryOrder theory, Real noise) {
     const ConvergenceLevel &fine = levels_[n - 1], &middle = levels_[n - 2];
     const Real ratio = middle.h / fine.h, difference = middle.value - fine.value;
     const auto remainder = [&](Real order) { return std::abs(difference) / (std::pow(ratio, order) - 1); };
+    used_order_ = assumed_order;
+    remainder_ = remainder(used_order_);
+    if (std::abs(difference) <= noise) {
+        shape_ = ConvergenceShape::equal;
+        return;
+    }
     constexpr Real same_ratio = 1e-6;
     if (n == 2 || std::abs(levels_[n - 3].h / middle.h - ratio) > same_ratio * ratio) {
-        shape_ = std::abs(difference) <= noise ? ConvergenceShape::equal : ConvergenceShape::two_levels;
-        used_order_ = assumed_order;
-        remainder_ = remainder(used_order_);
+        shape_ = ConvergenceShape::two_levels;
         return;
     }
     const Real coarse_difference = levels_[n - 3].value - middle.value;
     const Real largest = std::max(std::abs(coarse_difference), std::abs(difference));
-    if (largest <= noise) {
-        shape_ = ConvergenceShape::equal;
-        remainder_ = largest;
-        return;
-    }
-    order_ = std::log(std::abs(coarse_difference / difference)) / std::log(ratio);  // infinite for equal fine levels
-    if (coarse_difference * difference < 0) {
+    order_ = std::log(std::abs(coarse_difference / difference)) / std::log(ratio);
+    const bool fast = order_ > near_most * theory.most;
+    if (coarse_difference * difference < 0 && !fast) {
         shape_ = ConvergenceShape::oscillating;
+        used_order_ = 0;
         remainder_ = order_ > 0 ? largest - std::abs(difference) : largest;
-    } else if (order_ < least_share * theory.least) {
+    } else if (order_ < near_least * theory.least) {
         shape_ = ConvergenceShape::slow;
+        used_order_ = 0;
         remainder_ = most_remainder * std::abs(coarse_difference + difference);
         if (order_ > 0) remainder_ = std::min(remainder_, remainder(order_));
     } else {
-        shape_ = order_ > most_share * theory.most ? ConvergenceShape::fast : ConvergenceShape::regular;
+        shape_ = fast ? ConvergenceShape::fast : ConvergenceShape::regular;
         used_order_ = std::min(order_, theory.most);
         // Half the error that the coarser difference predicts: equal values of two levels may be an accident.
         const Real power = std::pow(ratio, theory.most);
@@ -76,7 +78,6 @@ Real Convergence::error_of(Real value) const {
 Real Convergence::error_at(Real h) const {
     if (shape_ == ConvergenceShape::unmeasured) return unknown;
     const Real finest = levels_.back().h;
-    if (h < finest && (shape_ == ConvergenceShape::slow || shape_ == ConvergenceShape::oscillating)) return infinity;
     if (h < finest) return safety * remainder_ * std::pow(h / finest, used_order_);
     // A coarse level that is near the limit by accident has at least the error of the finer levels.
     Real error = 0;

@@ -45,8 +45,8 @@ public:
     bool irregular() const;
     /// Error bound of the value at h = 1, with a safety factor; NaN if unmeasured.
     Real error() const { return error_at(1); }
-    /// Error bound of the value at `h`. For h below the finest level it is predicted; infinity if there is no order to
-    /// do so. NaN if h lies between the levels, above them, or if the error is unmeasured.
+    /// Error bound of the value at `h`. For h below the finest level it is predicted; without a regular order it
+    /// stays that of the finest level. NaN if h lies between the levels, above them, or if the error is unmeasured.
     Real error_at(Real h) const;
     /// Error bound of any other approximation of the same limit; NaN if unmeasured.
     Real error_of(Real value) const;

@@ -227,7 +227,7 @@ MeasuredQuantity measure_values(const StudyFamily& family, const SeriesColumn& w
         if (v.draw != 0 && std::isfinite(value)) quantity.noise = std::max(quantity.noise, std::abs(value - r.value));
         if (v.element) quantity.elements.emplace_back(v, value);
     }
-    constexpr Real rounding = 1e-12;
+    constexpr Real rounding = 1e-9;  // also holds the sums of rounding errors over a run
     Real noise = std::max(rounding * r.scale, quantity.noise);
     quantity.contact = Convergence(contact, {1, 1}, noise);
     if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());  // the solver's error is noise, too

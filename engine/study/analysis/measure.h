@@ -50,7 +50,7 @@ MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFig
                          Real agree_until, Real wanted);
 
 /// Half width of the error bar of the value that a run with these settings has. Finer meshes than those of the runs are
-/// predicted: infinity if that is impossible. NaN if unknown.
+/// predicted. NaN if unknown.
 Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant);
 
 /// Half width of the error bar of each row of a column.

@@ -20,9 +20,16 @@ std::string quantity_line(const StudyQuantity& q, std::size_t width) {
     if (text.error.empty()) return line + ", " + std::string(name_of(q.verdict)) + "\n";
     line += " +- " + text.error;
     std::string parts;
-    for (const auto& [name, part] : {std::pair{"mesh", text.mesh}, std::pair{"step", text.step},
-                                     std::pair{"contacts", text.contact}, std::pair{"start", text.noise}})
-        if (!part.empty()) parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
+    struct BarPart {
+        const char* name;
+        Real error;
+        const std::string& text;
+    };
+    constexpr double shown_share = 0.01;  // smaller parts of an error bar are not shown
+    for (const auto& [name, error, part] :
+         {BarPart{"mesh", q.mesh, text.mesh}, BarPart{"step", q.step, text.step},
+          BarPart{"contacts", q.contact, text.contact}, BarPart{"start", q.noise, text.noise}})
+        if (error > shown_share * q.error) parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
     if (!parts.empty()) line += " (" + (text.share.empty() ? "" : text.share + ": ") + parts + ")";
     if (!text.orders.empty()) line += ", " + text.orders;
     if (q.verdict != StudyVerdict::known) line += ", " + std::string(name_of(q.verdict));
@@ -31,7 +38,7 @@ std::string quantity_line(const StudyQuantity& q, std::size_t width) {
 
 /// True for a component of a vector that is smaller than the wanted error of the vector.
 bool is_negligible(const StudyQuantity& q, double wanted) {
-    return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error < wanted * q.scale;
+    return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error <= wanted * q.scale;
 }
 
 std::string quantities_text(const StudyResult& result) {

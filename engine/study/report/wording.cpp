@@ -29,8 +29,10 @@ std::string to_digit_of(Real value, Real error) {
     const int before = value == 0 ? 1 : 1 + static_cast<int>(std::floor(std::log10(std::abs(value))));
     if (decimals > most_decimals || before + decimals > most_digits || before > most_digits)
         return short_number(value, value == error ? 2 : most_digits);
+    // A value that rounds to zero has no sign.
+    const bool is_zero = std::abs(value) < 0.5 * std::pow(10, -std::max(decimals, 0));
     char text[64];
-    std::snprintf(text, sizeof text, "%.*f", std::max(decimals, 0), value);
+    std::snprintf(text, sizeof text, "%.*f", std::max(decimals, 0), is_zero ? 0 : value);
     return text;
 }
 

@@ -118,10 +118,12 @@ NodeFields recover_nodes(const RecoveryPlan& plan, const RecoveryState& body, de
     NodeFields fields;
     fields.stress.reserve(plan.nodes.size());
     fields.strain.reserve(plan.nodes.size());
+    fields.extrapolated.reserve(plan.nodes.size());
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
         const auto [stress, strain] = recovery.at(i);
         fields.stress.push_back(stress);
         fields.strain.push_back(strain);
+        fields.extrapolated.push_back(plan.smooth_of[i] == no_index);
     }
     return fields;
 }

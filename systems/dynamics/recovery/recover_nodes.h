@@ -19,8 +19,9 @@ struct RecoveryState {
 };
 
 struct NodeFields {
-    std::vector<Mat3> stress;  // Cauchy stress [Pa]
-    std::vector<Mat3> strain;  // Green strain
+    std::vector<Mat3> stress;        // Cauchy stress [Pa]
+    std::vector<Mat3> strain;        // Green strain
+    std::vector<bool> extrapolated;  // true for nodes at edges, corners and interfaces of materials
 };
 
 /// Recovers the fields at the nodes of the plan, in their order. Only elements near these nodes are evaluated, and the

@@ -129,6 +129,21 @@ TEST_CASE("a slider turns an object about an axis of the world through the origi
     CHECK(rotation_matrix(pose.rotation).isApprox(expected, 1e-12));
 }
 
+TEST_CASE("a slider that turns an object by more than half a revolution passes all values between", "[unit]") {
+    Scene scene = yard_with(R"({"name": "turn", "collider": "ball", "about": [0, 0, 1], "low": -3, "high": 3})");
+    World& world = scene.world;
+    const Slider& slider = scene.sliders[0];
+    for (const Real end : {3.0, -3.0, 3.0}) {
+        const Real start = slider_value(world, slider);
+        set_slider(world, slider, end);
+        const Real duration = std::abs(end - start) / slider.fastest;
+        for (const Real share : {0.25, 0.5, 0.75, 1.0}) {
+            REQUIRE(world.advance(duration / 4).ok());
+            CHECK(slider_value(world, slider) == Approx(start + share * (end - start)).margin(1e-12));
+        }
+    }
+}
+
 TEST_CASE("one slider drives several objects, and a scene starts with the value of the slider", "[unit]") {
     Scene scene = yard_with(R"({"name": "both", "load": ["push", "press"], "low": 0, "high": 4},
         {"name": "lift", "collider": ["ball"], "along": [0, 0, 1], "low": -1, "high": 1, "value": 0.5},

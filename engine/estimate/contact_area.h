@@ -1,0 +1,39 @@
+// Size of the contact areas of bodies, compared with their meshes.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "skerry/estimate.h"
+
+namespace skerry {
+
+/// Estimates the radius of the most loaded contact area of each body that deforms by the theory of Hertz (1881), from
+/// the contact force, the curvatures of both surfaces at rest, and the elastic constants.
+class ContactArea {
+public:
+    /// Takes a sample from the contacts of the last step.
+    void sample(const World& world);
+    /// Sets ErrorEstimate::contact_radius and contact_edge of the bodies that touched a curved surface.
+    void add_to(std::vector<ErrorEstimate>& bodies) const;
+
+private:
+    /// Surface of a body at rest. Inner nodes have zeros.
+    struct Surface {
+        std::vector<Real> curvature;  // mean curvature by node, positive if convex [1/m]
+        std::vector<Real> edge;       // mean length of the edges of a node [m]
+    };
+    struct Area {
+        Real force = 0;   // largest contact force with one object at a sample [N]
+        Real radius = 0;  // [m]
+        Real edge = 0;    // mean edge length there [m]
+    };
+
+    const Surface& surface_of(const World& world, BodyHandle body);
+    Real curvature_at(const World& world, const Contact& contact, bool first);
+
+    std::map<BodyHandle, Surface> surfaces_;
+    std::map<BodyHandle, Area> areas_;
+};
+
+}  // namespace skerry

@@ -1,0 +1,33 @@
+#include "engine/estimate/contact_error.h"
+
+#include <algorithm>
+
+#include "engine/world/world_state.h"
+
+namespace skerry {
+
+void ContactError::sample(const World& world) {
+    const RegionTable& regions = WorldAccess::state_of(world).scratch.regions;
+    for (const Contact& contact : world.contacts()) {
+        if (contact.region < 0) continue;
+        const Real size = contact.impulse.norm();
+        for (const BodyHandle body : {contact.first, contact.second}) {
+            if (!world.alive(body)) continue;
+            Touched& touched = touched_[body];
+            touched.impulse += size;
+            touched.error += size * regions.error[static_cast<std::size_t>(contact.region)];
+            touched.overlap = std::max(touched.overlap, -contact.distance);
+        }
+    }
+}
+
+void ContactError::add_to(std::vector<ErrorEstimate>& bodies) const {
+    for (ErrorEstimate& estimate : bodies) {
+        const auto touched = touched_.find(estimate.body);
+        if (touched == touched_.end()) continue;
+        estimate.overlap = touched->second.overlap;
+        if (touched->second.impulse > 0) estimate.contact = touched->second.error / touched->second.impulse;
+    }
+}
+
+}  // namespace skerry

@@ -1,0 +1,30 @@
+// Error of the contact forces on bodies that is due to the tolerance of the solver.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "skerry/estimate.h"
+
+namespace skerry {
+
+/// Averages the error e_nat of the contact regions of each body (docs/methods/errors.md 2), and finds its largest
+/// overlap.
+class ContactError {
+public:
+    /// Takes a sample from the contacts of the last step.
+    void sample(const World& world);
+    /// Sets ErrorEstimate::contact and overlap of the bodies that were touched.
+    void add_to(std::vector<ErrorEstimate>& bodies) const;
+
+private:
+    struct Touched {
+        Real impulse = 0;  // sum of the impulses of its contacts [N s]
+        Real error = 0;    // sum of these impulses times the error of their region [N s]
+        Real overlap = 0;  // largest overlap [m]
+    };
+
+    std::map<BodyHandle, Touched> touched_;
+};
+
+}  // namespace skerry

@@ -1,0 +1,33 @@
+// Energy norm of stresses.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "components/material_table.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// Coordinates of a stress. The scalar product of the coordinates of two stresses is the product of one of them with
+/// the strain that belongs to the other one at small strain. The last coordinate belongs to the volumetric part.
+using StressCoordinates = Eigen::Matrix<Real, 7, 1>;
+
+/// Computes the coordinates of stresses in one material.
+class EnergyNorm {
+public:
+    /// `splits`: true if some elements have only one part of the stress (ElementPart).
+    EnergyNorm(const MaterialConstants& material, bool splits);
+
+    /// Coordinates of a part of a stress. `turn`: rotation of the material; used if it is anisotropic.
+    StressCoordinates of(const Mat3& stress, ElementPart part, const Mat3& turn) const;
+
+private:
+    bool is_anisotropic_;
+    // Roots of the compliances of both parts [Pa^(-1/2)], and the pressure of the volumetric part over the trace.
+    Real of_shear_ = 0, of_volume_ = 0, pressure_ = 0;
+    // Inverse of the Cholesky factor of the stiffness of an anisotropic material, for the entries xx, yy, zz, xy, yz,
+    // zx.
+    Eigen::Matrix<Real, 6, 6> of_all_ = Eigen::Matrix<Real, 6, 6>::Zero();
+};
+
+}  // namespace skerry

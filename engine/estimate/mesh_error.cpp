@@ -1,0 +1,262 @@
+#include "engine/estimate/mesh_error.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "engine/estimate/energy_norm.h"
+#include "engine/world/elements_of_body.h"
+#include "engine/world/kernels.h"
+#include "engine/world/world_state.h"
+#include "skerry/estimate.h"
+#include "systems/dynamics/elements/element_energy.h"
+#include "systems/dynamics/kinds/element_list.h"
+#include "systems/material/extract_rotation.h"
+#include "systems/material/material_law.h"
+
+namespace skerry {
+
+namespace {
+
+/// Recovered stress at the corners of the tetrahedra of a body.
+///
+/// At edges and corners of the surface and at interfaces of materials, World::node_stress extrapolates, or mixes
+/// materials. There the recovered stress is the mean of the tetrahedra of one material around the node instead, which
+/// is more robust in thin walls.
+class CornerStress {
+public:
+    CornerStress(const BodyRecord& record, const NodeFields& nodes, std::span<const Mat3> of_tetrahedra,
+                 std::span<const Real> volume)
+        : record_(record), nodes_(nodes), materials_(record.tetrahedron_material) {
+        std::ranges::sort(materials_);
+        materials_.erase(std::unique(materials_.begin(), materials_.end()), materials_.end());
+        sums_.resize(nodes.stress.size() * std::max<std::size_t>(1, materials_.size()));
+        for (std::size_t t = 0; t < volume.size(); ++t)
+            for (std::size_t corner = 0; corner < 4; ++corner) {
+                Sum& sum = sums_[place(t, corner)];
+                sum.stress += volume[t] * of_tetrahedra[t];
+                sum.volume += volume[t];
+            }
+    }
+
+    Mat3 of(std::size_t tetrahedron, std::size_t corner) const {
+        const auto n = static_cast<std::size_t>(record_.tetrahedra[tetrahedron][corner]);
+        if (!nodes_.extrapolated[n]) return nodes_.stress[n];
+        const Sum& sum = sums_[place(tetrahedron, corner)];
+        return sum.stress / sum.volume;
+    }
+
+private:
+    struct Sum {
+        Mat3 stress = Mat3::Zero();  // times the volume
+        Real volume = 0;
+    };
+
+    std::size_t place(std::size_t tetrahedron, std::size_t corner) const {
+        const auto n = static_cast<std::size_t>(record_.tetrahedra[tetrahedron][corner]);
+        if (materials_.empty()) return n;
+        const auto material = std::ranges::lower_bound(materials_, record_.tetrahedron_material[tetrahedron]);
+        return n + nodes_.stress.size() * static_cast<std::size_t>(material - materials_.begin());
+    }
+
+    const BodyRecord& record_;
+    const NodeFields& nodes_;
+    std::vector<Index> materials_;  // of the body, ascending; empty if there is one
+    std::vector<Sum> sums_;         // by material and node
+};
+
+Real sum(std::span<const Real> values) {
+    return std::accumulate(values.begin(), values.end(), Real{0});
+}
+
+/// Square of a relative error (Zienkiewicz and Zhu 1987, equation 30). `energy`: of the stress with this error.
+Real share_of(Real error, Real energy) {
+    return error > 0 ? error / (error + energy) : 0;
+}
+
+/// Sums over the elements and tetrahedra of a body.
+///
+/// Smoothed elements solve for a stress s that is constant in each element and for displacements with the strain e in
+/// the tetrahedra. Both are stationary for the functional of Hellinger and Reissner, so its error is of second order:
+/// the missing energy is 2 (S - e) : (s* - s) - (s* - s) : (S* - S), summed over the body, with the exact stress s* and
+/// the strains S and S* of both stresses. The recovered stress stands for the exact one. For linear tetrahedra S = e,
+/// and the missing energy is the squared norm of the error.
+class MeshErrorSum {
+public:
+    MeshErrorSum(const Model& model, std::size_t body)
+        : body_(model, body),
+          record_(model.body_records[body]),
+          rest_(rows_of(model.nodes.rest_position, model.bodies.nodes[body])),
+          norms_(model.materials.constants.size()) {
+        if (body_.blocks.size() == 0) return;
+        const std::size_t count = record_.tetrahedra.size();
+        for (std::vector<Real>* of : {&error_.volume, &error_.energy, &error_.error}) of->resize(count);
+        find_blocks(count);
+        std::vector<Mat3> of_elements(static_cast<std::size_t>(body_.blocks.size()) * element_lanes);
+        kernels().cauchy_stress(body_.elements, body_.blocks, body_.position, of_elements);
+        add_elements(of_elements);
+        const NodeFields nodes = body_.node_fields(all_nodes(model, body));
+        const std::vector<Mat3> of_tetrahedra = kernels().stress_of_tetrahedra(body_.cover, of_elements, count);
+        for (std::size_t t = 0; t < count; ++t) error_.volume[t] = six_volumes(record_.tetrahedra[t], rest_) / 6;
+        const CornerStress recovered(record_, nodes, of_tetrahedra, error_.volume);
+        for (std::size_t t = 0; t < count; ++t) add_tetrahedron(t, of_tetrahedra[t], recovered);
+        // The exact stress is balanced: its product with the strain of the displacements is the stored energy. So the
+        // recovered stress is scaled.
+        if (mixed_ > 0) error_.missing = error_.stored * (error_.stored * recovered_ / (mixed_ * mixed_) - 1);
+        find_peak(nodes);
+    }
+
+    MeshError take() { return std::move(error_); }
+
+private:
+    std::size_t block_at(std::size_t place) const {
+        return static_cast<std::size_t>(body_.blocks.begin) + place / element_lanes;
+    }
+    bool is_anisotropic(std::size_t block) const {
+        return body_.elements.constants[static_cast<std::size_t>(body_.elements.material[block])].model ==
+               MaterialModel::orthotropic;
+    }
+
+    /// Finds a block with strain for each tetrahedron, and the materials with elements of single parts of the stress.
+    void find_blocks(std::size_t tetrahedron_count) {
+        block_.resize(tetrahedron_count);
+        splits_.resize(norms_.size());
+        for (std::size_t place = 0; place < body_.cover.tetrahedra.size(); ++place) {
+            const std::size_t block = block_at(place);
+            const ElementPart part = body_.elements.part[block];
+            if (part == ElementPart::volume) splits_[static_cast<std::size_t>(body_.elements.material[block])] = true;
+            if (part == ElementPart::volume || part == ElementPart::guard) continue;
+            for (const Index t : body_.cover.tetrahedra[place]) block_[static_cast<std::size_t>(t)] = block;
+        }
+    }
+
+    const EnergyNorm& norm_of(std::size_t block) {
+        const auto material = static_cast<std::size_t>(body_.elements.material[block]);
+        std::optional<EnergyNorm>& norm = norms_[material];
+        if (!norm || is_anisotropic(block))  // the axes of an anisotropic material may vary
+            norm.emplace(body_.elements.whole_material_of(block), splits_[material]);
+        return *norm;
+    }
+
+    void add_elements(std::span<const Mat3> stress) {
+        for (std::size_t place = 0; place < body_.cover.tetrahedra.size(); ++place) {
+            const std::span<const Index> covered = body_.cover.tetrahedra[place];
+            if (covered.empty()) continue;
+            const std::size_t block = block_at(place);
+            const Mat3 turn = is_anisotropic(block) ? turn_of(gradient_of(static_cast<std::size_t>(covered.front())))
+                                                    : Mat3(Mat3::Identity());
+            error_.stored += body_.elements.volume[block][place % element_lanes] *
+                             norm_of(block).of(stress[place], body_.elements.part[block], turn).squaredNorm();
+        }
+    }
+
+    /// Edge vectors of a tetrahedron, as columns.
+    Mat3 edges_of(std::size_t tetrahedron, std::span<const Vec3> position, Index first_node) const {
+        const std::array<Index, 4>& node = record_.tetrahedra[tetrahedron];
+        const auto at = [&](std::size_t k) -> const Vec3& {
+            return position[static_cast<std::size_t>(node[k] + first_node)];
+        };
+        Mat3 edges;
+        edges << at(1) - at(0), at(2) - at(0), at(3) - at(0);
+        return edges;
+    }
+    Mat3 gradient_of(std::size_t tetrahedron) const {
+        return edges_of(tetrahedron, body_.position, body_.first_node) * edges_of(tetrahedron, rest_, 0).inverse() *
+               body_.built.transpose();
+    }
+    static Mat3 turn_of(const Mat3& F) {
+        const std::array<Real, 4> q = nearest_rotation(F, {1, 0, 0, 0});
+        return Eigen::Quaternion<Real>(q[0], q[1], q[2], q[3]).toRotationMatrix();
+    }
+
+    void add_tetrahedron(std::size_t t, const Mat3& of_elements, const CornerStress& recovered) {
+        const std::size_t block = block_[t];
+        const EnergyNorm& norm = norm_of(block);
+        const Mat3 F = gradient_of(t);
+        const Mat3 turn = is_anisotropic(block) ? turn_of(F) : Mat3(Mat3::Identity());
+        const auto coordinates = [&](const Mat3& stress) { return norm.of(stress, ElementPart::whole, turn); };
+        const StressCoordinates own = coordinates(of_elements);
+        // The product of two linear functions is integrated exactly by the sum over the corners and the product of
+        // sums.
+        Real error = 0, energy = 0;
+        StressCoordinates total = StressCoordinates::Zero();
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const StressCoordinates at = coordinates(recovered.of(t, corner));
+            error += (at - own).squaredNorm();
+            energy += at.squaredNorm();
+            total += at;
+        }
+        const Real volume = error_.volume[t];
+        error_.energy[t] = volume * own.squaredNorm();
+        error_.error[t] = volume / 20 * (error + (total - 4 * own).squaredNorm());
+        recovered_ += volume / 20 * (energy + total.squaredNorm());
+        if (const Real J = F.determinant(); J != 0)
+            mixed_ +=
+                volume / 4 *
+                coordinates(skerry::stress(body_.elements.whole_material_of(block), F) * F.transpose() / std::abs(J))
+                    .dot(total);
+    }
+
+    /// The error of the recovered stress is of second order in the length of the edges, that of the tetrahedra of first
+    /// order. The former is therefore estimated by the square of the relative error of the tetrahedra around the node.
+    /// Where the stress is extrapolated over two rings of tetrahedra, lengths are twice as large.
+    void find_peak(const NodeFields& nodes) {
+        Index peak = 0;
+        for (std::size_t n = 0; n < nodes.stress.size(); ++n) {
+            const Real stress = von_mises(nodes.stress[n]);
+            if (!(stress > error_.largest_stress)) continue;
+            error_.largest_stress = stress;
+            peak = static_cast<Index>(n);
+        }
+        Real energy = 0, error = 0;
+        for (std::size_t t = 0; t < error_.energy.size(); ++t) {
+            if (std::ranges::count(record_.tetrahedra[t], peak) == 0) continue;
+            energy += error_.energy[t];
+            error += error_.error[t];
+        }
+        const Real longer = nodes.extrapolated[static_cast<std::size_t>(peak)] ? 2 : 1;
+        error_.stress = std::min<Real>(1, longer * longer * share_of(error, energy));
+    }
+
+    const ElementsOfBody body_;
+    const BodyRecord& record_;
+    std::span<const Vec3> rest_;                    // nodes of the body in the frame of the mesh [m]
+    std::vector<std::optional<EnergyNorm>> norms_;  // by material
+    std::vector<bool> splits_;                      // by material
+    std::vector<std::size_t> block_;                // by tetrahedron
+    // Energy of the recovered stress, and its product with the strain of the displacements [J].
+    Real recovered_ = 0, mixed_ = 0;
+    MeshError error_;
+};
+
+}  // namespace
+
+Real MeshError::mesh() const {
+    return std::sqrt(share_of(sum(error), sum(energy)));
+}
+
+Real MeshError::deflection() const {
+    const Real whole = stored + missing;
+    return whole > 0 ? missing / whole : 0;
+}
+
+MeshError measure_mesh_error(const Model& model, std::size_t body) {
+    return MeshErrorSum(model, body).take();
+}
+
+std::vector<Real> mesh_error(const World& world, BodyHandle body) {
+    const Model& model = WorldAccess::state_of(world).model;
+    MeshError of = measure_mesh_error(model, static_cast<std::size_t>(model.row(body, "mesh_error")));
+    const Real mean = (sum(of.energy) + sum(of.error)) / sum(of.volume);
+    for (std::size_t t = 0; t < of.error.size(); ++t)
+        of.error[t] = of.error[t] > 0 ? std::sqrt(of.error[t] / (of.volume[t] * mean)) : 0;
+    return std::move(of.error);
+}
+
+}  // namespace skerry

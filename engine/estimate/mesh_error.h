@@ -1,0 +1,34 @@
+// Error of the stress of a body that is due to its mesh (docs/methods/error_estimates.md 1).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "components/types.h"
+
+namespace skerry {
+
+struct Model;
+
+/// Comparison of the stress of a deformable body with the stress that is recovered at its nodes. Energies are twice the
+/// elastic energy, for small strain from the rest shape.
+struct MeshError {
+    std::vector<Real> volume;  // of the tetrahedra, at rest [m^3]
+    // Energies of the stress of each tetrahedron, and of its difference from the recovered stress [J].
+    std::vector<Real> energy, error;
+    Real stored = 0;  // energy of the elements [J]
+    // Energy that the body would store in addition under the same loads, if its mesh were infinitely fine [J].
+    Real missing = 0;
+    // Largest von Mises stress at the nodes [Pa], and its relative error.
+    Real largest_stress = 0, stress = 0;
+
+    /// Relative error of the stress of the tetrahedra, in the energy norm.
+    Real mesh() const;
+    /// Relative error of a displacement under given loads, positive if the mesh is too stiff.
+    Real deflection() const;
+};
+
+/// `body`: row of a body. All values are zero if the body is rigid.
+MeshError measure_mesh_error(const Model& model, std::size_t body);
+
+}  // namespace skerry

@@ -1,0 +1,236 @@
+#include "engine/estimate/step_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <set>
+#include <utility>
+
+#include "engine/world/edit/rigid_bodies.h"
+#include "engine/world/kernels.h"
+#include "engine/world/world_state.h"
+#include "systems/geometry/rotation.h"
+
+namespace skerry {
+
+/// The steps between two samples.
+struct StepError::Interval {
+    Real seconds;                   // duration [s]
+    Real step;                      // mean length of the steps [s]
+    std::set<BodyHandle> collided;  // bodies that began or ceased to touch another body
+};
+
+namespace {
+
+// Smaller displacements of a body count as rest. Unit: the mean edge length of the body.
+constexpr Real least_motion = 1e-6;
+
+const Model& model_of(const World& world) {
+    return WorldAccess::state_of(world).model;
+}
+
+std::size_t row_of(const World& world, BodyHandle body) {
+    return static_cast<std::size_t>(model_of(world).row(body, "sample"));
+}
+
+/// Root mean square over the nodes of a body, weighted by mass. `of_node` returns the vector of a local node.
+Real mean_size(const World& world, BodyHandle body, auto&& of_node) {
+    const Model& model = model_of(world);
+    const Range nodes = model.bodies.nodes[row_of(world, body)];
+    Real sum = 0, mass = 0;
+    for (Index n = nodes.begin; n < nodes.end; ++n) {
+        const Real weight = model.weight_of_node(static_cast<std::size_t>(n));
+        const Vec3 value = of_node(static_cast<std::size_t>(n - nodes.begin));
+        sum += weight * value.squaredNorm();
+        mass += weight;
+    }
+    return std::sqrt(sum / mass);
+}
+
+Real size_of(const World& world, BodyHandle body, std::span<const Vec3> of_node) {
+    return mean_size(world, body, [&](std::size_t n) { return of_node[n]; });
+}
+
+/// Frame relative to which a body deforms: that of an attachment that holds the body, else that of its mesh.
+struct Frame {
+    RigidPose pose;
+    Vec3 center;  // point of the frame that moves with motion.velocity [m]
+    Twist motion;
+};
+
+Frame frame_of(const World& world, BodyHandle body, const std::optional<AttachmentHandle>& holder) {
+    if (!holder)
+        return {pose_of_body(model_of(world), row_of(world, body)), world.center_of_mass(body), world.velocity(body)};
+    const MotionKey pose = world.pose(*holder);
+    return {{pose.position, rotation_matrix(pose.rotation)}, pose.position, world.velocity(*holder)};
+}
+
+/// `mesh`: pose of the rest mesh in the frame.
+Deformation deformation_of(const World& world, BodyHandle body, const Frame& frame, const RigidPose& mesh) {
+    const Model& model = model_of(world);
+    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[row_of(world, body)]);
+    const std::span<const Vec3> position = world.positions(body), velocity = world.velocities(body);
+    const Mat3 to_frame = frame.pose.rotation.transpose();
+    Deformation found;
+    for (std::size_t n = 0; n < rest.size(); ++n) {
+        found.displacement.push_back(to_frame * (position[n] - frame.pose.position) - mesh.position -
+                                     mesh.rotation * rest[n]);
+        found.velocity.push_back(to_frame * (velocity[n] - frame.motion.velocity -
+                                             frame.motion.angular_velocity.cross(position[n] - frame.center)));
+    }
+    return found;
+}
+
+Real elastic_energy_of(const World& world, BodyHandle body) {
+    const Model& model = model_of(world);
+    const std::size_t row = row_of(world, body);
+    if (model.has_frame(row)) return rigid_sums(model, row).elastic;
+    return kernels().elastic_energy(model.all_elements(), model.bodies.blocks[row], model.nodes.position);
+}
+
+/// Rate at which the theta method damps the amplitude of a vibration [1/s]. `z`: circular frequency times step.
+Real damping_rate(Real z, Real theta, Real step) {
+    return std::log((1 + theta * theta * z * z) / (1 + (1 - theta) * (1 - theta) * z * z)) / (2 * step);
+}
+
+/// Relative error of the frequency of a vibration, to second order in `z`, its circular frequency times the step.
+Real frequency_error(Real z, bool implicit, Real theta) {
+    return z * z * (implicit ? 1.0 / 12 + (theta - 0.5) * (theta - 0.5) : 1.0 / 24);
+}
+
+std::map<BodyHandle, AttachmentHandle> holders_of(const World& world) {
+    std::map<BodyHandle, AttachmentHandle> holders;
+    for (const AttachmentHandle attachment : world.attachments()) holders.emplace(world.body(attachment), attachment);
+    return holders;
+}
+
+/// Bodies that touch another body.
+std::set<BodyHandle> touching_bodies(const World& world) {
+    std::set<BodyHandle> found;
+    for (const Contact& contact : world.contacts())
+        if (world.alive(contact.first) && world.alive(contact.second) && !contact.impulse.isZero(0))
+            found.insert({contact.first, contact.second});
+    return found;
+}
+
+}  // namespace
+
+StepError::Motion StepError::begin(const World& world, BodyHandle body, std::optional<AttachmentHandle> holder) {
+    const std::span<const Vec3> position = world.positions(body);
+    const Frame frame = frame_of(world, body, holder);
+    Motion motion{.start_time = world.time(),
+                  .start = {position.begin(), position.end()},
+                  .start_velocity = world.velocity(body),
+                  .velocity = world.velocity(body).velocity,
+                  .holder = holder,
+                  .mesh = {Vec3::Zero(), Mat3::Identity()},
+                  .still = least_motion * world.mean_edge(body)};
+    if (holder) {
+        const RigidPose& added = model_of(world).body_records[row_of(world, body)].start;
+        const Mat3 to_frame = frame.pose.rotation.transpose();
+        motion.mesh = {to_frame * (added.position - frame.pose.position), to_frame * added.rotation};
+    }
+    if (world.dynamics(body) != BodyDynamics::rigid)
+        motion.deformation = deformation_of(world, body, frame, motion.mesh);
+    return motion;
+}
+
+/// With symplectic Euler, given velocities count as those of half a step before the start, and rigid motion has an
+/// error of the same size: the change of the velocity since the start times half a step. Collisions of bodies turn an
+/// error of the place into an error of the direction in which a body continues.
+Real StepError::rigid_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {
+    if (motion.holder || world.settings().integrator == Integrator::leapfrog) return 0;
+    const Vec3 center = world.center_of_mass(body);
+    const std::span<const Vec3> position = world.positions(body);
+    const Real radius = mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - center); });
+    const Twist now = world.velocity(body), start = motion.start_velocity;
+    const Real change =
+        (now.velocity - start.velocity).norm() + radius * (now.angular_velocity - start.angular_velocity).norm();
+    if (motion.acceleration < 0) motion.acceleration = change / interval.seconds;
+    // Impacts change the velocity without such an error.
+    const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
+    const Real error = std::min(change, accelerated) * motion.first_step / 2 + motion.deflected;
+    if (interval.collided.contains(body)) {
+        const Real kick = (now.velocity - motion.velocity - interval.seconds * world.settings().gravity).norm();
+        motion.deflection_rate += kick * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
+    }
+    motion.velocity = now.velocity;
+    motion.deflection_rate = std::min(motion.deflection_rate, now.velocity.norm());
+    motion.deflected += interval.seconds * motion.deflection_rate;
+    return error;
+}
+
+Real StepError::deformation_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {
+    Deformation now = deformation_of(world, body, frame_of(world, body, motion.holder), motion.mesh);
+    std::swap(now, motion.deformation);
+    const Deformation &before = now, &after = motion.deformation;
+    const Real size = size_of(world, body, after.displacement), speed = size_of(world, body, after.velocity);
+    motion.largest = std::max(motion.largest, size);
+    motion.stiffness += 2 * elastic_energy_of(world, body);
+    motion.inertia += world.mass(body) * size * size;
+    if (!(motion.inertia > 0)) return 0;
+    const Real frequency = std::sqrt(motion.stiffness / motion.inertia);  // circular [1/s]
+    const Settings& settings = world.settings();
+    const bool implicit = world.dynamics(body) == BodyDynamics::implicit_elastic;
+    const Real step = implicit && !motion.holder ? std::max(interval.step, settings.implicit_step) : interval.step;
+    motion.lead += interval.seconds * frequency_error(frequency * step, implicit, settings.theta);
+    if (!implicit) {
+        const Real shift = settings.integrator == Integrator::leapfrog ? 0 : motion.first_step / 2;
+        return (motion.lead + shift) * speed;
+    }
+    // The part of the change between the samples that the velocities at the samples do not explain belongs to
+    // vibrations that began in between.
+    const Real begun = mean_size(world, body, [&](std::size_t n) {
+        return Vec3(after.displacement[n] - before.displacement[n] -
+                    interval.seconds / 2 * (after.velocity[n] + before.velocity[n]));
+    });
+    const Real decay = interval.seconds * damping_rate(frequency * step, settings.theta, step);
+    motion.lost += -std::expm1(-decay) * begun;
+    if (frequency > 0) motion.lost += decay * std::numbers::sqrt2 * speed / frequency;
+    motion.lost = std::min(motion.lost, motion.largest);
+    return motion.lead * speed + motion.lost;
+}
+
+void StepError::go_on(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {
+    if (motion.first_step == 0) motion.first_step = interval.step;
+    Real error = rigid_error(world, body, interval, motion);
+    if (!motion.deformation.displacement.empty()) error += deformation_error(world, body, interval, motion);
+    const std::span<const Vec3> position = world.positions(body);
+    motion.error = std::max(motion.error, error);
+    motion.moved = std::max(motion.moved,
+                            mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - motion.start[n]); }));
+}
+
+void StepError::sample(const World& world) {
+    const std::uint64_t steps = WorldAccess::state_of(world).record.counters.steps;
+    const std::map<BodyHandle, AttachmentHandle> holders = holders_of(world);
+    const auto taken = static_cast<Real>(steps - steps_);
+    Interval interval{world.time() - time_, (world.time() - time_) / taken, {}};
+    std::set<BodyHandle> touching = touching_bodies(world);
+    std::ranges::set_symmetric_difference(touching, touching_,
+                                          std::inserter(interval.collided, interval.collided.end()));
+    touching_.swap(touching);
+    for (const BodyHandle body : world.bodies()) {
+        const auto holder = holders.find(body);
+        const auto held = holder == holders.end() ? std::nullopt : std::optional(holder->second);
+        const auto motion = motions_.find(body);
+        // After a change of its supports or of its kind, a body starts again.
+        if (motion == motions_.end() || motion->second.holder != held ||
+            motion->second.deformation.displacement.empty() != (world.dynamics(body) == BodyDynamics::rigid))
+            motions_.insert_or_assign(body, begin(world, body, held));
+        else if (taken > 0 && !world.asleep(body))
+            go_on(world, body, interval, motion->second);
+    }
+    time_ = world.time();
+    steps_ = steps;
+}
+
+void StepError::add_to(std::vector<ErrorEstimate>& bodies) const {
+    for (ErrorEstimate& estimate : bodies) {
+        const auto motion = motions_.find(estimate.body);
+        if (motion != motions_.end()) estimate.step = std::min(Real{1}, motion->second.error / motion->second.moved);
+    }
+}
+
+}  // namespace skerry

@@ -1,0 +1,65 @@
+// Error of the motion of bodies that is due to the length of the steps.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "skerry/estimate.h"
+#include "systems/dynamics/motion/move_colliders.h"
+
+namespace skerry {
+
+/// Motion of the nodes of a body relative to the frame in which it deforms, in the axes of this frame.
+struct Deformation {
+    std::vector<Vec3> displacement, velocity;  // by node [m, m/s]
+};
+
+/// Estimates how far the nodes of each body are from the places to which infinitely short steps would move them
+/// (docs/methods/error_estimates.md 2).
+class StepError {
+public:
+    /// Takes a sample. The first sample that contains a body stores the start of its motion.
+    void sample(const World& world);
+    /// Sets ErrorEstimate::step, and deformation of bodies that deform.
+    void add_to(std::vector<ErrorEstimate>& bodies) const;
+
+private:
+    struct Motion {
+        Real start_time = 0;                       // [s]
+        std::vector<Vec3> start;                   // node positions at the start [m]
+        Twist start_velocity;                      // rigid motion at the start
+        Vec3 velocity = Vec3::Zero();              // of the centre of mass at the last sample [m/s]
+        std::optional<AttachmentHandle> holder{};  // an attachment that holds nodes of the body
+        RigidPose mesh{};                          // pose of the rest mesh in the frame of the deformation
+        Deformation deformation{};                 // at the last sample; empty for a rigid body
+        Real first_step = 0;                       // mean length of the steps before the second sample [s]
+        Real acceleration = -1;                    // mean acceleration of the rigid motion in these steps [m/s^2]
+        // Error of the place because of collisions in a wrong place [m], and its rate [m/s].
+        Real deflected = 0, deflection_rate = 0;
+        // Sums over the samples for the Rayleigh quotient of the deformation: twice the elastic energy [J], and the
+        // squared displacements times the masses [kg m^2].
+        Real stiffness = 0, inertia = 0;
+        Real lead = 0;     // sum of the errors of the phase of vibrations, as a time [s]
+        Real lost = 0;     // amplitude of the vibrations that the theta method has damped [m]
+        Real largest = 0;  // largest displacement by deformation so far [m]
+        Real error = 0;    // largest error so far [m]
+        Real moved = 0;    // largest displacement from the start so far [m]
+        Real still = 0;    // largest displacement that counts as rest [m]
+    };
+    struct Interval;
+
+    static Motion begin(const World& world, BodyHandle body, std::optional<AttachmentHandle> holder);
+    static void go_on(const World& world, BodyHandle body, const Interval& interval, Motion& motion);
+    static Real rigid_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion);
+    static Real deformation_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion);
+
+    std::map<BodyHandle, Motion> motions_;
+    std::set<BodyHandle> touching_;  // bodies that touched another body at the last sample
+    Real time_ = 0;                  // time of the last sample [s]
+    std::uint64_t steps_ = 0;        // number of steps of the world at the last sample
+};
+
+}  // namespace skerry

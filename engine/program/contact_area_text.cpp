@@ -1,0 +1,68 @@
+#include "engine/program/contact_area_text.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/program/number_text.h"
+
+namespace skerry {
+
+namespace {
+
+// Radius of a contact area over the edge length, below which the stress in the area is that of single nodes.
+constexpr Real resolves_stress = 1;
+// Radius of a contact area over the edge length, below which an impact on a coarse ball takes at most 0.84 of the time
+// of Hertz: it takes about 1.67 times the root of this ratio, because the stiffness of a single node does not grow with
+// the contact area.
+constexpr Real resolves_impacts = 0.25;
+constexpr Real impact_duration = 1.67;
+
+/// Quantities of a body that probes of a scene measure.
+struct Probed {
+    bool stress = false, force = false;
+};
+
+std::vector<Probed> probed_bodies(const ScenePlan& plan) {
+    std::vector<Probed> probed(plan.bodies.size());
+    for (const SeriesPlan& series : plan.series) {
+        if (series.quantity == ProbeQuantity::stress && series.nodes.empty()) probed[*series.body].stress = true;
+        if (series.quantity != ProbeQuantity::force) continue;
+        for (const std::optional<std::size_t>& body : {series.body, series.by_body})
+            if (body) probed[*body].force = true;
+    }
+    return probed;
+}
+
+std::string text_of(const ErrorEstimate& estimate, const Probed& probed) {
+    const Real cells = estimate.contact_radius / estimate.contact_edge;
+    const bool stress = probed.stress && cells < resolves_stress, force = probed.force && cells < resolves_impacts;
+    if (!stress && !force) return {};
+    std::string text = "the contact areas of body '" + estimate.name + "' have a radius of up to " +
+                       with_unit(estimate.contact_radius, "m") +
+                       " by the theory of Hertz, less than the edges there, " + with_unit(estimate.contact_edge, "m") +
+                       ": ";
+    if (force)
+        text += "impacts take about " + short_number(impact_duration * std::sqrt(cells), 2) +
+                " times as long as they should, and their forces are too large accordingly";
+    if (stress) text += force ? ", and the stress there is wrong" : "the stress there is wrong";
+    return text + ": make the cells there " +
+           short_number((stress ? 2 * resolves_stress : resolves_impacts) / cells, 2) + " times smaller";
+}
+
+}  // namespace
+
+std::vector<std::string> contact_area_texts(const ScenePlan& plan, const World& world,
+                                            std::span<const ErrorEstimate> errors) {
+    std::vector<std::string> texts;
+    const std::vector<Probed> probed = probed_bodies(plan);
+    const std::vector<BodyHandle> bodies = bodies_in_order(world);
+    for (std::size_t b = 0; b < probed.size(); ++b) {
+        if (!probed[b].stress && !probed[b].force) continue;
+        const auto estimate = std::ranges::find(errors, bodies[b], &ErrorEstimate::body);
+        if (estimate == errors.end()) continue;
+        if (std::string text = text_of(*estimate, probed[b]); !text.empty()) texts.push_back(std::move(text));
+    }
+    return texts;
+}
+
+}  // namespace skerry

@@ -1,0 +1,18 @@
+// Texts about contact areas that are smaller than the cells of the mesh.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene_plan.h"
+#include "skerry/estimate.h"
+
+namespace skerry {
+
+/// Returns one text for each body whose contact areas are too small for its mesh, if a probe depends on them: a probe
+/// of the stress of the whole body, or of forces on or by it.
+std::vector<std::string> contact_area_texts(const ScenePlan& plan, const World& world,
+                                            std::span<const ErrorEstimate> errors);
+
+}  // namespace skerry

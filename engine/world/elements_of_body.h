@@ -1,0 +1,48 @@
+// Elements of one body, with the positions of their nodes.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/world/state/field_cache.h"
+#include "engine/world/state/model.h"
+#include "systems/dynamics/elements/compute_element_forces.h"
+#include "systems/dynamics/elements/recover_fields.h"
+#include "systems/dynamics/recovery/recover_nodes.h"
+
+namespace skerry {
+
+/// Elements of a deformable body in its present shape. Those of an implicit body are in the mesh frame, all others in
+/// the world. Valid until the world changes. There are no blocks if the body is rigid.
+class ElementsOfBody {
+public:
+    ElementsOfBody(const Model& model, std::size_t row);
+    ElementsOfBody(const ElementsOfBody&) = delete;
+    ElementsOfBody& operator=(const ElementsOfBody&) = delete;
+
+    ElementInputs elements;
+    Range blocks;
+    ElementCover cover;
+    std::span<const Vec3> position;  // nodes that `elements` refers to [m]
+    Index first_node = 0;            // first node of the body in `position`
+    Mat3 built = Mat3::Identity();   // rotation of the elements at rest against the mesh
+
+    /// Rotates tensors from the frame of the elements to world axes.
+    void turn(std::span<Mat3> values) const;
+    /// Stress and strain at the nodes of RecoveryPlan::nodes, in the frame of the elements.
+    NodeFields node_fields(std::span<const Index> nodes) const;
+
+private:
+    const Model& model_;
+    std::size_t row_;
+    bool is_implicit_;
+    // elements of an implicit body, and the positions of its nodes in the mesh frame [m]
+    std::shared_ptr<const OwnElements> own_;
+    std::vector<Vec3> shape_;
+};
+
+/// Numbers of all nodes of a body: 0, 1, and so on.
+std::vector<Index> all_nodes(const Model& model, std::size_t row);
+
+}  // namespace skerry

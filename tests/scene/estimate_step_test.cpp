@@ -1,0 +1,281 @@
+// Estimated errors of steps and contacts, compared with the true ones (docs/methods/error_estimates.md).
+#include <catch2/catch.hpp>
+#include <functional>
+#include <string>
+
+#include "engine/estimate/contact_area.h"
+#include "engine/estimate/contact_error.h"
+#include "engine/estimate/step_error.h"
+#include "skerry/problem.h"
+#include "tests/support/mapped_box.h"
+#include "tests/support/worlds.h"
+
+namespace skerry::test::estimate_step_test {
+
+namespace {
+
+/// A world with one body, sampled at the ends of calls of advance.
+struct Case {
+    std::string name;
+    Real step;            // [s]
+    Real frame, seconds;  // time between samples, and duration of the run [s]
+    BodySettings body{};  // without material
+    Mesh mesh{};
+    MaterialSettings material{};
+    bool held = false;  // true: the end with the smallest x is held
+    Real slope = 0;     // [degree]
+    bool floor = false;
+    Settings settings{};
+};
+
+struct Run {
+    std::vector<std::vector<Vec3>> places;  // node positions at the samples [m]
+    ErrorEstimate estimate;
+};
+
+Run run(const Case& of, Real factor) {
+    Settings settings = of.settings;
+    settings.gravity = tilted_gravity(of.slope);
+    settings.step_size = of.step * factor;
+    settings.sleep = false;
+    World world(settings);
+    BodySettings settings_of_body = of.body;
+    settings_of_body.material = world.add_material(of.material);
+    const BodyHandle body = world.add_body(of.mesh, settings_of_body);
+    if (of.held) {
+        Real left = infinity;
+        for (const Vec3& x : of.mesh.nodes) left = std::min(left, x.x());
+        world.attach(body, nodes_where(of.mesh, [&](const Vec3& x) { return x.x() < left + 1e-9; }));
+    }
+    if (of.floor) world.add_collider(Plane{});
+    StepError error;
+    Run found;
+    const auto sample = [&] {
+        error.sample(world);
+        found.places.emplace_back(world.positions(body).begin(), world.positions(body).end());
+    };
+    sample();
+    while (world.time() < of.seconds - of.frame / 2) {
+        REQUIRE(world.advance(of.frame).ok());
+        sample();
+    }
+    std::vector<ErrorEstimate> bodies{{.body = body, .name = {}}};
+    error.add_to(bodies);
+    found.estimate = bodies.front();
+    return found;
+}
+
+/// Root mean square distance of the nodes.
+Real distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    Real sum = 0;
+    for (std::size_t n = 0; n < a.size(); ++n) sum += (a[n] - b[n]).squaredNorm();
+    return std::sqrt(sum / static_cast<Real>(a.size()));
+}
+
+/// The true error of a run, from a run with steps a quarter as long. Their difference is 3/4 of an error of first
+/// order.
+Real true_error(const Run& run, const Run& finer) {
+    Real error = 0, moved = 0;
+    for (std::size_t s = 0; s < run.places.size(); ++s) {
+        error = std::max(error, distance(run.places[s], finer.places[s]));
+        moved = std::max(moved, distance(run.places[s], run.places.front()));
+    }
+    return error / 0.75 / moved;
+}
+
+std::vector<Case> cases() {
+    const Mesh bar = mesh::box({0.2, 0.02, 0.02}, {10, 1, 1}), block = mesh::box({0.1, 0.1, 0.05}, {2, 2, 1});
+    const MaterialSettings rubber = lossless({.young_modulus = 1e6, .poisson_ratio = 0.3}),
+                           stiff = lossless({.young_modulus = 1e8, .poisson_ratio = 0.3}),
+                           soft{.young_modulus = 1e6, .friction = 0.3};
+    const BodySettings rigid{.position = {0, 0, 0.0255}, .dynamics = BodyDynamics::rigid},
+        elastic{.position = {0, 0, 0.0255}, .dynamics = BodyDynamics::explicit_elastic},
+        implicit{.dynamics = BodyDynamics::implicit_elastic};
+    BodySettings thrown = rigid, pushed = elastic;
+    thrown.velocity = pushed.velocity = {1, 0, 0};
+    Settings vibrating;
+    vibrating.theta = 0.55;
+    return {
+        {.name = "thrown", .step = 2e-3, .frame = 0.01, .seconds = 0.2, .body = thrown, .mesh = block},
+        {.name = "stopped by friction",
+         .step = 2e-3,
+         .frame = 0.01,
+         .seconds = 0.5,
+         .body = thrown,
+         .mesh = block,
+         .floor = true},
+        {.name = "elastic, stopped by friction",
+         .step = 2e-4,
+         .frame = 0.01,
+         .seconds = 0.1,
+         .body = pushed,
+         .mesh = block,
+         .material = soft,
+         .floor = true},
+        {.name = "slides down",
+         .step = 2e-3,
+         .frame = 0.01,
+         .seconds = 0.3,
+         .body = rigid,
+         .mesh = block,
+         .material = soft,
+         .slope = 30,
+         .floor = true},
+        {.name = "cantilever",
+         .step = 2e-4,
+         .frame = 0.01,
+         .seconds = 0.2,
+         .body = elastic,
+         .mesh = bar,
+         .material = rubber,
+         .held = true},
+        {.name = "wave in a bar",
+         .step = 2e-4,
+         .frame = 0.002,
+         .seconds = 0.06,
+         .body = elastic,
+         .mesh = bar,
+         .material = rubber,
+         .held = true,
+         .slope = 90},
+        {.name = "implicit cantilever",
+         .step = 2e-3,
+         .frame = 0.01,
+         .seconds = 0.2,
+         .body = implicit,
+         .mesh = bar,
+         .material = rubber,
+         .held = true},
+        {.name = "implicit cantilever, long steps",
+         .step = 1.0 / 120,
+         .frame = 1.0 / 60,
+         .seconds = 0.5,
+         .body = implicit,
+         .mesh = bar,
+         .material = rubber,
+         .held = true},
+        {.name = "stiff implicit cantilever",
+         .step = 1.0 / 120,
+         .frame = 1.0 / 60,
+         .seconds = 0.3,
+         .body = implicit,
+         .mesh = bar,
+         .material = stiff,
+         .held = true},
+        {.name = "implicit cantilever, theta 0.55",
+         .step = 2e-3,
+         .frame = 0.01,
+         .seconds = 0.2,
+         .body = implicit,
+         .mesh = bar,
+         .material = rubber,
+         .held = true,
+         .settings = vibrating},
+    };
+}
+
+}  // namespace
+
+TEST_CASE("the estimated error of the steps is within a factor of 2.5 of the true error", "[scene]") {
+    for (const Case& of : cases()) {
+        CAPTURE(of.name);
+        const Run coarse = run(of, 1);
+        const Real truth = true_error(coarse, run(of, 0.25));
+        CHECK(coarse.estimate.step < 2.5 * truth);
+        CHECK(coarse.estimate.step > truth / 2.5);
+    }
+}
+
+TEST_CASE("a body that falls freely with leapfrog has no error of the steps", "[scene]") {
+    Case of{.name = {}, .step = 2e-3, .frame = 0.02, .seconds = 0.2, .mesh = mesh::box({0.1, 0.1, 0.05}, {1, 1, 1})};
+    of.body.dynamics = BodyDynamics::rigid;
+    of.settings.integrator = Integrator::leapfrog;
+    CHECK(run(of, 1).estimate.step == 0);
+}
+
+namespace {
+
+/// Rigid boxes on top of each other, on a floor, with a tolerance of the solver. Adds the estimates of three times.
+struct Stack {
+    World world;
+    std::vector<BodyHandle> boxes;
+    ContactError error;
+
+    explicit Stack(Real tolerance, int iterations) : world(settings_of(tolerance, iterations)) {
+        world.add_collider(Plane{});
+        const Mesh box = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
+        for (int k = 0; k < 4; ++k)
+            boxes.push_back(world.add_body(box, {.material = world.add_material({.density = 1000}),
+                                                 .position = {0.01 * k, 0, 0.05 + 0.1 * k},
+                                                 .dynamics = BodyDynamics::rigid}));
+    }
+    static Settings settings_of(Real tolerance, int iterations) {
+        Settings settings;
+        settings.tolerance = tolerance;
+        settings.max_iterations = iterations;
+        settings.step_size = 2e-3;
+        settings.sleep = false;
+        return settings;
+    }
+    ErrorEstimate estimate(BodyHandle body) const {
+        std::vector<ErrorEstimate> bodies{{.body = body, .name = {}}};
+        error.add_to(bodies);
+        return bodies.front();
+    }
+};
+
+}  // namespace
+
+TEST_CASE("the estimated error of contacts is within a factor of 4 of the error of the force in a step", "[scene]") {
+    for (const auto& [tolerance, iterations] : {std::pair{1e-3, 200}, {1e-2, 200}, {1e-6, 2}}) {
+        CAPTURE(tolerance, iterations);
+        Stack stack(tolerance, iterations);
+        Real squares = 0;
+        int steps = 0;
+        stack.world.watch_contact_problems([&](const StepProblem& step) {
+            const ProblemSolution exact = solve_problem(step.problem, {.tolerance = 1e-8});
+            Real change = 0, total = 0;  // of the normal impulses
+            for (std::size_t c = 0; c < step.impulse.size(); ++c) {
+                change += step.impulse[c].x() - exact.reaction[c].x();
+                total += exact.reaction[c].x();
+            }
+            if (step.step <= 10) return;
+            squares += change * change / (total * total);
+            ++steps;
+        });
+        for (int k = 0; k < 25; ++k) {
+            REQUIRE(stack.world.advance(2e-3).ok());
+            stack.error.sample(stack.world);
+        }
+        const Real truth = std::sqrt(squares / steps), found = stack.estimate(stack.boxes.front()).contact;
+        CHECK(found < 4 * truth);
+        CHECK(found > truth / 4);
+    }
+}
+
+TEST_CASE("the contact area of a ball on a floor is that of Hertz, and a cube has none", "[scene]") {
+    const Real radius = 0.05, young_modulus = 1e5, poisson_ratio = 0.3;  // [m], [Pa]
+    World world;
+    world.add_collider(Plane{});
+    const auto material = world.add_material({.young_modulus = young_modulus, .poisson_ratio = poisson_ratio});
+    std::vector<ErrorEstimate> bodies;
+    for (const Mesh& mesh : {mesh::ball(radius, 6), mesh::box({0.1, 0.1, 0.1}, {2, 2, 2})})
+        bodies.push_back({.body = world.add_body(mesh, {.material = material,
+                                                        .position = {static_cast<Real>(bodies.size()), 0, radius},
+                                                        .velocity = {0, 0, -0.2}}),
+                          .name = {}});
+    REQUIRE(world.advance(0.01).ok());
+    Real force = 0;  // [N]
+    for (const Contact& contact : world.contacts())
+        if (contact.first == bodies[0].body) force += contact.force().norm();
+    REQUIRE(force > 0);
+    ContactArea area;
+    area.sample(world);
+    area.add_to(bodies);
+    const Real expected = std::cbrt(0.75 * force * radius * (1 - poisson_ratio * poisson_ratio) / young_modulus);
+    CHECK(bodies[0].contact_radius == Approx(expected).epsilon(0.01));
+    CHECK(bodies[0].contact_edge == Approx(0.35 * radius).epsilon(0.3));
+    CHECK(std::isnan(bodies[1].contact_radius));
+}
+
+}  // namespace skerry::test::estimate_step_test
