@@ -218,6 +218,9 @@ TEST_CASE("impossible refinements are refused with the reason", "[unit]") {
     CHECK(refusal(box + "-1}").empty());
     CHECK_THAT(refusal(box + "1}", R"(, "pin": {"nodes": [0]})"),
                Contains("bodies[0].pin.nodes names nodes by number, and the mesh would have other nodes"));
+    const std::string tied = R"(, "positions": [[0, 0, 0], [3, 0, 0]]}, {"name": "b_lid", "material": "soft",
+        "shape": {"sphere": {"radius": 1}}, "dynamics": "rigid"}], "ties": [{"body": "b_1", )";
+    CHECK_THAT(refusal(box + "1}", tied + R"("nodes": [0])"), Contains("ties[0].nodes names nodes by number"));
     const std::string file = R"({"file": "box.vtk", "refine": -1})";
     CHECK_THAT(refusal(file, R"(, "pin": {"set": "end"})"),
                Contains("bodies[0].pin.set names a part of the mesh file, which a coarser mesh does not have"));
