@@ -65,9 +65,11 @@ private:
         return found_;
     }
 
-    /// True for the name of the body or of one of its copies.
+    /// True for the name of the body or of one of its copies, which end in a number.
     bool is_name(const std::string& name) const {
-        return name == name_ || ((body_.repeat || !body_.positions.empty()) && name.starts_with(name_ + "_"));
+        if (!body_.repeat && body_.positions.empty()) return name == name_;
+        return name.starts_with(name_ + "_") &&
+               name.find_first_not_of("0123456789", name_.size() + 1) == std::string::npos;
     }
     void add(bool uses, const Place& place) {
         if (uses && !found_) found_ = place;

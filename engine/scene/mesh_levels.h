@@ -1,4 +1,4 @@
-// The same scene with finer or coarser meshes.
+// Levels of refinement of the meshes of a scene.
 #pragma once
 
 #include <filesystem>

@@ -91,7 +91,8 @@ std::string scene_text() {
         "loads": [{"kind": "force", "body": "box_0", "set": "listed", "force": [1, 2, 3]},
                   {"kind": "traction", "body": "box_1", "set": "top", "traction": [1, 2, 10]}],
         "fibres": [{"body": "box_0", "set": "core", "direction_array": "grain", "tension": 1}],
-        "springs": [{"first": {"body": "box_0", "point": [0.21, 0.1, 0.3]}, "second": {"point": [0, 0, 1]}, "stiffness": 1}],
+        "springs": [{"first": {"body": "box_0", "point": [0.21, 0.1, 0.3]}, "second": {"point": [0, 0, 1]},
+                     "stiffness": 1}],
         "probes": [{"name": "tip", "quantity": "motion", "body": "box_1", "point": [0.21, 0.1, 0.07]},
                    {"name": "contact", "body": "box_1", "set": "top"},
                    {"name": "stress", "quantity": "stress", "body": "box_1", "set": "end"}]})";
@@ -217,6 +218,9 @@ TEST_CASE("impossible refinements are refused with the reason", "[unit]") {
     CHECK(refusal(box + "-1}").empty());
     CHECK_THAT(refusal(box + "1}", R"(, "pin": {"nodes": [0]})"),
                Contains("bodies[0].pin.nodes names nodes by number, and the mesh would have other nodes"));
+    const std::string tied = R"(, "positions": [[0, 0, 0], [3, 0, 0]]}, {"name": "b_lid", "material": "soft",
+        "shape": {"sphere": {"radius": 1}}, "dynamics": "rigid"}], "ties": [{"body": "b_1", )";
+    CHECK_THAT(refusal(box + "1}", tied + R"("nodes": [0])"), Contains("ties[0].nodes names nodes by number"));
     const std::string file = R"({"file": "box.vtk", "refine": -1})";
     CHECK_THAT(refusal(file, R"(, "pin": {"set": "end"})"),
                Contains("bodies[0].pin.set names a part of the mesh file, which a coarser mesh does not have"));
@@ -237,7 +241,8 @@ TEST_CASE("the levels of a scene are those that all its meshes allow", "[unit]")
                 {"mesh": {"box": {"size": [1, 1, 1], "cells": [8, 4, 4]}, "refine": 1}, "material": "rubber"},
                 {"shape": {"sphere": {"radius": 0.1}}, "material": "rubber", "position": [3, 0, 0]},
                 {"mesh": {"file": "part.msh"}, "dynamics": "rigid", "material": "rubber", "position": [6, 0, 0]}],
-                "colliders": [{"shape": {"mesh": {"ball": {"radius": 0.1, "resolution": 4}}}, "position": [9, 0, 0]}])" +
+                "colliders": [{"position": [9, 0, 0],
+                               "shape": {"mesh": {"ball": {"radius": 0.1, "resolution": 4}}}}])" +
                                                                            more + "}");
         return levels_of(read_scene_file(scene), scene);
     };
@@ -266,7 +271,8 @@ TEST_CASE("a scene file that is written with assignments runs as the scene does 
                     "position": [0, 0, 0.2]},
                    {"visual": {"file": "../skin.obj", "scale": 2}, "mesh": {"box": {"size": [1, 1, 1],
                     "cells": [2, 1, 1]}}, "material": "steel", "position": [0, 3, 0.6]}],
-        "colliders": [{"shape": {"plane": {}}}, {"shape": {"mesh": {"file": "../part.msh"}}, "position": [5, 0, 0]}]})");
+        "colliders": [{"shape": {"plane": {}}},
+                      {"shape": {"mesh": {"file": "../part.msh"}}, "position": [5, 0, 0]}]})");
     const std::vector<std::string> assignments{"bodies[0].mesh.refine=1", "settings.step_size=1e-4", "seconds=0.5"};
     const std::filesystem::path copy = folder.path() / "results/best.json";
     write_scene(copy, scene, assignments);
