@@ -104,8 +104,8 @@ ErrorEstimator& ErrorEstimator::operator=(ErrorEstimator&&) noexcept = default;
 
 void ErrorEstimator::sample(const World& world) {
     // A sample of the mesh takes the computing time of about ten explicit steps, and that of less than one implicit
-    // step. A sample of motion and contacts takes that of half an explicit step, and of a fifth of an implicit one.
-    constexpr std::uint64_t explicit_steps = 1000, implicit_steps = 50, explicit_motion = 50, implicit_motion = 20;
+    // step. A sample of motion and contacts takes that of up to one explicit step, and of a fifth of an implicit one.
+    constexpr std::uint64_t explicit_steps = 1000, implicit_steps = 50, explicit_motion = 100, implicit_motion = 20;
     const bool is_implicit = WorldAccess::state_of(world).model.implicit_nodes.displacement.size() > 0;
     const std::uint64_t steps = Impl::steps_of(world);
     const bool starts = !impl_->has_moved && steps > impl_->motion_steps;

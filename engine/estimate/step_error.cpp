@@ -14,6 +14,13 @@
 
 namespace skerry {
 
+/// Frame relative to which a body deforms: that of an attachment that holds the body, else that of its mesh.
+struct StepError::Frame {
+    RigidPose pose;
+    Vec3 center;  // point of the frame that moves with motion.velocity [m]
+    Twist motion;
+};
+
 /// The steps between two samples.
 struct StepError::Interval {
     Real seconds;                   // duration [s]
@@ -52,36 +59,6 @@ Real size_of(const World& world, BodyHandle body, std::span<const Vec3> of_node)
     return mean_size(world, body, [&](std::size_t n) { return of_node[n]; });
 }
 
-/// Frame relative to which a body deforms: that of an attachment that holds the body, else that of its mesh.
-struct Frame {
-    RigidPose pose;
-    Vec3 center;  // point of the frame that moves with motion.velocity [m]
-    Twist motion;
-};
-
-Frame frame_of(const World& world, BodyHandle body, const std::optional<AttachmentHandle>& holder) {
-    if (!holder)
-        return {pose_of_body(model_of(world), row_of(world, body)), world.center_of_mass(body), world.velocity(body)};
-    const MotionKey pose = world.pose(*holder);
-    return {{pose.position, rotation_matrix(pose.rotation)}, pose.position, world.velocity(*holder)};
-}
-
-/// `mesh`: pose of the rest mesh in the frame.
-Deformation deformation_of(const World& world, BodyHandle body, const Frame& frame, const RigidPose& mesh) {
-    const Model& model = model_of(world);
-    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[row_of(world, body)]);
-    const std::span<const Vec3> position = world.positions(body), velocity = world.velocities(body);
-    const Mat3 to_frame = frame.pose.rotation.transpose();
-    Deformation found;
-    for (std::size_t n = 0; n < rest.size(); ++n) {
-        found.displacement.push_back(to_frame * (position[n] - frame.pose.position) - mesh.position -
-                                     mesh.rotation * rest[n]);
-        found.velocity.push_back(to_frame * (velocity[n] - frame.motion.velocity -
-                                             frame.motion.angular_velocity.cross(position[n] - frame.center)));
-    }
-    return found;
-}
-
 Real elastic_energy_of(const World& world, BodyHandle body) {
     const Model& model = model_of(world);
     const std::size_t row = row_of(world, body);
@@ -116,6 +93,30 @@ std::set<BodyHandle> touching_bodies(const World& world) {
 
 }  // namespace
 
+StepError::Frame StepError::frame_of(const World& world, BodyHandle body,
+                                     const std::optional<AttachmentHandle>& holder) {
+    if (!holder)
+        return {pose_of_body(model_of(world), row_of(world, body)), world.center_of_mass(body), world.velocity(body)};
+    const MotionKey pose = world.pose(*holder);
+    return {{pose.position, rotation_matrix(pose.rotation)}, pose.position, world.velocity(*holder)};
+}
+
+StepError::Deformation StepError::deformation_of(const World& world, BodyHandle body, const Frame& frame,
+                                                 const RigidPose& mesh) {
+    const Model& model = model_of(world);
+    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[row_of(world, body)]);
+    const std::span<const Vec3> position = world.positions(body), velocity = world.velocities(body);
+    const Mat3 to_frame = frame.pose.rotation.transpose();
+    Deformation found;
+    for (std::size_t n = 0; n < rest.size(); ++n) {
+        found.displacement.push_back(to_frame * (position[n] - frame.pose.position) - mesh.position -
+                                     mesh.rotation * rest[n]);
+        found.velocity.push_back(to_frame * (velocity[n] - frame.motion.velocity -
+                                             frame.motion.angular_velocity.cross(position[n] - frame.center)));
+    }
+    return found;
+}
+
 StepError::Motion StepError::begin(const World& world, BodyHandle body, std::optional<AttachmentHandle> holder) {
     const std::span<const Vec3> position = world.positions(body);
     const Frame frame = frame_of(world, body, holder);
@@ -139,12 +140,12 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
 /// With symplectic Euler, given velocities count as those of half a step before the start, and rigid motion has an
 /// error of the same size: the change of the velocity since the start times half a step. Collisions of bodies turn an
 /// error of the place into an error of the direction in which a body continues.
-Real StepError::rigid_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {
+Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
+                            Motion& motion) {
     if (motion.holder || world.settings().integrator == Integrator::leapfrog) return 0;
-    const Vec3 center = world.center_of_mass(body);
     const std::span<const Vec3> position = world.positions(body);
-    const Real radius = mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - center); });
-    const Twist now = world.velocity(body), start = motion.start_velocity;
+    const Real radius = mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - frame.center); });
+    const Twist &now = frame.motion, &start = motion.start_velocity;
     const Real change =
         (now.velocity - start.velocity).norm() + radius * (now.angular_velocity - start.angular_velocity).norm();
     if (motion.acceleration < 0) motion.acceleration = change / interval.seconds;
@@ -160,8 +161,9 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Interval&
     return error;
 }
 
-Real StepError::deformation_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {
-    Deformation now = deformation_of(world, body, frame_of(world, body, motion.holder), motion.mesh);
+Real StepError::deformation_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
+                                  Motion& motion) {
+    Deformation now = deformation_of(world, body, frame, motion.mesh);
     std::swap(now, motion.deformation);
     const Deformation &before = now, &after = motion.deformation;
     const Real size = size_of(world, body, after.displacement), speed = size_of(world, body, after.velocity);
@@ -193,8 +195,11 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Int
 
 void StepError::go_on(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {
     if (motion.first_step == 0) motion.first_step = interval.step;
-    Real error = rigid_error(world, body, interval, motion);
-    if (!motion.deformation.displacement.empty()) error += deformation_error(world, body, interval, motion);
+    const Frame frame = frame_of(world, body, motion.holder);
+    Real error = rigid_error(world, body, frame, interval, motion);
+    const bool strained = model_of(world).bodies.unstrained[row_of(world, body)] == 0;
+    if (strained && !motion.deformation.displacement.empty())
+        error += deformation_error(world, body, frame, interval, motion);
     const std::span<const Vec3> position = world.positions(body);
     motion.error = std::max(motion.error, error);
     motion.moved = std::max(motion.moved,
