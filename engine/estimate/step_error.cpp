@@ -26,6 +26,7 @@ struct StepError::Interval {
     Real seconds;                   // duration [s]
     Real step;                      // mean length of the steps [s]
     std::set<BodyHandle> collided;  // bodies that began or ceased to touch another body
+    bool rebounds;                  // true if contacts have restitution
 };
 
 namespace {
@@ -80,6 +81,14 @@ std::map<BodyHandle, AttachmentHandle> holders_of(const World& world) {
     std::map<BodyHandle, AttachmentHandle> holders;
     for (const AttachmentHandle attachment : world.attachments()) holders.emplace(world.body(attachment), attachment);
     return holders;
+}
+
+bool has_restitution(const World& world) {
+    return std::ranges::any_of(world.materials(),
+                               [&](MaterialHandle m) { return world.material(m).restitution > 0; }) ||
+           std::ranges::any_of(world.colliders(), [&](ColliderHandle c) {
+               return world.surface_properties(c).restitution.value_or(0) > 0;
+           });
 }
 
 /// Bodies that touch another body.
@@ -152,9 +161,14 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
     // Impacts change the velocity without such an error.
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
     const Real error = std::min(change, accelerated) * motion.first_step / 2 + motion.deflected;
+    const Vec3 sudden = now.velocity - motion.velocity;
     if (interval.collided.contains(body))
-        motion.deflection_rate +=
-            (now.velocity - motion.velocity).norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
+        motion.deflection_rate += sudden.norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
+    // Restitution reverses the velocity at the end of a step instead of at the time of touch.
+    if (interval.rebounds) {
+        const Real kick = (sudden - interval.seconds * world.settings().gravity).norm();
+        motion.deflected += std::min(sudden.norm(), kick) * interval.step / 2;
+    }
     motion.velocity = now.velocity;
     motion.deflection_rate = std::min(motion.deflection_rate, now.velocity.norm());
     motion.deflected += interval.seconds * motion.deflection_rate;
@@ -210,7 +224,7 @@ void StepError::sample(const World& world) {
     const std::uint64_t steps = WorldAccess::state_of(world).record.counters.steps;
     const std::map<BodyHandle, AttachmentHandle> holders = holders_of(world);
     const auto taken = static_cast<Real>(steps - steps_);
-    Interval interval{world.time() - time_, (world.time() - time_) / taken, {}};
+    Interval interval{world.time() - time_, (world.time() - time_) / taken, {}, has_restitution(world)};
     std::set<BodyHandle> touching = touching_bodies(world);
     std::ranges::set_symmetric_difference(touching, touching_,
                                           std::inserter(interval.collided, interval.collided.end()));
