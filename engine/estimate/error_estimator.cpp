@@ -104,12 +104,15 @@ ErrorEstimator& ErrorEstimator::operator=(ErrorEstimator&&) noexcept = default;
 
 void ErrorEstimator::sample(const World& world) {
     // A sample of the mesh takes the computing time of about ten explicit steps, and that of less than one implicit
-    // step. A sample of motion and contacts takes that of half an explicit step, and of a fifth of an implicit one.
-    constexpr std::uint64_t explicit_steps = 1000, implicit_steps = 50, explicit_motion = 50, implicit_motion = 20;
-    const bool is_implicit = WorldAccess::state_of(world).model.implicit_nodes.displacement.size() > 0;
+    // step. A sample of motion and contacts takes that of up to one explicit step, and of a fifth of a step of implicit
+    // or rigid bodies alone.
+    constexpr std::uint64_t explicit_steps = 1000, implicit_steps = 50, explicit_motion = 100, other_motion = 20;
+    const Model& model = WorldAccess::state_of(world).model;
+    const bool is_implicit = model.implicit_nodes.displacement.size() > 0;
+    const bool is_explicit = model.elements.first.size() > 0 && !is_implicit;
     const std::uint64_t steps = Impl::steps_of(world);
     const bool starts = !impl_->has_moved && steps > impl_->motion_steps;
-    const bool moved = steps - impl_->motion_steps >= (is_implicit ? implicit_motion : explicit_motion);
+    const bool moved = steps - impl_->motion_steps >= (is_explicit ? explicit_motion : other_motion);
     const bool deformed = steps - impl_->steps >= (is_implicit ? implicit_steps : explicit_steps);
     if (starts || moved) impl_->sample_motion(world);
     if (deformed) impl_->sample_mesh(world, false);

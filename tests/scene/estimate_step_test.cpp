@@ -20,7 +20,7 @@ struct Case {
     Real step;            // [s]
     Real frame, seconds;  // time between samples, and duration of the run [s]
     BodySettings body{};  // without material
-    Mesh mesh{};
+    Mesh mesh{};          // empty: a rigid sphere
     MaterialSettings material{};
     bool held = false;  // true: the end with the smallest x is held
     Real slope = 0;     // [degree]
@@ -43,7 +43,8 @@ Run run(const Case& of, Real factor) {
     World world(settings);
     BodySettings settings_of_body = of.body;
     settings_of_body.material = world.add_material(of.material);
-    const BodyHandle body = world.add_body(of.mesh, settings_of_body);
+    const BodyHandle body = of.mesh.nodes.empty() ? world.add_body(Sphere{.radius = 0.05}, settings_of_body)
+                                                  : world.add_body(of.mesh, settings_of_body);
     if (of.held) {
         Real left = infinity;
         for (const Vec3& x : of.mesh.nodes) left = std::min(left, x.x());
@@ -92,7 +93,8 @@ std::vector<Case> cases() {
     const BodySettings rigid{.position = {0, 0, 0.0255}, .dynamics = BodyDynamics::rigid},
         elastic{.position = {0, 0, 0.0255}, .dynamics = BodyDynamics::explicit_elastic},
         implicit{.dynamics = BodyDynamics::implicit_elastic};
-    BodySettings thrown = rigid, pushed = elastic;
+    BodySettings thrown = rigid, pushed = elastic, dropped = rigid;
+    dropped.position.z() = 0.2;
     thrown.velocity = pushed.velocity = {1, 0, 0};
     Settings vibrating;
     vibrating.theta = 0.55;
@@ -107,6 +109,14 @@ std::vector<Case> cases() {
          .body = thrown,
          .mesh = block,
          .floor = true},
+        {.name = "bouncing sphere",
+         .step = 2e-3,
+         .frame = 0.01,
+         .seconds = 0.7,
+         .body = dropped,
+         .material = {.restitution = 0.8},
+         .floor = true,
+         .within = 3},
         {.name = "elastic, stopped by friction",
          .step = 2e-4,
          .frame = 0.01,
