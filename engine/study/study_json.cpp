@@ -31,7 +31,8 @@ Json quantity_json(const StudyQuantity& q) {
 
 std::string study_json(const StudyResult& result) {
     Json json = {{"schema", "skerry.study/1"},        {"scene", result.scene},
-                 {"quantities", Json::array()},       {"cheapest", nullptr},
+                 {"quantities", Json::array()},       {"wanted_error", result.wanted_error},
+                 {"cheapest", nullptr},
                  {"agree_until", result.agree_until}, {"growth_rate", result.growth_rate},
                  {"sentences", result.sentences},     {"runs", Json::array()}};
     for (const StudyQuantity& quantity : result.quantities) json["quantities"].push_back(quantity_json(quantity));
