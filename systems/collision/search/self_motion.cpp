@@ -133,9 +133,9 @@ void remove_candidates(const SelfSearch& self, Index p, PairTable& pairs, auto&&
     asleep_until.resize(count);
 }
 
-/// True if all spare distances exceed the reach of this step, and the nodes move so nearly at the velocities of the last
-/// update that no features approach by more than the reach. The reach exceeds the approach at constant velocities by at
-/// least reach(h, 0). This test takes less time than the boxes of the motion.
+/// True if all spare distances exceed the reach of this step, and the nodes move so nearly at the velocities of the
+/// last update that no features approach by more than the reach. The reach exceeds the approach at constant velocities
+/// by at least reach(h, 0). This test takes less time than the boxes of the motion.
 bool is_as_expected(const SelfMotion& motion, const StepMotion& step, std::span<const LeafPair> pairs,
                     const SelfSearch& self) {
     const CollisionInputs& inputs = motion.inputs;
@@ -146,8 +146,8 @@ bool is_as_expected(const SelfMotion& motion, const StepMotion& step, std::span<
     });
     const Real most = reach(step.h, Real(0), motion.gravity, motion.scale.contact_distance) / 2;
     return change_squared < most * most && std::ranges::all_of(pairs, [&](const LeafPair& pair) {
-        return pair.spare > motion.reach_of(self, motion.root() + pair.first, motion.root() + pair.second);
-    });
+               return pair.spare > motion.reach_of(self, motion.root() + pair.first, motion.root() + pair.second);
+           });
 }
 
 }  // namespace
