@@ -137,7 +137,15 @@ TEST_CASE("differences that do not fall as the theory says give a long bar and n
 }
 
 TEST_CASE("an irregular order of a negligible part does not matter", "[unit][study]") {
+    CHECK(only_quantity(analyse(displacement_runs(-1e-5, 0.1, 0, 1, 0), {})).verdict == StudyVerdict::known);
     CHECK(only_quantity(analyse(displacement_runs(-0.2, 2, 1e-5, 0.1, 0), {})).verdict == StudyVerdict::known);
+}
+
+TEST_CASE("differences below the error of the contact solver have no order", "[unit][study]") {
+    const StudyQuantity q = only_quantity(analyse(displacement_runs(1e-4, 0.1, -1e-5, 0.2, 0.02), {}));
+    CHECK(std::isnan(q.mesh_order));
+    CHECK(q.verdict == StudyVerdict::known);
+    CHECK(q.contact == Approx(1.5 * 0.02 * 0.1));
 }
 
 TEST_CASE("differences of rounding size have no order", "[unit][study]") {
