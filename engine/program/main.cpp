@@ -291,6 +291,12 @@ void add_fill(CLI::App& app, FillOptions& options) {
         ->expected(2, CLI::detail::expected_max_vector_size)
         ->type_name("SURFACE... OUT.msh");
     command
+        .add_option("--scale", options.settings.scale,
+                    "factor for all coordinates of the surface, 0.001 for one in millimetres; other lengths are those "
+                    "after scaling")
+        ->check(positive_number)
+        ->capture_default_str();
+    command
         .add_option_function<Real>(
             "--edge", [&options](const Real& edge) { options.settings.edge = edge; },
             "edge length of the tetrahedra and of their surface [m]; default: the triangles of a surface without "
@@ -379,9 +385,10 @@ void add_study(CLI::App& app, StudyOptions& options) {
             "--threads,--jobs", options.settings.threads,
             "number of threads of the study; 0: one per core. The runs have one thread each, except very long ones")
         ->check(CLI::Range(0, 1024));
-    add_number(command, "--budget", options.settings.budget,
-               "largest wall time of the study, divided by that of one run with one thread; finer meshes and other runs "
-               "that do not fit are left out; default: 15, or more as long as the study takes less than 5 s");
+    add_number(
+        command, "--budget", options.settings.budget,
+        "largest wall time of the study, divided by that of one run with one thread; finer meshes and other runs "
+        "that do not fit are left out; default: 15, or more as long as the study takes less than 5 s");
     command.add_option("--out", options.out, "folder for the results; default: out/NAME_study, if SCENE is NAME.json");
     command.add_flag("--redo", options.settings.redo,
                      "replace runs in the folder that belong to another version of the scene or to other settings");

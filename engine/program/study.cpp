@@ -3,6 +3,7 @@
 #include <array>
 #include <iostream>
 #include <ostream>
+#include <system_error>
 
 #include "engine/output/write_file.h"
 #include "engine/program/commands.h"
@@ -61,6 +62,9 @@ std::vector<std::filesystem::path> write_results(const StudyOptions& options, co
     if (result.cheapest) {
         write_cheapest_scene(options.scene, result, files.cheapest);
         written.push_back(files.cheapest);
+    } else {
+        std::error_code ignored;
+        std::filesystem::remove(files.cheapest, ignored);  // a file of an earlier study
     }
     return written;
 }

@@ -65,7 +65,7 @@ StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySe
         studied.has_implicit |= scene.world.dynamics(body) == BodyDynamics::implicit_elastic;
     }
     std::vector<StudyColumn> columns = StudyRecorder(scene).columns();
-    choose_columns(settings.probes, path, columns);
+    choose_columns_by_name(settings.probes, path, columns);
     return studied;
 }
 

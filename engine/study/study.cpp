@@ -24,6 +24,8 @@ namespace {
 // Time between two calls of StudySettings::go_on. A program must react to Ctrl-C within 50 ms.
 constexpr std::chrono::milliseconds watch_period{20};
 
+constexpr double usual_budget = 15;  // StudySettings::budget, unless a study is short
+
 void require_positive(const char* field, double value, const char* expected) {
     if (value > 0 && std::isfinite(value)) return;
     Complaint{
@@ -51,6 +53,7 @@ public:
     RunningStudy(const std::filesystem::path& path, const StudySettings& settings)
         : settings_(settings),
           threads_(settings.threads > 0 ? settings.threads : core_count()),
+          budget_(settings.budget.value_or(usual_budget)),
           scene_(read_studied_scene(path, settings)),
           plan_(plan_study(scene_)),
           hasher_(path) {
@@ -91,9 +94,9 @@ private:
             return (variant.tolerance != 1 && runs_[0].max_contacts == 0) ||
                    (variant.step > 1 && variant.step * mean_step_ > scene_.longest_call * (1 + 1e-6));
         });
-        constexpr double usual_budget = 15, short_study = 5;  // [1], [s]
-        keep_to_budget(settings_.budget.value_or(std::max(usual_budget, short_study / runs_[0].cpu_seconds)), threads_,
-                       plan_);
+        constexpr double short_study = 5;  // [s]
+        if (!settings_.budget) budget_ = std::max(budget_, short_study / runs_[0].cpu_seconds);
+        keep_to_budget(budget_, threads_, plan_);
     }
 
     /// Result of the runs, of which at least the first was made.
@@ -106,11 +109,23 @@ private:
                             .status = StudyRunStatus::left_out,
                             .message = plan_[i].reason,
                             .cpu_seconds = plan_[i].cost * runs_[0].cpu_seconds};
-        for (StudyRun& run : runs_) choose_columns(settings_.probes, scene_.path, run.columns);
+        choose_columns();
         StudyResult result = analyse(std::move(runs_), settings_);
         if (result.cheapest)
             result.cheapest->assignments = variant_assignments(scene_, result.cheapest->variant, mean_step_);
         return result;
+    }
+
+    /// Selects the reported columns. Without names of probes, columns that are zero throughout are left out, such as
+    /// contact forces of bodies that touch nothing.
+    void choose_columns() {
+        for (StudyRun& run : runs_) {
+            if (run.columns.empty()) continue;  // the run is left out or was refused
+            choose_columns_by_name(settings_.probes, scene_.path, run.columns);
+            for (std::size_t c = 0; c < run.columns.size() && settings_.probes.empty(); ++c)
+                run.columns[c].reported &= std::ranges::any_of(
+                    runs_[0].columns[c].values, [](Real value) { return std::isfinite(value) && value != 0; });
+        }
     }
 
     std::string inputs_of(std::size_t i) {
@@ -208,7 +223,8 @@ private:
             cost += plan_[i].cost;
             done += plan_[i].cost * shares_[i];
         }
-        progress.share = done / cost;
+        // Before the first run has ended, the plan has runs that will not fit into the budget.
+        progress.share = std::min(1.0, done / std::min(cost, budget_ * threads_));
         try {
             if (!settings_.go_on(progress)) stop_ = true;
         } catch (...) {
@@ -219,6 +235,7 @@ private:
 
     const StudySettings& settings_;
     const int threads_;
+    double budget_;
     const StudiedScene scene_;
     std::vector<PlannedRun> plan_;
     CaseHasher hasher_;

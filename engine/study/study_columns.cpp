@@ -208,8 +208,8 @@ std::vector<StudyColumn> StudyRecorder::columns() const {
     return columns;
 }
 
-void choose_columns(const std::vector<std::string>& names, const std::filesystem::path& file,
-                    std::vector<StudyColumn>& columns) {
+void choose_columns_by_name(const std::vector<std::string>& names, const std::filesystem::path& file,
+                            std::vector<StudyColumn>& columns) {
     if (names.empty()) return;
     for (StudyColumn& column : columns) column.reported = false;
     for (const std::string& name : names) {

@@ -63,7 +63,7 @@ private:
 
 /// Sets StudyColumn::reported: true for the columns that one of the names NAME or NAME.QUANTITY selects. Without names
 /// nothing is changed. Throws SceneError for a name that selects no column. `file`: scene file, for the message.
-void choose_columns(const std::vector<std::string>& names, const std::filesystem::path& file,
-                    std::vector<StudyColumn>& columns);
+void choose_columns_by_name(const std::vector<std::string>& names, const std::filesystem::path& file,
+                            std::vector<StudyColumn>& columns);
 
 }  // namespace skerry

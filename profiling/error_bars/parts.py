@@ -5,6 +5,7 @@ import math
 
 E, RHO = 1e5, 1000.0  # Young's modulus [Pa] and density [kg/m^3] of most items
 C = math.sqrt(E / RHO)  # speed of waves along a bar [m/s]
+PERIODS = 2.5  # after 2.5 periods with critical damping less than 1e-5 of the way to rest is left
 
 
 @dataclasses.dataclass
@@ -15,7 +16,7 @@ class Item:
     probe: str  # PROBE.QUANTITY, a column of the series
     truth: float  # known value of the column
     formula: str
-    at: str = "end"  # "end": value at the end of the run; "max": largest absolute value
+    at: str = "end"  # value at the end of the run; "min" or "max": least or largest value
     doubt: float = 0  # relative error of the known value
     meshes: dict = dataclasses.field(default_factory=dict)  # content of mesh files by name
 
@@ -57,7 +58,25 @@ def critical(time):
     return 4 * math.pi / time
 
 
-def rk4(rate, state, seconds, steps=20000):
+def drag(time):
+    """Critical damping of the motion as a whole. The damping of a material leaves out rigid motion, which rollers allow."""
+    return {"kind": "drag", "rate": critical(time)}
+
+
+def bar(length, height, cells, load, *, nu=0.3, modulus=E, down=0.0, model="linear", width=None, **keys):
+    """A bar along x, held at x = -length/2. `load` is a shear stress on its end, `down` an acceleration along -z; `keys` are
+    keys of the body."""
+    time = period(length, height, modulus)
+    body = {"name": "bar", "mesh": box((length, width or height, height), cells), "material": "rubber",
+            "pin": {"box": slab(0, -length / 2)}, **keys}
+    load = {"kind": "traction", "body": "bar", "box": slab(0, length / 2), "traction": [0, 0, load]}
+    forces = {"settings": {"gravity": [0, 0, -down]}} if down else {"loads": [load]}
+    return scene((PERIODS + 2 * height / length) * time, [body],
+                 {"rubber": elastic(nu, E=modulus, damping=critical(time), model=model)},
+                 [{"name": "tip", "quantity": "motion", "body": "bar", "point": [length / 2, 0, 0]}], **forces)
+
+
+def rk4(rate, state, seconds, steps=2000):
     """State after some seconds of the motion d state/dt = rate(state)."""
     h = seconds / steps
     for _ in range(steps):
@@ -72,7 +91,7 @@ def rk4(rate, state, seconds, steps=20000):
 def root(function, low, high):
     """Root of a function that changes its sign between low and high, by bisection."""
     sign = function(low) > 0
-    for _ in range(200):
+    for _ in range(50):
         middle = (low + high) / 2
         low, high = (middle, high) if (function(middle) > 0) == sign else (low, middle)
     return (low + high) / 2

@@ -25,6 +25,12 @@ const std::string bar = R"({"name": "bar", "seconds": 0.1, "frame_step": 0.01,
     "colliders": [{"name": "floor", "shape": {"plane": {}}}],
     "probes": [{"name": "tip", "quantity": "motion", "body": "arm", "point": [0.1, 0, 0]}]})";
 
+/// A bar that is held at the upper end and comes to rest under its weight.
+const std::string hanging = R"({"name": "hanging", "seconds": 0.2, "frame_step": 0.02,
+    "materials": {"rubber": {"E": 1e5, "rho": 1000, "nu": 0.3, "damping": 100}},
+    "bodies": [{"name": "arm", "mesh": {"box": {"size": [0.1, 0.1, 0.2], "cells": [2, 2, 4]}}, "material": "rubber",
+                "element": "linear", "pin": [{"box": {"lower": [-1, -1, 0.099], "upper": [1, 1, 1]}}]}]})";
+
 /// Settings for a budget that admits one finer mesh and no more.
 StudySettings small_study(const std::filesystem::path& folder = {}) {
     return {.threads = 1, .budget = 60, .folder = folder};
@@ -97,7 +103,8 @@ TEST_CASE("a run of a study is the run that its assignments make, and all varian
     CHECK(result.runs.back().message.find("more than the budget of 60") != std::string::npos);
     std::vector<std::uint64_t> hashes;
     for (const StudyRun& run : result.runs) {
-        hashes.push_back(run.state_hash);
+        // The few contacts are solved to rounding, whatever the tolerance.
+        if (run.variant.tolerance == 1) hashes.push_back(run.state_hash);
         if (run.variant.draw == 0 && run.status == StudyRunStatus::ok)
             CHECK(run.state_hash == hash_after(scene, run.assignments));
     }
@@ -119,23 +126,29 @@ TEST_CASE("a study has the same bits with one and with three threads") {
     require_same(one, study(scene, settings));
 }
 
-TEST_CASE("a stopped study continues with the runs that ended, and has the numbers of a whole one") {
+TEST_CASE("a stopped study leaves whole files only") {
     const TemporaryFolder folder;
-    const std::filesystem::path scene = folder.write("bar.json", bar);
     StudySettings settings = small_study(folder.path() / "runs");
-    settings.go_on = [](const StudyProgress& so_far) { return so_far.runs_done < 4; };
-    const StudyResult stopped = study(scene, settings);
+    settings.go_on = [](const StudyProgress&) { return false; };
+    const StudyResult stopped = study(folder.write("bar.json", bar), settings);
     REQUIRE(stopped.stopped);
     CHECK(stopped.quantities.empty());
+    if (!std::filesystem::exists(settings.folder)) return;  // no run had ended
     for (const auto& file : std::filesystem::directory_iterator(settings.folder))
-        CHECK(file.path().extension() == ".json");  // no incomplete file is left
-    REQUIRE(std::filesystem::exists(settings.folder / "run_scene.json"));
-    CHECK_FALSE(std::filesystem::exists(settings.folder / "run_refine_1.json"));
-    const auto written = std::filesystem::last_write_time(settings.folder / "run_scene.json");
-    settings.go_on = {};
-    const StudyResult continued = study(scene, settings);
-    CHECK(std::filesystem::last_write_time(settings.folder / "run_scene.json") == written);
-    require_same(continued, study(scene, small_study()));
+        CHECK(file.path().extension() == ".json");
+}
+
+TEST_CASE("a study continues with the runs in its folder, and has the numbers of a whole one") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    const StudySettings settings = small_study(folder.path() / "runs");
+    const StudyResult whole = study(scene, settings);
+    const auto file_of = [&](const std::string& run) { return settings.folder / ("run_" + run + ".json"); };
+    for (const char* lost : {"draw_2", "refine_1", "step_0.25"}) std::filesystem::remove(file_of(lost));
+    const auto written = std::filesystem::last_write_time(file_of("scene"));
+    require_same(whole, study(scene, settings));
+    CHECK(std::filesystem::last_write_time(file_of("scene")) == written);
+    CHECK(std::filesystem::exists(file_of("refine_1")));
 }
 
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
@@ -236,27 +249,21 @@ TEST_CASE("a perturbation moves free nodes by at most 1e-12 m and leaves held no
 
 TEST_CASE("the cheapest scene has at most the wanted error against the best value") {
     const TemporaryFolder folder;
-    const std::filesystem::path file = folder.write("bar.json", bar);
+    const std::filesystem::path file = folder.write("hanging.json", hanging);
     StudySettings settings = small_study();
-    settings.error = 0.2;
-    settings.probes = {"tip.displacement_z"};
+    settings.error = 0.1;
+    settings.probes = {"arm.displacement_z"};
     const StudyResult result = study(file, settings);
     REQUIRE(result.cheapest);
     REQUIRE(result.cheapest->reaches);
     const std::filesystem::path cheapest = folder.path() / "other" / "cheapest.json";
     write_cheapest_scene(file, result, cheapest);
     CHECK(hash_after(cheapest, {}) == hash_after(file, result.cheapest->assignments));
-    const StudyQuantity& tip = quantity(result, "tip.displacement_z_end");
-    Scene scene = load_scene(cheapest);
-    Recorder recorder(scene.world, scene.recorded);
-    recorder.sample(scene.world);
-    for (int frame = 0; frame < 10; ++frame) {
-        REQUIRE(scene.world.advance(scene.probe_step).ok());
-        recorder.sample(scene.world);
-    }
-    const std::size_t column = static_cast<std::size_t>(
-        std::ranges::find(recorder.columns(), "displacement_z", &SeriesColumn::quantity) - recorder.columns().begin());
-    CHECK(std::abs(recorder.row(10)[column] - tip.best) <= 0.2 * tip.scale);
+    const StudyQuantity& sag = quantity(result, "arm.displacement_z_end");
+    settings.budget = 3;
+    const Real value = quantity(study(cheapest, settings), "arm.displacement_z_end").value;
+    CHECK(std::abs(value - sag.best) <= settings.error * sag.scale);
+    CHECK(std::abs(sag.value - sag.best) <= sag.error);
 }
 
 }  // namespace skerry::test::study_test
