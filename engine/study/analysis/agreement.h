@@ -1,7 +1,6 @@
 // Agreement of runs whose starts differ by a tiny perturbation (docs/methods/study.md 3).
 #pragma once
 
-#include <limits>
 #include <span>
 #include <vector>
 
