@@ -227,7 +227,7 @@ TEST_CASE("a chaotic scene has single values until its runs part, and statistics
         return values;
     };
     const StudyResult result = analyse(runs_of(columns, all_variants, map, rows), {});
-    const Real doublings = std::log2(1e-4 / 1e-12) / 10;  // time of growth to the share of agreement [s]
+    const Real doublings = std::log2(1e-3 / 1e-12) / 10;  // time of growth to the share of agreement [s]
     CHECK(result.agree_until > 0.7 * doublings);
     CHECK(result.agree_until < 1.1 * doublings);
     CHECK(result.growth_rate == Approx(10 * std::log(2)).epsilon(0.15));
@@ -244,6 +244,18 @@ TEST_CASE("a chaotic scene has single values until its runs part, and statistics
     CHECK(std::abs(mean.value - 0.5) < mean.error);  // the map's mean is 1/2
     CHECK(mean.error < 0.5);
     CHECK(result.sentences.at(0).find("agree until") != std::string::npos);
+}
+
+TEST_CASE("a small difference that does not grow is part of the error bar", "[unit][study]") {
+    const StudyQuantity q = only_quantity(
+        analyse(runs_of({column("displacement_z", "m")}, all_variants,
+                        [](const StudyVariant& v, Real t) {
+                            return std::vector<Real>{limit * t * (1 + 0.01 * edge(v) * edge(v) + 2e-4 * v.draw)};
+                        }),
+                {}));
+    CHECK(q.verdict == StudyVerdict::known);
+    CHECK(q.noise == Approx(4e-4 * 0.1));
+    CHECK(q.error == Approx(q.mesh + q.noise));
 }
 
 TEST_CASE("an error that no run shows is not measured, with the reason", "[unit][study]") {
