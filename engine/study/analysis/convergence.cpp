@@ -11,8 +11,6 @@ constexpr Real unknown = std::numeric_limits<Real>::quiet_NaN();
 // Factor by which error bounds exceed estimated errors. With order 1, which is assumed of two levels, the bound is
 // three times the difference of the levels (Roache 1994).
 constexpr Real safety = 1.5;
-// Largest estimated error of the finest level of three, relative to the difference of the coarsest and the finest one.
-constexpr Real most_remainder = 2;
 constexpr Real assumed_order = 1;  // order of two levels
 // An observed order is near the theory between these shares of the least and the largest order of the theory.
 constexpr Real near_least = 0.5, near_most = 1.5;
@@ -52,9 +50,10 @@ void Convergence::find_order(TheoryOrder theory, Real noise) {
         used_order_ = 0;
         remainder_ = order_ > 0 ? largest - std::abs(difference) : largest;
     } else if (order_ < near_least * theory.least) {
+        // Low orders would predict errors without bounds.
         shape_ = ConvergenceShape::slow;
         used_order_ = 0;
-        remainder_ = most_remainder * std::abs(coarse_difference + difference);
+        remainder_ = std::abs(coarse_difference + difference);
         if (order_ > 0) remainder_ = std::min(remainder_, remainder(order_));
     } else {
         shape_ = fast ? ConvergenceShape::fast : ConvergenceShape::regular;

@@ -1,7 +1,6 @@
 // One quantity of a study: its value in every run, and its error (docs/methods/study.md 2).
 #pragma once
 
-#include <string>
 #include <utility>
 #include <vector>
 
