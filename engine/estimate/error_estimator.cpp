@@ -23,7 +23,7 @@ public:
             const auto body = static_cast<std::size_t>(model.row(handle, "ErrorEstimator::sample"));
             const bool is_new = !found_.contains(handle);
             if (model.bodies.asleep[body] != 0 && !(all && is_new)) continue;
-            const MeshError error = measure_mesh_error(model, body);
+            const MeshError error = measure_mesh_error(world, handle);
             if (!(error.stored > (is_new ? 0 : found_[handle].stored))) continue;
             found_[handle] = {.stored = error.stored,
                               .mesh = error.mesh(),

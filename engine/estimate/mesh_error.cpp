@@ -39,6 +39,7 @@ public:
         sums_.resize(nodes.stress.size() * std::max<std::size_t>(1, materials_.size()));
         for (std::size_t t = 0; t < volume.size(); ++t)
             for (std::size_t corner = 0; corner < 4; ++corner) {
+                if (!nodes.extrapolated[static_cast<std::size_t>(record.tetrahedra[t][corner])]) continue;
                 Sum& sum = sums_[place(t, corner)];
                 sum.stress += volume[t] * of_tetrahedra[t];
                 sum.volume += volume[t];
@@ -94,34 +95,41 @@ public:
           record_(model.body_records[body]),
           rest_(rows_of(model.nodes.rest_position, model.bodies.nodes[body])),
           norms_(model.materials.constants.size()) {
-        if (body_.blocks.size() == 0) return;
-        const std::size_t count = record_.tetrahedra.size();
-        for (std::vector<Real>* of : {&error_.volume, &error_.energy, &error_.error}) of->resize(count);
-        find_blocks(count);
-        std::vector<Mat3> of_elements(static_cast<std::size_t>(body_.blocks.size()) * element_lanes);
-        kernels().cauchy_stress(body_.elements, body_.blocks, body_.position, of_elements);
-        add_elements(of_elements);
-        const NodeFields nodes = body_.node_fields(all_nodes(model, body));
-        const std::vector<Mat3> of_tetrahedra = kernels().stress_of_tetrahedra(body_.cover, of_elements, count);
-        for (std::size_t t = 0; t < count; ++t) error_.volume[t] = six_volumes(record_.tetrahedra[t], rest_) / 6;
-        const CornerStress recovered(record_, nodes, of_tetrahedra, error_.volume);
-        for (std::size_t t = 0; t < count; ++t) add_tetrahedron(t, of_tetrahedra[t], recovered);
-        // The exact stress is balanced: its product with the strain of the displacements is the stored energy. So the
-        // recovered stress is scaled.
-        if (mixed_ > 0) error_.missing = error_.stored * (error_.stored * recovered_ / (mixed_ * mixed_) - 1);
-        find_peak(nodes);
+        error_.nodes = body_.node_fields(all_nodes(model, body));
+        error_.of_nodes.resize(rest_.size());
+        if (body_.blocks.size() > 0) compare();
+        body_.turn(error_.nodes.stress);
+        body_.turn(error_.nodes.strain);
     }
 
     MeshError take() { return std::move(error_); }
 
 private:
+    void compare() {
+        const std::size_t count = record_.tetrahedra.size();
+        for (std::vector<Real>* of : {&error_.volume, &error_.energy, &error_.error}) of->resize(count);
+        find_blocks(count);
+        std::vector<Mat3> of_elements(static_cast<std::size_t>(body_.blocks.size()) * element_lanes);
+        kernels().cauchy_stress(body_.elements, body_.blocks, body_.position, of_elements);
+        for (std::size_t t = 0; t < count; ++t) error_.volume[t] = six_volumes(record_.tetrahedra[t], rest_) / 6;
+        if (!add_elements(of_elements)) return;
+        const std::vector<Mat3> of_tetrahedra = kernels().stress_of_tetrahedra(body_.cover, of_elements, count);
+        const CornerStress recovered(record_, error_.nodes, of_tetrahedra, error_.volume);
+        for (std::size_t t = 0; t < count; ++t) add_tetrahedron(t, of_tetrahedra[t], recovered);
+        error_.stored += sum(error_.energy);
+        // The exact stress is balanced: its product with the strain of the displacements is the stored energy. So the
+        // recovered stress is scaled.
+        if (mixed_ > 0) error_.missing = error_.stored * (error_.stored * recovered_ / (mixed_ * mixed_) - 1);
+        find_peak(error_.nodes);
+        find_errors_of_nodes();
+    }
     std::size_t block_at(std::size_t place) const {
         return static_cast<std::size_t>(body_.blocks.begin) + place / element_lanes;
     }
-    bool is_anisotropic(std::size_t block) const {
-        return body_.elements.constants[static_cast<std::size_t>(body_.elements.material[block])].model ==
-               MaterialModel::orthotropic;
+    const MaterialConstants& constants_of(std::size_t block) const {
+        return body_.elements.constants[static_cast<std::size_t>(body_.elements.material[block])];
     }
+    bool is_anisotropic(std::size_t block) const { return constants_of(block).model == MaterialModel::orthotropic; }
 
     /// Finds a block with strain for each tetrahedron, and the materials with elements of single parts of the stress.
     void find_blocks(std::size_t tetrahedron_count) {
@@ -144,16 +152,43 @@ private:
         return *norm;
     }
 
-    void add_elements(std::span<const Mat3> stress) {
+    /// Adds the energy by which the elements exceed the energy of the mean stresses of the tetrahedra. Returns false if
+    /// the elements are not strained.
+    bool add_elements(std::span<const Mat3> stress) {
+        constexpr Real smallest_strain = 1e-9;  // smaller mean strains are rounding errors, for example in free fall
+        struct Mean {
+            StressCoordinates sum = StressCoordinates::Zero();
+            Real count = 0;
+        };
+        std::array<std::vector<Mean>, 2>
+            means;  // of the elements with strain, and of those with volumetric stress only
+        for (std::vector<Mean>& of : means) of.resize(error_.volume.size());
+        Real stiffness = 0;
         for (std::size_t place = 0; place < body_.cover.tetrahedra.size(); ++place) {
             const std::span<const Index> covered = body_.cover.tetrahedra[place];
             if (covered.empty()) continue;
             const std::size_t block = block_at(place);
+            const ElementPart part = body_.elements.part[block];
             const Mat3 turn = is_anisotropic(block) ? turn_of(gradient_of(static_cast<std::size_t>(covered.front())))
                                                     : Mat3(Mat3::Identity());
-            error_.stored += body_.elements.volume[block][place % element_lanes] *
-                             norm_of(block).of(stress[place], body_.elements.part[block], turn).squaredNorm();
+            const StressCoordinates coordinates = norm_of(block).of(stress[place], part, turn);
+            const Real volume = body_.elements.volume[block][place % element_lanes];
+            error_.stored += volume * coordinates.squaredNorm();
+            stiffness += volume * constants_of(block).shear_modulus;
+            for (const Index t : covered) {
+                Mean& of = means[part == ElementPart::volume ? 1 : 0][static_cast<std::size_t>(t)];
+                of.sum += coordinates;
+                ++of.count;
+            }
         }
+        if (error_.stored < smallest_strain * smallest_strain * stiffness) {
+            error_.stored = 0;
+            return false;
+        }
+        for (const std::vector<Mean>& of : means)
+            for (std::size_t t = 0; t < of.size(); ++t)
+                if (of[t].count > 0) error_.stored -= error_.volume[t] * (of[t].sum / of[t].count).squaredNorm();
+        return true;
     }
 
     /// Edge vectors of a tetrahedron, as columns.
@@ -224,6 +259,18 @@ private:
         error_.stress = std::min<Real>(1, longer * longer * share_of(error, energy));
     }
 
+    void find_errors_of_nodes() {
+        const std::vector<Real> relative = error_.relative_errors();
+        std::vector<Real> count(rest_.size());
+        for (std::size_t t = 0; t < relative.size(); ++t)
+            for (const Index n : record_.tetrahedra[t]) {
+                error_.of_nodes[static_cast<std::size_t>(n)] += relative[t];
+                ++count[static_cast<std::size_t>(n)];
+            }
+        for (std::size_t n = 0; n < count.size(); ++n)
+            if (count[n] > 0) error_.of_nodes[n] /= count[n];
+    }
+
     const ElementsOfBody body_;
     const BodyRecord& record_;
     std::span<const Vec3> rest_;                    // nodes of the body in the frame of the mesh [m]
@@ -246,17 +293,21 @@ Real MeshError::deflection() const {
     return whole > 0 ? missing / whole : 0;
 }
 
-MeshError measure_mesh_error(const Model& model, std::size_t body) {
-    return MeshErrorSum(model, body).take();
+std::vector<Real> MeshError::relative_errors() const {
+    const Real mean = (sum(energy) + sum(error)) / sum(volume);
+    std::vector<Real> relative(error.size());
+    for (std::size_t t = 0; t < error.size(); ++t)
+        if (error[t] > 0) relative[t] = std::sqrt(error[t] / (volume[t] * mean));
+    return relative;
+}
+
+MeshError measure_mesh_error(const World& world, BodyHandle body) {
+    const Model& model = WorldAccess::state_of(world).model;
+    return MeshErrorSum(model, static_cast<std::size_t>(model.row(body, "mesh_error"))).take();
 }
 
 std::vector<Real> mesh_error(const World& world, BodyHandle body) {
-    const Model& model = WorldAccess::state_of(world).model;
-    MeshError of = measure_mesh_error(model, static_cast<std::size_t>(model.row(body, "mesh_error")));
-    const Real mean = (sum(of.energy) + sum(of.error)) / sum(of.volume);
-    for (std::size_t t = 0; t < of.error.size(); ++t)
-        of.error[t] = of.error[t] > 0 ? std::sqrt(of.error[t] / (of.volume[t] * mean)) : 0;
-    return std::move(of.error);
+    return measure_mesh_error(world, body).relative_errors();
 }
 
 }  // namespace skerry

@@ -1,14 +1,12 @@
 // Error of the stress of a body that is due to its mesh (docs/methods/error_estimates.md 1).
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
-#include "components/types.h"
+#include "skerry/world.h"
+#include "systems/dynamics/recovery/recover_nodes.h"
 
 namespace skerry {
-
-struct Model;
 
 /// Comparison of the stress of a deformable body with the stress that is recovered at its nodes. Energies are twice the
 /// elastic energy, for small strain from the rest shape.
@@ -21,14 +19,18 @@ struct MeshError {
     Real missing = 0;
     // Largest von Mises stress at the nodes [Pa], and its relative error.
     Real largest_stress = 0, stress = 0;
+    NodeFields nodes;            // recovered fields, in world axes
+    std::vector<Real> of_nodes;  // mean of relative_errors() over the tetrahedra around each node
 
     /// Relative error of the stress of the tetrahedra, in the energy norm.
     Real mesh() const;
     /// Relative error of a displacement under given loads, positive if the mesh is too stiff.
     Real deflection() const;
+    /// Results of mesh_error().
+    std::vector<Real> relative_errors() const;
 };
 
-/// `body`: row of a body. All values are zero if the body is rigid.
-MeshError measure_mesh_error(const Model& model, std::size_t body);
+/// All errors are zero if the body is rigid or not deformed.
+MeshError measure_mesh_error(const World& world, BodyHandle body);
 
 }  // namespace skerry

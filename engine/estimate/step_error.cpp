@@ -151,10 +151,9 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Interval&
     // Impacts change the velocity without such an error.
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
     const Real error = std::min(change, accelerated) * motion.first_step / 2 + motion.deflected;
-    if (interval.collided.contains(body)) {
-        const Real kick = (now.velocity - motion.velocity - interval.seconds * world.settings().gravity).norm();
-        motion.deflection_rate += kick * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
-    }
+    if (interval.collided.contains(body))
+        motion.deflection_rate +=
+            (now.velocity - motion.velocity).norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
     motion.velocity = now.velocity;
     motion.deflection_rate = std::min(motion.deflection_rate, now.velocity.norm());
     motion.deflected += interval.seconds * motion.deflection_rate;
@@ -229,7 +228,11 @@ void StepError::sample(const World& world) {
 void StepError::add_to(std::vector<ErrorEstimate>& bodies) const {
     for (ErrorEstimate& estimate : bodies) {
         const auto motion = motions_.find(estimate.body);
-        if (motion != motions_.end()) estimate.step = std::min(Real{1}, motion->second.error / motion->second.moved);
+        if (motion == motions_.end()) continue;
+        const Motion& of = motion->second;
+        if (!(of.moved > of.still)) continue;
+        estimate.step = std::min(Real{1}, of.error / of.moved);
+        if (!of.deformation.displacement.empty()) estimate.deformation = std::min(Real{1}, of.largest / of.moved);
     }
 }
 

@@ -52,10 +52,10 @@ bool on_from(const std::string& field, const CommandJson& value) {
 
 bool stresses_from(const std::string& field, const CommandJson& value) {
     const auto is_known = [](const CommandJson& name) {
-        return name == "speed" || name == "stress" || name == "strain";
+        return name == "speed" || name == "stress" || name == "strain" || name == "error";
     };
     if (!value.is_array() || !std::ranges::all_of(value, is_known))
-        refuse_value(field, value, "a list of speed, stress and strain");
+        refuse_value(field, value, "a list of speed, stress, strain and error");
     return std::ranges::any_of(value, [](const CommandJson& name) { return name != "speed"; });
 }
 

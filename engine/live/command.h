@@ -13,7 +13,7 @@ namespace skerry {
 
 enum class LiveAction {
     seen,     // the browser has drawn the frame `number` and all before it
-    fields,   // the browser shows stress or strain, or neither
+    fields,   // the browser shows stress, strain or the mesh error, or none of them
     play,     // go on
     pause,    // stop
     step,     // advance by one step, then pause
@@ -50,7 +50,7 @@ struct LiveCommand {
     std::uint64_t number = 0;  // of a frame, or of a slider from 0
     Real value = 0;
     bool on = false;
-    bool stresses = false;                         // true if `names` contains stress or strain
+    bool stresses = false;                         // true if `names` contains a field other than speed
     std::uint64_t body_number = 0;                 // in the stream of the browser
     BodyHandle body{};                             // the body with this number
     Vec3 point = Vec3::Zero(), to = Vec3::Zero();  // [m]

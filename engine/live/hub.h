@@ -73,7 +73,7 @@ public:
 
     struct Wish {
         bool frame = false;     // a browser waits for a frame
-        bool stresses = false;  // it shows stress or strain
+        bool stresses = false;  // it shows stress, strain or the mesh error
     };
     /// Counts a missed frame for each browser that is busy with earlier frames.
     Wish wish();
@@ -97,7 +97,7 @@ private:
         std::uint64_t number = 0;
         LiveLink* link = nullptr;
         bool closed = false;               // its thread ends
-        bool stresses = false;             // it shows stress or strain
+        bool stresses = false;             // it shows stress, strain or the mesh error
         bool pulls = false;                // its last pull has not been released
         std::deque<std::string> texts;     // messages that wait for its thread
         std::uint64_t run = 0;             // run that it shows

@@ -105,7 +105,10 @@ Real LiveEncoder::usual(std::size_t field) {
 }
 
 std::string LiveEncoder::row_text(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client) {
-    Json top = {{"speed", usual(0)}, {"stress", usual(stress_field)}, {"strain", usual(strain_field)}};
+    Json top = {{"speed", usual(0)},
+                {"stress", usual(stress_field)},
+                {"strain", usual(strain_field)},
+                {"error", usual(error_field)}};
     values_.clear();
     for (const Contact& contact : snapshot.frame.contacts) values_.push_back(contact.force().norm());
     top["force"] = usual();

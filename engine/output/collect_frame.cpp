@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "engine/estimate/mesh_error.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/objects.h"
-#include "engine/world/node_fields.h"
 #include "engine/world/world_state.h"
 #include "jobs/parallel_for.h"
 
@@ -48,10 +48,10 @@ Frame collect_frame(const World& world, FrameContent content) {
     const std::vector<BodyHandle> bodies = world.bodies();
     const bool yields =
         std::ranges::any_of(WorldAccess::state_of(world).model.materials.constants, &MaterialConstants::yields);
-    std::vector<NodeFields> fields(bodies.size());
+    std::vector<MeshError> fields(bodies.size());
     if (content >= FrameContent::node_values)
         parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t b = begin; b < end; ++b) fields[b] = node_fields(world, bodies[b]);
+            for (std::size_t b = begin; b < end; ++b) fields[b] = measure_mesh_error(world, bodies[b]);
         });
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const BodyHandle body = bodies[b];
@@ -64,8 +64,9 @@ Frame collect_frame(const World& world, FrameContent content) {
                                                                  .stress = {},
                                                                  .strain = {},
                                                                  .plastic_strain = {},
-                                                                 .node_stress = std::move(fields[b].stress),
-                                                                 .node_strain = std::move(fields[b].strain)});
+                                                                 .node_stress = std::move(fields[b].nodes.stress),
+                                                                 .node_strain = std::move(fields[b].nodes.strain),
+                                                                 .node_mesh_error = std::move(fields[b].of_nodes)});
         of_body.visual = visual_of(world, body);
         if (world.dynamics(body) == BodyDynamics::rigid) of_body.rigid_pose = world.pose(body);
         if (content < FrameContent::cell_values) continue;

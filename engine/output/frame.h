@@ -30,6 +30,7 @@ struct BodyFrame {
     std::vector<Mat3> stress, strain;            // values by cell: Cauchy stress [Pa] and Green strain
     std::vector<Real> plastic_strain;            // equivalent plastic strain by cell; empty if nothing yields
     std::vector<Mat3> node_stress, node_strain;  // values by node: Cauchy stress [Pa] and Green strain
+    std::vector<Real> node_mesh_error{};         // values by node: mean of mesh_error() over the tetrahedra around it
     // Material number of each cell. Materials are numbered in the order in which they were added.
     std::vector<Index> material{};
     // Stretch of the fibres and nominal stress along them [Pa], by cell: 1 and 0 where there are none, those of the

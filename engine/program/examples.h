@@ -72,6 +72,7 @@ inline constexpr const char* fill_examples = R"(Examples:
   skerry fill bunny.obj bunny.msh                          keep the triangles of the surface if it has no faults
   skerry fill bunny.obj bunny.msh --edge 0.01              tetrahedra and triangles with edges of about 1 cm
   skerry fill scan.stl scan.msh --edge 0.01 --tolerance 0.005   allow the surface to move by 0.5 % of its size
+  skerry fill part.stl part.msh --scale 0.001              a surface in millimetres
   skerry fill bone.stl skin.stl leg.msh                    two regions, if one surface lies inside the other
   skerry fill ball.stl ball.msh --cavities                 leave the inside of inner shells empty
 From a surface to a film:

@@ -49,8 +49,10 @@ Json starter_scene(const FillOptions& options, const MaterialSettings& given, co
               {"mesh", {{"file", path_in_scene(options.mesh, options.scene)}}},
               {"material", "body"},
               {"position", {0, 0, std::ceil((fall - report.lower.z()) / rounding) * rounding}}};
-    if (options.surfaces.size() == 1)
+    if (options.surfaces.size() == 1) {
         body["visual"] = {{"file", path_in_scene(options.surfaces.front(), options.scene)}};
+        if (options.settings.scale != 1) body["visual"]["scale"] = options.settings.scale;
+    }
     return {{"description", name + " falls on a floor."},
             {"seconds", seconds},
             {"materials", {{"body", material}}},

@@ -291,6 +291,12 @@ void add_fill(CLI::App& app, FillOptions& options) {
         ->expected(2, CLI::detail::expected_max_vector_size)
         ->type_name("SURFACE... OUT.msh");
     command
+        .add_option("--scale", options.settings.scale,
+                    "factor for all coordinates of the surface, 0.001 for one in millimetres; other lengths are those "
+                    "after scaling")
+        ->check(positive_number)
+        ->capture_default_str();
+    command
         .add_option_function<Real>(
             "--edge", [&options](const Real& edge) { options.settings.edge = edge; },
             "edge length of the tetrahedra and of their surface [m]; default: the triangles of a surface without "

@@ -29,6 +29,7 @@ void bind_live(nb::module_& module);
 void bind_materials(nb::module_& module);
 void bind_mesh(nb::module_& module);
 void bind_problem(nb::module_& module);
+void bind_estimate(nb::module_& module);
 void bind_recorder(nb::module_& module);
 void bind_rollout(nb::module_& module);
 void bind_scene(nb::module_& module);

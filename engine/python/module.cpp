@@ -57,6 +57,7 @@ NB_MODULE(_core, module) {
     bind_problem(module);
     bind_visual_surface(module);
     bind_world(module);
+    bind_estimate(module);
     bind_recorder(module);
     bind_rollout(module);
     bind_scene(module);

@@ -6,6 +6,7 @@
 
 #include "engine/mesh/surface/check_shells.h"
 #include "engine/scene/mesh_levels.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -21,10 +22,19 @@ int refined_resolution(int resolution, int refine) {
     return refine == 0 ? resolution : refined(resolution + resolution % 2, refine);
 }
 
-Mesh fill_file(const std::filesystem::path& file, std::optional<Real> edge, const MeshEntry& entry,
+/// Fills a surface, or the surface of a mesh, in the unit of the file. The tetrahedra are `doublings` times twice as
+/// large as those with the given edge length.
+Mesh fill_file(const std::filesystem::path& file, std::optional<Real> edge, int doublings, const MeshEntry& entry,
                std::vector<std::string>& notes, const SurfaceFilling& filling) {
     mesh::FillSettings settings{.edge = edge, .cavities = entry.cavities, .python = filling.python};
     settings.tolerance = entry.tolerance.value_or(settings.tolerance);
+    if (doublings > 0) {
+        settings.edge = std::ldexp(*edge, doublings);
+        // The distance of a curved surface from flat triangles grows with the square of their size.
+        constexpr Real most = 0.1;
+        settings.tolerance =
+            std::min(std::ldexp(settings.tolerance, 2 * doublings), std::max(settings.tolerance, most));
+    }
     std::vector<std::string> of_filling;
     Mesh mesh = mesh::fill_cached(file, settings, filling.progress, &of_filling);
     if (entry.scale != 1)
@@ -43,13 +53,24 @@ Mesh make_from_file(const MeshEntry& entry, bool rigid, std::vector<std::string>
     if (entry.edge) edge = *entry.edge / entry.scale;
     const std::filesystem::path& file = (entry.file ? entry.file : entry.surface)->path;
     const auto unrefined = [&](std::vector<std::string>& remarks) {
-        if (entry.surface) return fill_file(file, edge, entry, remarks, filling);
+        if (entry.surface) return fill_file(file, edge, 0, entry, remarks, filling);
         return rigid ? mesh::read_rigid(file.string(), &remarks) : mesh::read(file.string(), &remarks);
     };
     if (entry.refine >= 0) return unrefined(notes);
     std::vector<std::string> not_of_this_mesh;
     if (!edge) edge = inspect(unrefined(not_of_this_mesh)).mean_edge;
-    return fill_file(file, std::ldexp(*edge, -entry.refine), entry, notes, filling);
+    Mesh mesh = fill_file(file, edge, -entry.refine, entry, notes, filling);
+    const Real wanted = std::ldexp(*edge, -entry.refine), mean = inspect(mesh).mean_edge;
+    constexpr Real least_ratio = 0.7;
+    if (mean < least_ratio * wanted)
+        Complaint{file.string(),
+                  "mesh",
+                  "refine",
+                  "a mesh with a mean edge of " + short_text(mean) + " for the value " + std::to_string(entry.refine),
+                  "a mean edge of about " + short_text(wanted),
+                  "larger triangles would be too far from the surface"}
+            .raise();
+    return mesh;
 }
 
 Mesh make_shape(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes, const SurfaceFilling& filling) {

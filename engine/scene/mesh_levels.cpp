@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <optional>
 
 namespace skerry {
@@ -144,9 +145,13 @@ SceneLevels levels_of(const SceneFile& scene, const std::filesystem::path& file)
             own.why_not_coarser = own.why_not_finer = "it is in the included scene " + mesh.place.file().string();
         } else {
             const auto reason = [&](int level) { return why_not(mesh, mesh.refine + level, rigid, parts); };
-            while (reason(own.coarsest - 1).empty()) --own.coarsest;
             while (reason(own.finest + 1).empty()) ++own.finest;
-            own.why_not_coarser = reason(own.coarsest - 1);
+            if (mesh.file || (mesh.surface && !mesh.edge)) {
+                own.why_not_coarser = "larger triangles would change the shape of its surface";
+            } else {
+                while (reason(own.coarsest - 1).empty()) --own.coarsest;
+                own.why_not_coarser = reason(own.coarsest - 1);
+            }
             own.why_not_finer = reason(own.finest + 1);
         }
         if (own.coarsest > levels.coarsest) {

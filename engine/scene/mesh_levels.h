@@ -25,8 +25,8 @@ struct MeshLevels {
 
 struct SceneLevels {
     std::vector<MeshLevels> meshes{};
-    // Levels that all meshes have; 0 if there are no meshes. Reading may still refuse a coarser level if no mesher
-    // fills a surface.
+    // Levels that all meshes have; 0 if there are no meshes. Coarser levels never change the triangles of a file. A
+    // coarser level of a surface that is filled may still be refused on reading, if no mesher fills it.
     int coarsest = 0, finest = 0;
     std::string why_not_coarser{}, why_not_finer{};  // with the name of the mesh
 

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <utility>
 
 #include "engine/scene/case_hash.h"
@@ -63,13 +62,10 @@ public:
     }
 
     StudyResult run() {
-        std::vector<std::size_t> numbers(plan_.size());
-        std::iota(numbers.begin(), numbers.end(), std::size_t{0});
-        const auto later = numbers.begin() + independent_runs;
-        make_runs({numbers.begin(), later});
+        make_runs(0, independent_runs);
         if (!stop_ && runs_[0].status == StudyRunStatus::ok) {
             drop_pointless();
-            make_runs({later, numbers.end()});
+            make_runs(independent_runs, plan_.size());
         }
         StudyResult result;
         result.stopped = stop_;
@@ -153,10 +149,10 @@ private:
         return true;
     }
 
-    /// Makes the runs with these numbers that are neither left out nor in the folder.
-    void make_runs(const std::vector<std::size_t>& numbers) {
+    /// Makes the runs from number `first` to the one before `end` that are neither left out nor in the folder.
+    void make_runs(std::size_t first, std::size_t end) {
         std::vector<std::size_t> left;
-        for (const std::size_t i : numbers) {
+        for (std::size_t i = first; i < end; ++i) {
             if (!plan_[i].reason.empty()) continue;
             runs_[i].assignments = variant_assignments(scene_, plan_[i].variant, mean_step_);
             inputs_[i] = inputs_of(i);

@@ -103,9 +103,7 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
 }
 
 StudyRecorder::StudyRecorder(Scene& scene)
-    : world_(scene.world),
-      defaults_(default_probes(scene)),
-      recorder_(scene.world, joined(scene.recorded, defaults_), scene.frame_step) {
+    : world_(scene.world), defaults_(default_probes(scene)), recorder_(scene.world, joined(scene.recorded, defaults_)) {
     const std::vector<BodyHandle> bodies = world_.bodies();
     size_ = diagonal(world_, bodies);
     many_bodies_ = bodies.size() > most_reported;

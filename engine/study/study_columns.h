@@ -10,7 +10,7 @@
 namespace skerry {
 
 /// Records the probes of a scene and the default quantities: displacement, contact force and largest stress of each
-/// body, and the energies. A row is recorded at each frame.
+/// body, and the energies. Each call of sample() after a step records a row.
 class StudyRecorder {
 public:
     /// `scene` must be as it was read, and must outlive the object.

@@ -30,10 +30,10 @@ Json quantity_json(const StudyQuantity& q) {
 }  // namespace
 
 std::string study_json(const StudyResult& result) {
-    Json json = {{"schema", "skerry.study/1"},        {"scene", result.scene},
-                 {"quantities", Json::array()},       {"cheapest", nullptr},
-                 {"agree_until", result.agree_until}, {"growth_rate", result.growth_rate},
-                 {"sentences", result.sentences},     {"runs", Json::array()}};
+    Json json = {
+        {"schema", "skerry.study/1"},          {"scene", result.scene},         {"quantities", Json::array()},
+        {"wanted_error", result.wanted_error}, {"cheapest", nullptr},           {"agree_until", result.agree_until},
+        {"growth_rate", result.growth_rate},   {"sentences", result.sentences}, {"runs", Json::array()}};
     for (const StudyQuantity& quantity : result.quantities) json["quantities"].push_back(quantity_json(quantity));
     if (const std::optional<CheapestSettings>& cheapest = result.cheapest)
         json["cheapest"] = {{"set", cheapest->assignments},         {"variant", variant_json(cheapest->variant)},

@@ -6,7 +6,6 @@
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/elements_of_body.h"
 #include "engine/world/kernels.h"
-#include "engine/world/node_fields.h"
 #include "engine/world/validate.h"
 #include "engine/world/world_state.h"
 #include "systems/dynamics/elements/build_elements.h"
@@ -126,11 +125,6 @@ std::vector<Real> World::plastic_strain(BodyHandle body) const {
     const ElementCover cover{rows_of(model.elements.part, blocks), model.body_records[row].element_tetrahedra.view()};
     return kernels().mean_of_tetrahedra(cover, rows_of(model.elements.plastic_strain, blocks),
                                         static_cast<std::size_t>(model.bodies.tetrahedron_count[row]));
-}
-
-NodeFields node_fields(const World& world, BodyHandle body) {
-    const Model& model = WorldAccess::state_of(world).model;
-    return fields_of_nodes(model, static_cast<std::size_t>(model.row(body, "node_fields")));
 }
 
 std::vector<Mat3> World::node_stress(BodyHandle body) const {

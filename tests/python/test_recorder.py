@@ -283,3 +283,21 @@ def test_a_write_error_of_a_film_is_raised_as_it_is(tmp_path: Path, monkeypatch:
     world, _, _ = ball_world()
     with pytest.raises(OSError, match="disk full"), world.usd(tmp_path / "a.usd", every=0.01):
         world.run(0.05, dt=0.01)
+
+
+def test_an_error_estimator_names_the_error_of_each_body() -> None:
+    world, ball, _ = ball_world()
+    with world.error_estimator() as errors:
+        world.run(0.1, dt=0.01)
+    table = errors.table()
+    assert table["body"] == [ball.name]
+    assert 0 < table["mesh"][0] < 1 and 0 < table["step"][0] < 1
+    by_tetrahedron = ball.mesh_error()
+    assert by_tetrahedron.shape == (len(ball.tetrahedra),) and by_tetrahedron.max() > 0
+
+
+def test_a_world_with_an_active_error_estimator_is_not_reset() -> None:
+    world, _, _ = ball_world()
+    saved = world.copy()
+    with world.error_estimator(), pytest.raises(sk.SceneError, match="an error estimator in its `with` block"):
+        world.reset(saved)

@@ -104,9 +104,11 @@ probes: dict[str, sk.Probe] = {
 more: dict[str, sk.Probe] = {"pose": sk.PoseProbe(rod), "velocity": sk.VelocityProbe(rod), "nodes": sk.NodesProbe(cube)}
 world.measure_forces()
 recorder: sk.Recorder = world.recorder(probes)
+errors: sk.ErrorEstimator = world.error_estimator()
 film: sk.Film = world.record()
-with recorder, film, world.contact_problems() as steps:
+with recorder, errors, film, world.contact_problems() as steps:
     report: sk.StepReport = world.advance(0.02)
+worst, mesh_error = errors.table()["worst_tetrahedron"], cube.mesh_error()
 page: sk.Page = world.show()
 try:
     with sk.view(world, open=False) as view:

@@ -137,8 +137,9 @@ Json json_of_data(const PageData& data, const PageSummary& summary) {
     json.update(json_of_objects(data.stream(), {}));
     json.update({{"rows", json_of_rows(data)},
                  {"speed", json_of(data.fields()[0])},
-                 {"stress", json_of(data.fields()[1])},
-                 {"strain", json_of(data.fields()[2])},
+                 {"stress", json_of(data.fields()[stress_field])},
+                 {"strain", json_of(data.fields()[strain_field])},
+                 {"error", json_of(data.fields()[error_field])},
                  {"force", json_of(data.force())},
                  {"line_force", json_of(data.line_force())},
                  {"report", json_of_report(summary)}});

@@ -203,7 +203,8 @@ void VtkSeries::write_files(const Frame& frame) {
 void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const {
     std::size_t points = 0, cells = 0, corners = 0;
     for (const BodyFrame& body : frame.bodies) {
-        SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.position.size());
+        SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.position.size() &&
+                     body.node_mesh_error.size() == body.position.size());
         SKERRY_CHECK(body.stress.size() == body.count_cells() && body.strain.size() == body.count_cells());
         points += body.position.size();
         cells += body.count_cells();
@@ -261,6 +262,8 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(b.velocity[n].norm()); }));
     file.array<float>("von_mises", 1, points,
                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(von_mises(b.node_stress[n])); }));
+    file.array<float>("mesh_error", 1, points,
+                      of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(b.node_mesh_error[n]); }));
     file.array<float>("principal_stresses", 3, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) {
                           put_vector(put, principal_stresses(b.node_stress[n]));
                       }));

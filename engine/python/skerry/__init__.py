@@ -7,7 +7,7 @@ from ._materials import KnownFriction, NamedMaterials, materials, mooney_rivlin,
 from ._mesh import Mesh, read_surface
 from ._mesh_report import MeshReport
 from ._problem import Problem, ProblemError, Solution, StepProblem, problem_error, solve
-from ._recorder import Film, Page, Recorder
+from ._recorder import ErrorEstimator, Film, Page, Recorder
 from ._results import (
     OPEN,
     SLIDE,
@@ -154,6 +154,7 @@ __all__ = [
     "ElementKind",
     "Energy",
     "EnergyProbe",
+    "ErrorEstimator",
     "FibreFamily",
     "FibreState",
     "Film",

@@ -1,6 +1,7 @@
 // State of worlds, bodies, colliders and attachments.
 #include "engine/python/read_settings.h"
 #include "engine/python/world/parts.h"
+#include "skerry/estimate.h"
 
 namespace skerry::python {
 
@@ -156,6 +157,8 @@ void bind_fields(WorldClass& type) {
         .def("node_stress_at", &stress_at)
         .def("node_strain", field_of<Mat3>(&World::node_strain))
         .def("plastic_strain", field_of<Real>(&World::plastic_strain))
+        .def("mesh_error",
+             guarded([](World& world, const BodyHandle& body) { return array_of(mesh_error(world, body)); }))
         .def("von_mises_stress", field_of<Real>(&World::von_mises_stress))
         .def("node_von_mises_stress", field_of<Real>(&World::node_von_mises_stress))
         .def("node_principal_stresses", field_of<Vec3>(&World::node_principal_stresses))

@@ -8,8 +8,8 @@
 namespace skerry {
 
 /// Analyses the runs. The first is the scene as it is, and must be ok. Runs with another status or other times than the
-/// first are not evaluated; their reasons become part of the sentences. The name of the scene, the assignments of the
-/// cheapest settings and `stopped` are left empty.
+/// first are not evaluated. The name of the scene, the assignments of the cheapest settings and `stopped` are left
+/// empty.
 StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings);
 
 }  // namespace skerry

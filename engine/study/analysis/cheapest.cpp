@@ -13,6 +13,7 @@ namespace {
 struct Option {
     StudyVariant variant;
     double cost;
+    bool predicted = false;  // true for a mesh that was not run
 };
 
 /// Levels of the mesh that were run, and finer ones whose error and cost are predicted.
@@ -32,7 +33,7 @@ std::vector<Option> mesh_options(const StudyFamily& family) {
     if (options.size() == 1) return options;  // the meshes of the scene have no levels
     const double growth = before == options.end() ? cost_of_level : std::max(1.0, finest.cost / before->cost);
     for (int level = 1; level <= finer_levels; ++level)
-        options.push_back({{.refine = finest.variant.refine + level}, finest.cost * std::pow(growth, level)});
+        options.push_back({{.refine = finest.variant.refine + level}, finest.cost * std::pow(growth, level), true});
     return options;
 }
 
@@ -53,45 +54,63 @@ bool counts(const MeasuredQuantity& quantity) {
            r.scale > 0;
 }
 
+/// Settings with their predicted error, and the quantity that has it.
+struct Candidate {
+    CheapestSettings settings;
+    std::string worst{};
+};
+
+Candidate predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,
+                  const Option& step, const Option& tolerance) {
+    Candidate found;
+    CheapestSettings& settings = found.settings;
+    settings.variant = mesh.variant;
+    settings.variant.step = step.variant.step;
+    settings.variant.tolerance = tolerance.variant.tolerance;
+    settings.cpu_seconds = family.scene->cpu_seconds * mesh.cost * step.cost * tolerance.cost;
+    for (const MeasuredQuantity& quantity : quantities) {
+        if (!counts(quantity)) continue;
+        Real error = error_with(quantity, settings.variant) / quantity.result.scale;
+        if (std::isnan(error)) error = infinity;
+        if (!found.worst.empty() && error <= settings.error) continue;
+        settings.error = error;
+        found.worst = quantity.result.name;
+    }
+    return found;
+}
+
 }  // namespace
 
 std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
                                                   std::span<const MeasuredQuantity> quantities, double wanted) {
     if (std::ranges::none_of(quantities, counts)) return {};
-    CheapestSettings best;
-    const StudyQuantity* limiting = nullptr;
-    const auto consider = [&](const Option& mesh, const Option& step, const Option& tolerance) {
-        CheapestSettings found{.variant = mesh.variant};
-        found.variant.step = step.variant.step;
-        found.variant.tolerance = tolerance.variant.tolerance;
-        found.cpu_seconds = family.scene->cpu_seconds * mesh.cost * step.cost * tolerance.cost;
-        const StudyQuantity* worst = nullptr;
-        for (const MeasuredQuantity& quantity : quantities) {
-            if (!counts(quantity)) continue;
-            const Real error = error_with(quantity, found.variant) / quantity.result.scale;
-            if (!(error <= found.error)) {
-                found.error = std::isnan(error) ? infinity : error;
-                worst = &quantity.result;
-            }
-        }
-        found.reaches = found.error <= wanted;
-        const bool better = !limiting                       ? true
-                            : found.reaches != best.reaches ? found.reaches
-                            : found.reaches                 ? found.cpu_seconds < best.cpu_seconds
-                                                            : found.error < best.error;
-        if (!better) return;
-        best = found;
-        limiting = worst ? worst : &std::ranges::find_if(quantities, counts)->result;
-    };
-    const std::vector<Option> steps = factor_options(family, &StudyVariant::step);
-    const std::vector<Option> tolerances = factor_options(family, &StudyVariant::tolerance);
-    for (const Option& mesh : mesh_options(family))
+    const std::vector<Option> meshes = mesh_options(family), steps = factor_options(family, &StudyVariant::step),
+                              tolerances = factor_options(family, &StudyVariant::tolerance);
+    std::vector<Candidate> candidates;
+    double least_error = infinity, least_measured = infinity;
+    for (const Option& mesh : meshes)
         for (const Option& step : steps)
-            for (const Option& tolerance : tolerances) consider(mesh, step, tolerance);
-    best.sentence = best.reaches ? "the largest error is that of " + limiting->name
-                                 : "no settings reach " + percent(wanted) + ": with the best ones " + limiting->name +
-                                       " still has an error of " + percent(best.error);
-    return best;
+            for (const Option& tolerance : tolerances) {
+                candidates.push_back(predict(family, quantities, mesh, step, tolerance));
+                const double error = candidates.back().settings.error;
+                least_error = std::min(least_error, error);
+                if (!mesh.predicted) least_measured = std::min(least_measured, error);
+            }
+    // If no settings reach the wanted error, those of the runs with nearly the smallest error come nearest.
+    constexpr double nearly = 1.1;
+    const bool reaches = least_error <= wanted;
+    const double target = reaches ? wanted : nearly * least_measured;
+    const Candidate* best = nullptr;
+    for (const Candidate& candidate : candidates)
+        if (candidate.settings.error <= target &&
+            (!best || candidate.settings.cpu_seconds < best->settings.cpu_seconds))
+            best = &candidate;
+    CheapestSettings result = best->settings;
+    result.reaches = reaches;
+    result.sentence = reaches ? "the largest error is that of " + best->worst
+                              : "no settings reach " + percent(wanted) + ", because " + best->worst +
+                                    " still has an error of " + percent(result.error);
+    return result;
 }
 
 }  // namespace skerry

@@ -114,7 +114,7 @@ std::string singular_text(const StudyFamily& family, std::size_t column, StudyFi
         rate[i] = growth > 0 ? std::log2(growth) / (fine.variant.refine - coarse.variant.refine) : 0;
     }
     // An exponent falls to a half per level if the error has order 1, to 0.7 if it has order 1/2.
-    constexpr Real least_rate = 0.2, least_steadiness = 0.75, same_place = 0.25;
+    constexpr Real least_rate = 0.1, least_steadiness = 0.75, same_place = 0.25;
     const StudyColumn& fine = levels.back()->columns[column];
     const StudyColumn& before = levels[levels.size() - 2]->columns[column];
     if (!(rate[1] > least_rate) || !(rate[1] > least_steadiness * rate[0])) return {};
@@ -127,19 +127,11 @@ std::string singular_text(const StudyFamily& family, std::size_t column, StudyFi
            "the load, or measure the stress elsewhere";
 }
 
-struct Part {
-    const char* name;
-    const Convergence* convergence;
-    Real error, order, expected;
-};
-
-std::string irregular_text(const Part& part) {
-    const std::string order = std::isfinite(part.order) ? "order " + short_number(part.order, 2) + ", " : "";
-    const char* what = part.convergence->shape() == ConvergenceShape::oscillating ? "oscillates"
-                       : part.convergence->shape() == ConvergenceShape::fast      ? "falls faster than the theory says"
-                                                                                  : "does not fall as it should";
-    return std::string("the ") + part.name + " error " + what + " (" + order + short_number(part.expected) +
-           " expected), so the value is not extrapolated";
+std::string irregular_text(const char* part, ConvergenceShape shape) {
+    const char* behaviour = shape == ConvergenceShape::oscillating ? "oscillates"
+                            : shape == ConvergenceShape::fast      ? "falls faster than the theory says"
+                                                                   : "does not fall as it should";
+    return std::string("the ") + part + " error " + behaviour + ", so the value is not extrapolated";
 }
 
 /// Sets the errors and the extrapolated value of a quantity from its families of runs.
@@ -197,11 +189,13 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     // An irregular part matters if it is a fifth of the error bar and a tenth of the wanted error.
     constexpr Real share_of_error = 0.2, share_of_wanted = 0.1;
     decide(StudyVerdict::known, "");
-    for (const Part& part : {Part{"mesh", &quantity.mesh, r.mesh, r.mesh_order, r.expected_mesh_order},
-                             Part{"step", &quantity.step, r.step, r.step_order, r.expected_step_order}})
-        if (part.convergence->irregular() && part.error > share_of_error * r.error &&
-            part.error > share_of_wanted * wanted * r.scale)
-            decide(StudyVerdict::irregular, (r.sentence.empty() ? "" : r.sentence + "; ") + irregular_text(part));
+    const auto check = [&](const char* name, const Convergence& part, Real error) {
+        if (part.irregular() && error > share_of_error * r.error && error > share_of_wanted * wanted * r.scale)
+            decide(StudyVerdict::irregular,
+                   (r.sentence.empty() ? "" : r.sentence + "; ") + irregular_text(name, part.shape()));
+    };
+    check("mesh", quantity.mesh, r.mesh);
+    check("step", quantity.step, r.step);
     for (const auto& [variant, value] : quantity.elements)
         if (std::abs(value - r.value) > std::max(r.error, wanted * r.scale) && r.sentence.empty())
             r.sentence = "with " + std::string(name_of(*variant.element)) + " elements the value is " +

@@ -91,19 +91,22 @@ std::string verdicts_text(const StudyResult& result) {
     return text;
 }
 
-/// One line for all runs that were left out for the same reason.
-std::string left_out_text(const StudyResult& result) {
-    std::vector<std::pair<std::string, std::string>> lines;  // reason and settings
+/// One line for all runs that have no result for the same reason.
+std::string missing_text(const StudyResult& result) {
+    std::vector<std::pair<std::string, std::string>> lines;  // status and settings, reason
     for (const StudyRun& run : result.runs) {
-        if (run.status != StudyRunStatus::left_out) continue;
-        const auto same = std::ranges::find(lines, run.message, &std::pair<std::string, std::string>::first);
-        if (same == lines.end())
-            lines.emplace_back(run.message, variant_text(run.variant));
+        if (run.status == StudyRunStatus::ok) continue;
+        const auto same = std::ranges::find(lines, run.message, &std::pair<std::string, std::string>::second);
+        if (same != lines.end())
+            same->first += "; " + variant_text(run.variant);
         else
-            same->second += "; " + variant_text(run.variant);
+            lines.emplace_back(
+                (run.status == StudyRunStatus::left_out ? "left out" : std::string(name_of(run.status))) + ": " +
+                    variant_text(run.variant),
+                run.message);
     }
     std::string text;
-    for (const auto& [reason, settings] : lines) text += "left out: " + settings + ": " + reason + "\n";
+    for (const auto& [runs, reason] : lines) text += runs + ": " + reason + "\n";
     return text;
 }
 
@@ -138,7 +141,7 @@ std::string study_text(const StudyResult& result) {
     if (failed > 0) text += ", " + std::to_string(failed) + " without a result";
     if (left_out > 0) text += ", " + std::to_string(left_out) + " left out";
     text += "\n" + quantities_text(result) + verdicts_text(result);
-    text += left_out_text(result);
+    text += missing_text(result);
     for (std::size_t i = 0; i < std::min(most_remarks, result.sentences.size()); ++i)
         text += result.sentences[i] + "\n";
     if (result.sentences.size() > most_remarks)

@@ -59,23 +59,27 @@ std::string variant_text(const StudyVariant& variant) {
 
 QuantityText quantity_text(const StudyQuantity& q) {
     const bool has_error = std::isfinite(q.error);
-    const auto [factor, prefix] = prefix_of(std::max(std::abs(q.value), has_error ? q.error : 0), q.unit);
-    const auto part = [factor = factor](Real error) {
-        return error > 0 && std::isfinite(error) ? to_digit_of(error / factor, error / factor) : std::string();
+    constexpr Real rounding = 1e-9;  // smaller shares of the scale are shown as zero
+    const Real least = rounding * (q.scale > 0 ? q.scale : 0);
+    const Real size = std::max(std::abs(q.value), has_error ? q.error : 0);
+    const auto [factor, prefix] = prefix_of(size > least ? size : q.scale, q.unit);
+    const auto in_unit = [least, factor = factor](Real value) { return std::abs(value) > least ? value / factor : 0; };
+    const auto part = [&](Real error) {
+        return in_unit(error) > 0 && std::isfinite(error) ? to_digit_of(in_unit(error), in_unit(error)) : std::string();
     };
     QuantityText text;
     text.unit = q.unit == "1" ? "" : prefix + q.unit;
-    text.value = std::isfinite(q.value) ? to_digit_of(q.value / factor, q.error / factor) : "unknown";
-    if (has_error) text.error = q.error > 0 ? part(q.error) : "0";
+    text.value = std::isfinite(q.value) ? to_digit_of(in_unit(q.value), in_unit(q.error)) : "unknown";
+    if (has_error) text.error = in_unit(q.error) > 0 ? part(q.error) : "0";
     text.mesh = part(q.mesh);
     text.step = part(q.step);
     text.contact = part(q.contact);
     text.noise = part(q.noise);
     if (std::isfinite(q.best) && std::isfinite(q.best_error)) {
-        text.best = to_digit_of(q.best / factor, q.best_error / factor);
-        text.best_error = q.best_error > 0 ? part(q.best_error) : "0";
+        text.best = to_digit_of(in_unit(q.best), in_unit(q.best_error));
+        text.best_error = in_unit(q.best_error) > 0 ? part(q.best_error) : "0";
     }
-    if (has_error && q.scale > 0) text.share = short_number(100 * q.error / q.scale, 2) + " %";
+    if (has_error && in_unit(q.error) > 0 && q.scale > 0) text.share = short_number(100 * q.error / q.scale, 2) + " %";
     text.orders = order_text("order", q.mesh_order, q.expected_mesh_order);
     // The order of the steps is of interest if the steps have a good part of the error.
     constexpr Real share = 0.2;

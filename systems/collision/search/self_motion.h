@@ -40,6 +40,9 @@ inline constexpr Real steps_ahead = 4;
 // Pairs of leaves are listed up to this distance, as a multiple of the mean edge length. With a larger number the list
 // of pairs is longer, but valid for more steps.
 inline constexpr Real listed_edges = 1;
+// When some pairs are compared, all pairs are compared that have at most this part of the smallest spare distance left,
+// because a search has a fixed cost.
+inline constexpr Real renewed_part = 0.5;
 
 /// Largest distance between a point in one box and a point in another box.
 inline Real farthest(const Aabb& a, const Aabb& b) {
@@ -63,7 +66,8 @@ struct SelfMotion {
     }
     /// Spare distance max(m, k S, R) of a new comparison of two leaves [m].
     Real margin_of(const SelfSearch& self, Index a, Index b) const {
-        return std::max({skin, steps_ahead * h * farthest(self.speed_box[a], self.speed_box[b]), reach_of(self, a, b)});
+        const Real speed = farthest(self.speed_box[a], self.speed_box[b]);
+        return std::max({skin, steps_ahead * h * speed, reach(h, speed, gravity, scale.contact_distance)});
     }
 };
 
@@ -83,7 +87,7 @@ void resize(const CollisionInputs& inputs, SelfSearch& self);
 /// and velocities. Returns true if the candidate list is complete for the step that begins.
 bool update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearch& self);
 
-/// Lists the pairs of leaves whose features must be compared in this step (LeafPairTable::searched), and sets their new
+/// Lists the pairs of leaves whose features are compared in this step (LeafPairTable::searched), and sets their new
 /// spare distances. If `anew` is true, all close pairs of leaves are compared. Otherwise update_spare must have been
 /// called in this step. The boxes of the tree must be computed from the present positions. Removes the candidates of
 /// the listed pairs, and those of pairs that are no longer close.

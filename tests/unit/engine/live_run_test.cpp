@@ -114,7 +114,7 @@ TEST_CASE("a command is refused with the member at fault", "[unit][live]") {
           "command: number: found -1, expected a whole number of at least 0");
     CHECK(refusal(R"({"do":"move","to":[0,1]})") == "command: to: found [0,1], expected three coordinates [m]");
     CHECK(refusal(R"({"do":"fields","names":["heat"]})") ==
-          "command: names: found [\"heat\"], expected a list of speed, stress and strain");
+          "command: names: found [\"heat\"], expected a list of speed, stress, strain and error");
     const LiveCommand pull = read_command(R"({"do":"pull","body":3,"point":[1,2,3],"to":[4,5,6]})");
     CHECK(pull.action == LiveAction::pull);
     CHECK(pull.body_number == 3);

@@ -198,6 +198,7 @@ const Frame& OutputSample::frame(int number) {
         body.strain = b.strain;
         body.node_stress = means_of_nodes(tetrahedra_, b.stress, b.position.size());
         body.node_strain = means_of_nodes(tetrahedra_, b.strain, b.position.size());
+        for (const Mat3& strain : body.node_strain) body.node_mesh_error.push_back(std::sqrt(strain.norm()));
     }
     frame_.contacts = contacts_;
     add_lines(number);

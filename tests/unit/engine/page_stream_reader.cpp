@@ -47,8 +47,8 @@ private:
 struct Track {
     Codes now, before;
     int frames = 0;
-    std::array<Codes, 3> code;
-    std::array<std::int64_t, 3> exponent{};
+    std::array<Codes, read_field_count> code;
+    std::array<std::int64_t, read_field_count> exponent{};
 };
 
 std::int64_t halved(std::int64_t code, std::int64_t times) {
@@ -76,7 +76,7 @@ ReadShape read_shape(Bytes& in) {
 }
 
 ReadBody read_body(Bytes& in, std::size_t number, const ReadShape& shape, Track& track,
-                   const std::array<std::int64_t, 4>& exponents) {
+                   const std::array<std::int64_t, read_field_count + 1>& exponents) {
     const std::size_t count = shape.node.size();
     ReadBody body{.number = number, .position = std::vector<Vec3>(count), .value = {}};
     Codes next(3 * count);
@@ -100,7 +100,7 @@ ReadBody read_body(Bytes& in, std::size_t number, const ReadShape& shape, Track&
     };
     const std::array<std::int64_t, 3> sums{sum(track.code[0]), sum(track.code[1]), sum(track.code[2])};
     Codes stress_change(count);
-    for (std::size_t field = 0; field < 3; ++field) {
+    for (std::size_t field = 0; field < read_field_count; ++field) {
         std::int64_t rest = 0;
         for (std::size_t i = 0; i < count; ++i) {
             rest += in.change();
@@ -327,8 +327,8 @@ ReadRun read_frames(const std::string& bytes) {
     while (!in.ended()) {
         ReadFrame frame;
         const std::int64_t body_count = in.count(), collider_count = in.count(), contact_count = in.count();
-        std::array<std::int64_t, 4> exponents;
-        for (std::size_t i = 0; i < 4; ++i) {
+        std::array<std::int64_t, read_field_count + 1> exponents;
+        for (std::size_t i = 0; i < exponents.size(); ++i) {
             exponents[i] = in.change();
             frame.top[i] = std::pow(4.0, static_cast<Real>(exponents[i]));
         }
@@ -346,7 +346,7 @@ ReadRun read_frames(const std::string& bytes) {
             frame.colliders.push_back(static_cast<std::size_t>(in.count()));
             for (int k = 0; k < 6; ++k) in.raw<float>();
         }
-        read_contacts(in, static_cast<std::size_t>(contact_count), run, tracks, exponents[3], contacts, frame);
+        read_contacts(in, static_cast<std::size_t>(contact_count), run, tracks, exponents.back(), contacts, frame);
         read_lines(in, run, lines, frame);
         run.frames.push_back(std::move(frame));
     }

@@ -17,10 +17,12 @@ namespace skerry {
 /// Decompresses a zlib stream. Throws std::runtime_error if the stream is invalid or incomplete.
 std::string inflate_all(const std::string& packed);
 
+inline constexpr std::size_t read_field_count = 4;  // number of fields of values at vertices
+
 struct ReadBody {
     std::size_t number;
-    std::vector<Vec3> position;              // by vertex [m]
-    std::array<std::vector<Real>, 3> value;  // speed, stress, strain by vertex
+    std::vector<Vec3> position;                             // by vertex [m]
+    std::array<std::vector<Real>, read_field_count> value;  // speed, stress, strain, mesh error by vertex
 };
 
 struct ReadContact {
@@ -37,7 +39,7 @@ struct ReadLine {
 };
 
 struct ReadFrame {
-    std::array<Real, 4> top;  // maxima of speed, stress, strain, force
+    std::array<Real, read_field_count + 1> top;  // maxima of the fields and of force
     std::vector<ReadBody> bodies;
     std::vector<std::size_t> colliders;
     std::vector<ReadContact> contacts;

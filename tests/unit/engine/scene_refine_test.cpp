@@ -1,5 +1,6 @@
 // Refined and coarser meshes of a scene, and scene files with other values.
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <sstream>
@@ -8,8 +9,6 @@
 #include "engine/scene/scene_plan.h"
 #include "engine/scene/write_scene.h"
 #include "skerry/refine.h"
-#include "skerry/sets.h"
-#include "systems/collision/build_surface.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -90,7 +89,7 @@ std::string scene_text() {
            list_of(nodes_at(box, 1, -0.15)) + R"(}],
         "cavities": [{"name": "hole", "body": "box_1", "pressure": 10}],
         "loads": [{"kind": "force", "body": "box_0", "set": "listed", "force": [1, 2, 3]},
-                  {"kind": "traction", "body": "box_1", "set": "top", "traction": [0, 0, 10]}],
+                  {"kind": "traction", "body": "box_1", "set": "top", "traction": [1, 2, 10]}],
         "fibres": [{"body": "box_0", "set": "core", "direction_array": "grain", "tension": 1}],
         "springs": [{"first": {"body": "box_0", "point": [0.21, 0.1, 0.3]}, "second": {"point": [0, 0, 1]}, "stiffness": 1}],
         "probes": [{"name": "tip", "quantity": "motion", "body": "box_1", "point": [0.21, 0.1, 0.07]},
@@ -110,30 +109,24 @@ Real area_of(const std::vector<Index>& nodes, const Mesh& mesh) {
     return area;
 }
 
-/// Masses, areas, volumes and forces of the scene, which refinement must not change.
+/// Areas, volumes, masses and forces of the scene, which refinement must not change. With more than one refinement
+/// only those that need no world.
 std::vector<std::pair<std::string, Real>> measures(const std::filesystem::path& scene, int refine) {
     const ScenePlan plan = plan_scene(scene, {.assignments = {"bodies[0].mesh.refine=" + std::to_string(refine)}});
     REQUIRE(plan.meshes.size() == 1);  // copies share the mesh
     const Mesh& mesh = plan.meshes[0];
     REQUIRE(mesh.tetrahedra.size() == hollow_box().tetrahedra.size() << 3 * refine);
-    Scene built = build_scene(plan);
-    World& world = built.world;
-    const std::vector<BodyHandle> bodies = world.bodies();
     const BodyPlan& body = plan.bodies[0];
-    std::vector<std::pair<std::string, Real>> all{{"mass", world.mass(bodies[0])}, {"mass", world.mass(bodies[1])}};
+    std::vector<std::pair<std::string, Real>> all;
     for (const PinPlan& pin : body.pins) all.emplace_back("pinned area", area_of(pin.nodes, mesh));
-    for (const SurfacePlan& surface : body.surfaces)
-        all.emplace_back(
-            "surface",
-            area_of(mesh::nodes_of({.nodes = surface.settings.nodes, .faces = surface.settings.faces}, mesh.tetrahedra),
-                    mesh));
+    for (const SurfacePlan& surface : body.surfaces) {
+        const MeshSet set{.nodes = surface.settings.nodes, .faces = surface.settings.faces};
+        all.emplace_back("surface", area_of(mesh::nodes_of(set, mesh.tetrahedra), mesh));
+    }
     all.emplace_back("tied area", area_of(plan.ties[0].settings.nodes, mesh));
     all.emplace_back("contact probe", area_of(plan.probes[0].nodes, mesh));
     all.emplace_back("stress probe", area_of(plan.series[1].nodes, mesh));
     all.emplace_back("loaded set", area_of(body.sets.at("listed").nodes, mesh));
-    all.emplace_back("cavity", Cavities(world).state(Cavities(world).all()[0]).volume);
-    for (const LoadHandle load : Loads(world).all())
-        for (const Real force : Loads(world).state(load).force) all.emplace_back("force", force);
     const FibreSettings& fibres = plan.fibres[0].settings;
     Mesh fibre_part{.nodes = mesh.nodes, .tetrahedra = {}};
     Real tilt = 0;
@@ -143,11 +136,18 @@ std::vector<std::pair<std::string, Real>> measures(const std::filesystem::path& 
     }
     all.emplace_back("volume of fibres", inspect(fibre_part).volume);
     all.emplace_back("direction of fibres", tilt);
-    all.emplace_back("spring", Springs(world).state(Springs(world).all()[0]).length);
     Vec3 tip = Vec3::Zero();
     for (std::size_t a = 0; a < 4; ++a)
         tip += plan.series[0].point->weight[a] * mesh.nodes[static_cast<std::size_t>(plan.series[0].point->node[a])];
     for (const Real coordinate : tip) all.emplace_back("probe", coordinate);
+    if (refine > 1) return all;
+    Scene built = build_scene(plan);
+    World& world = built.world;
+    for (const BodyHandle b : world.bodies()) all.emplace_back("mass", world.mass(b));
+    all.emplace_back("cavity", Cavities(world).state(Cavities(world).all()[0]).volume);
+    for (const LoadHandle load : Loads(world).all())
+        for (const Real force : Loads(world).state(load).force) all.emplace_back("force", force);
+    all.emplace_back("spring", Springs(world).state(Springs(world).all()[0]).length);
     return all;
 }
 
@@ -181,8 +181,7 @@ TEST_CASE("refinement changes no mass, area, volume or force of a scene", "[unit
     const auto given = measures(scene, 0);
     for (const int level : {1, 2}) {
         const auto refined = measures(scene, level);
-        REQUIRE(refined.size() == given.size());
-        for (std::size_t i = 0; i < given.size(); ++i) {
+        for (std::size_t i = 0; i < refined.size(); ++i) {
             INFO(given[i].first << " at level " << level);
             CHECK(given[i].second != 0);
             CHECK(refined[i].second == Approx(given[i].second).epsilon(1e-12));

@@ -12,7 +12,7 @@ const initial_state = {
 // and live runs: show() draws, toggle() plays or pauses, set_rate(rate), colored(color), keys, read(asked).
 function make_controls(page, player) {
   const { find, run, state, scales } = page, root = document.documentElement;
-  const modes = { color: [...field_names, "body"], contacts: ["off", "motion", "region"] };
+  const modes = { color: ["speed", "stress", "strain", "body", "error"], contacts: ["off", "motion", "region"] };
   const switches = ["wire", "flat", "xray", "visual", "colliders", "lines", "labels", "follow", "light", "panel",
     "legend"];
 

@@ -13,9 +13,9 @@
 namespace skerry {
 
 /// Number of fields that the page displays at a vertex. In this order: speed [m/s], von Mises stress [Pa], equivalent
-/// strain.
-inline constexpr std::size_t page_field_count = 3;
-inline constexpr std::size_t stress_field = 1, strain_field = 2;
+/// strain, estimated error of the stress due to the mesh.
+inline constexpr std::size_t page_field_count = 4;
+inline constexpr std::size_t stress_field = 1, strain_field = 2, error_field = 3;
 
 /// A lattice point: its three coordinates relative to the origin of the lattice, in lattice steps.
 using Code3 = std::array<std::int64_t, 3>;

@@ -129,6 +129,11 @@ class Body(TouchingObject):
         """Principal stresses of the nodes, the largest first, shape (n, 3) [Pa]."""
         return self._field(self._core.node_principal_stresses(self._handle))
 
+    def mesh_error(self) -> Reals:
+        """Estimated error of the present stress of each tetrahedron, shape (m,), as a fraction of the mean stress of
+        the body (energy norm). Refine the mesh where it is large. Empty for a rigid body."""
+        return self._field(self._core.mesh_error(self._handle))
+
     @property
     def tetrahedron_steps(self) -> Reals:
         """Step that each tetrahedron allows in the present shape of the body, shape (m,) [s]."""

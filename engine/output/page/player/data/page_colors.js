@@ -48,6 +48,7 @@ const colors = (() => {
     speed: ["#7f93c9", "#5fa3cb", "#45b3b5", "#4cc08f", "#83cf66", "#c3d94c", "#f6e24b"],
     stress: ["#8f8ad6", "#b27cd0", "#cf72b8", "#e56d92", "#f27f67", "#f9a64a", "#f7dd53"],
     strain: ["#8794b8", "#a19fb3", "#bda99f", "#d6ae80", "#eaa05e", "#f4824f", "#f35f55"],
+    error: ["#7aa68c", "#8fae80", "#aab374", "#c8b46a", "#e0a862", "#ee8f67", "#f2707a"],
   };
   const body_colors = ["#6fa8dc", "#e6a15c", "#7fbf7b", "#d98cb3", "#b8a6e0", "#d8c25f", "#6cc5c1", "#e07f72",
     "#a9b665", "#8f9fb8"];

@@ -9,6 +9,10 @@ const fields = {
   strain: {
     name: "Equivalent strain", lower: "equivalent strain", format: (value, error) => text.percent(value, error),
   },
+  error: {
+    name: "Mesh error: refine where it is large", lower: "mesh error",
+    format: (value, error) => text.percent(value, error),
+  },
 };
 const field_names = Object.keys(fields);
 
