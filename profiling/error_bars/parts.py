@@ -14,10 +14,13 @@ class Item:
     name: str
     scene: dict
     probe: str  # PROBE.QUANTITY, a column of the series
-    truth: float  # known value of the column
+    truth: float  # known value of the column; NaN for a quantity that has none
     formula: str
     at: str = "end"  # value at the end of the run; "min" or "max": least or largest value
     doubt: float = 0  # relative error of the known value
+    at_rest: bool = False  # whether the end of the run is a state of rest
+    verdict: str = ""  # the only right verdict of the study, for a quantity without a known value
+    reason: str = ""  # why the error bar misses the error
     meshes: dict = dataclasses.field(default_factory=dict)  # content of mesh files by name
 
 
@@ -40,7 +43,7 @@ def roller(axis, at):
 
 def scene(seconds, bodies, materials, probes, **keys):
     """A scene without gravity unless `keys` has settings."""
-    return {"seconds": seconds, "probe_step": seconds / 200, "materials": materials, "bodies": bodies,
+    return {"seconds": seconds, "frame_step": seconds / 100, "materials": materials, "bodies": bodies,
             "probes": probes, "settings": {"gravity": [0, 0, 0]}, **keys}
 
 
@@ -204,4 +207,14 @@ def tapered_panel(width, thickness, cells):
     """Cook's membrane: 0.44 m high at the left side, from 0.44 to 0.6 m at the right side."""
     mesh = CellMesh()
     mesh.grid(cells, lambda u, v, w: (width * u, 0.44 * u + (0.44 - 0.28 * u) * v, thickness * w), right=[(0, 1)])
+    return mesh.gmsh()
+
+
+def l_bracket(arm, thickness, cells):
+    """An upright arm along z and a horizontal arm along x, with square cross-sections of `cells` cells."""
+    mesh, long = CellMesh(), round((arm - thickness) / thickness * cells)
+    mesh.grid((cells, cells, cells), lambda u, v, w: (thickness * u, thickness * v, thickness * w))
+    span = arm - thickness
+    mesh.grid((long, cells, cells), lambda u, v, w: (thickness + span * u, thickness * v, thickness * w))
+    mesh.grid((cells, cells, long), lambda u, v, w: (thickness * u, thickness * v, thickness + span * w))
     return mesh.gmsh()

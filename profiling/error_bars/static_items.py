@@ -1,7 +1,8 @@
 """Scenes that settle to a state with known values. Damping brings them to rest, as in an ordinary scene."""
+import dataclasses
 import math
 
-from parts import (E, PERIODS, RHO, Item, bar, box, drag, elastic, hollow_octant, hollow_quarter,
+from parts import (E, PERIODS, RHO, Item, bar, box, drag, elastic, hollow_octant, hollow_quarter, l_bracket,
                    quarter_disc, quarter_plate_with_hole, rk4, roller, root, scene, slab, tapered_panel)
 
 FINE = "fine mesh of quadratic elements"
@@ -281,7 +282,20 @@ def hertz_press():
                 "floor.force_z", force, "4/3 E* a^3/R, approach after Tatara 1991", doubt=0.02)
 
 
+def bracket():
+    """An L-shaped bracket. Its largest stress is at the sharp inner corner and grows without limit."""
+    arm, thickness = 0.12, 0.04
+    body = {"name": "bracket", "mesh": {"file": "bracket.msh"}, "material": "rubber", "pin": {"box": slab(2, arm)}}
+    content = scene(2, [body], {"rubber": elastic(0.3, damping=40)},
+                    [{"name": "all", "quantity": "stress", "body": "bracket"}],
+                    loads=[{"kind": "traction", "body": "bracket", "box": slab(0, arm), "traction": [0, 0, -10]}])
+    return Item("bracket", content, "all.largest_von_mises", math.nan, "singular", verdict="singular",
+                meshes={"bracket.msh": l_bracket(arm, thickness, 2)})
+
+
 def items():
-    return [tension(), *hanging(), *cantilevers(), circular_plate(), square_plate(), shaft(), *hollow_sphere(),
-            hollow_cylinder(), cook(), twisted_bar(), punch(), two_layers(), elastica(), plastic_bar(), balloon(),
-            plate_with_hole(), spinning_bar(), block_on_floor(), hertz_press()]
+    """All scenes that settle."""
+    found = [tension(), *hanging(), *cantilevers(), circular_plate(), square_plate(), shaft(), *hollow_sphere(),
+             hollow_cylinder(), cook(), twisted_bar(), punch(), two_layers(), elastica(), plastic_bar(), balloon(),
+             plate_with_hole(), bracket(), spinning_bar(), block_on_floor(), hertz_press()]
+    return [dataclasses.replace(item, at_rest=True) for item in found]
