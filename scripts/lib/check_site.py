@@ -67,7 +67,7 @@ def failed_pages(folder):
             if 'class="math' not in file.read_text("utf-8"):
                 continue
             tab.open(file.as_uri())
-            tab.wait("document.querySelector('.katex, .katex-error')")
+            tab.wait("document.querySelectorAll('.katex, .katex-error').length > 0")
             if errors := tab.evaluate("[...document.querySelectorAll('.katex-error')].map(error => error.title)"):
                 yield f"{file.relative_to(folder)}: {errors}"
         for word, page in SEARCHES.items():
