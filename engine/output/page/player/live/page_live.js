@@ -57,6 +57,7 @@ function make_live(page, has_view) {
   let aim = null;                   // make_aim of the scene
   let has_begun = false;            // since the page is connected
   let refusal = "";                 // problem in place of a begin
+  const pause = page.is_coarse ? 300 : 150;  // ms between updates of the panel, whose texts take long without a GPU
   let refreshed = 0, drawn = 0;
   page.scales = memory.scales;
   state.fields = ["speed"];
@@ -209,7 +210,7 @@ function make_live(page, has_view) {
     pull.tick();
     if (is_new) draw_new();
     else if (page.scene) page.scene.render();
-    if (!is_stale || now - refreshed < 150) return;
+    if (!is_stale || now - refreshed < pause) return;
     is_stale = false;
     refreshed = now;
     refresh();

@@ -17,26 +17,27 @@ function make_plot(host, times, series, format, pick) {
   });
   const canvas = document.createElement("canvas");
   host.append(keys, canvas);
-  const pen = canvas.getContext("2d");
+  const pen = canvas.getContext("2d", { willReadFrequently: true });  // drawn in memory: fast without a GPU, too
   // Names of colours stand for different values in light and dark pages.
   const style = getComputedStyle(document.documentElement);
   const resolved = (color) => (color.startsWith("var(") ? style.getPropertyValue(color.slice(4, -1)).trim() : color);
   const margin = { left: 52, right: 6, top: 6, bottom: 20 };
-  let frame = 0, ends, first, span;
+  let frame = 0, ends, first, span, size = { width: 0, height: 0 };  // size of the canvas [pixels]
   function measure() {
     ends = range_of(series);
     first = times[0] || 0;
     span = Math.max((times[times.length - 1] || 0) - first, 1e-12);
   }
-  const width = () => canvas.clientWidth - margin.left - margin.right;
+  const width = () => size.width - margin.left - margin.right;
   const x_of = (time) => margin.left + (time - first) / span * width();
-  const y_of = (value) => canvas.clientHeight - margin.bottom
-      - (value - ends.low) / (ends.high - ends.low) * (canvas.clientHeight - margin.top - margin.bottom);
+  const y_of = (value) => size.height - margin.bottom
+      - (value - ends.low) / (ends.high - ends.low) * (size.height - margin.top - margin.bottom);
 
   function draw() {
     const ratio = window.devicePixelRatio || 1;
-    canvas.width = Math.round(canvas.clientWidth * ratio);
-    canvas.height = Math.round(canvas.clientHeight * ratio);
+    size = { width: canvas.clientWidth, height: canvas.clientHeight };
+    canvas.width = Math.round(size.width * ratio);
+    canvas.height = Math.round(size.height * ratio);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.font = "11px system-ui, 'DejaVu Sans', sans-serif";
     const ticks = ticks_of(ends).map((value) => ({ value, label: format(value) }));
@@ -61,7 +62,7 @@ function make_plot(host, times, series, format, pick) {
     pen.lineWidth = 1;
     pen.beginPath();
     pen.moveTo(x_of(times[frame]), margin.top);
-    pen.lineTo(x_of(times[frame]), canvas.clientHeight - margin.bottom);
+    pen.lineTo(x_of(times[frame]), size.height - margin.bottom);
     pen.stroke();
     for (const { color, values } of series) {
       if (values[frame] === null) continue;
@@ -81,7 +82,7 @@ function make_plot(host, times, series, format, pick) {
     for (const { value, label } of ticks) {
       const y = Math.round(y_of(value)) + 0.5;
       pen.moveTo(margin.left, y);
-      pen.lineTo(canvas.clientWidth - margin.right, y);
+      pen.lineTo(size.width - margin.right, y);
       pen.fillText(label, margin.left - 7, y);
     }
     pen.stroke();
@@ -92,9 +93,9 @@ function make_plot(host, times, series, format, pick) {
     let free = 0;  // left end of the space for the next label
     for (let i = Math.ceil(first / step); i * step <= first + span * 1.000001; ++i) {
       const label = text.si(i * step, "s"), wide = pen.measureText(label).width;
-      const left = Math.min(x_of(i * step) - wide / 2, canvas.clientWidth - 1 - wide);
+      const left = Math.min(x_of(i * step) - wide / 2, size.width - 1 - wide);
       if (left < free) continue;
-      pen.fillText(label, left, canvas.clientHeight - margin.bottom + 6);
+      pen.fillText(label, left, size.height - margin.bottom + 6);
       free = left + wide + 6;
     }
   }
