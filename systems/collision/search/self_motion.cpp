@@ -133,23 +133,6 @@ void remove_candidates(const SelfSearch& self, Index p, PairTable& pairs, auto&&
     asleep_until.resize(count);
 }
 
-/// True if all spare distances exceed the reach of this step, and the nodes move so nearly at the velocities of the
-/// last update that no features approach by more than the reach. The reach exceeds the approach at constant velocities
-/// by at least reach(h, 0). This test takes less time than the boxes of the motion.
-bool is_as_expected(const SelfMotion& motion, const StepMotion& step, std::span<const LeafPair> pairs,
-                    const SelfSearch& self) {
-    const CollisionInputs& inputs = motion.inputs;
-    Real change_squared = 0;  // greatest difference between two displacements of a node [m^2]
-    for_each_node(inputs, motion.body, [&](Index n) {
-        const Vec3 change = inputs.position[n] - self.origin[n] + step.of(n) - step.h * inputs.velocity[n];
-        change_squared = std::max(change_squared, change.squaredNorm());
-    });
-    const Real most = reach(step.h, Real(0), motion.gravity, motion.scale.contact_distance) / 2;
-    return change_squared < most * most && std::ranges::all_of(pairs, [&](const LeafPair& pair) {
-               return pair.spare > motion.reach_of(self, motion.root() + pair.first, motion.root() + pair.second);
-           });
-}
-
 }  // namespace
 
 void resize(const CollisionInputs& inputs, SelfSearch& self) {
@@ -215,10 +198,19 @@ Real least_spare(std::span<const LeafPair> pairs) {
     return least;
 }
 
+bool moves_as_expected(const SelfMotion& motion, const StepMotion& step) {
+    const CollisionInputs& inputs = motion.inputs;
+    Real change_squared = 0;  // greatest difference from the motion at the present velocities [m^2]
+    for_each_node(inputs, motion.body, [&](Index n) {
+        change_squared = std::max(change_squared, (step.of(n) - step.h * inputs.velocity[n]).squaredNorm());
+    });
+    const Real most = reach(step.h, Real(0), motion.gravity, motion.scale.contact_distance) / 2;
+    return change_squared < most * most;
+}
+
 bool holds_for_motion(const SelfMotion& motion, const StepMotion& step, std::span<const LeafPair> pairs,
                       SelfSearch& self) {
     const CollisionInputs& inputs = motion.inputs;
-    if (is_as_expected(motion, step, pairs, self)) return true;
     fit_motion(inputs, motion.body, self, [&](Index n) { return Vec3(inputs.position[n] + step.of(n)); });
     return std::ranges::all_of(pairs, [&](const LeafPair& pair) {
         return farthest(self.moved_box[motion.root() + pair.first], self.moved_box[motion.root() + pair.second]) <

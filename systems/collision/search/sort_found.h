@@ -16,9 +16,9 @@ namespace skerry {
 /// with each other, a register at a time, takes less time than the mispredicted branches of a usual sort.
 inline constexpr std::size_t counted_at_most = 512;
 
-inline bool feature_before(const FoundCandidate& a, const FoundCandidate& b) {
+inline constexpr auto feature_before = [](const FoundCandidate& a, const FoundCandidate& b) {
     return a.candidate.feature < b.candidate.feature;
-}
+};
 
 namespace sort_found_detail {
 
