@@ -15,9 +15,9 @@ namespace skerry {
 /// its slot has been reused. A handle to a row of another world is recognised as foreign.
 template <class Tag>
 struct Handle {
-    std::uint32_t slot = 0xffffffffu;
-    std::uint32_t generation = 0;
-    std::uint32_t world = 0;  // number of the world; a copy of a world has the number of the original
+    std::uint32_t slot = 0xffffffffu;  // number of the slot; other handles reuse it later
+    std::uint32_t generation = 0;      // changes each time the slot is reused
+    std::uint32_t world = 0;           // number of the world; a copy of a world has the number of the original
 
     auto operator<=>(const Handle&) const = default;
 };
@@ -35,6 +35,7 @@ public:
     /// Number of the world that owns the rows. A copy of a world, and a world that was saved and loaded, has the number
     /// of the original, so that earlier handles stay valid. No step depends on the number.
     std::uint32_t world() const { return world_; }
+    /// Sets the number of the world.
     void set_world(std::uint32_t number) { world_ = number; }
 
     /// Returns a handle for `row`, the new last row. The lowest free slot is used, so that the same sequence of calls

@@ -44,7 +44,7 @@ struct CavitySettings {
     // Faces of World::surface, each given by its three nodes. Default: the walls of all hollows inside of the body, or
     // the whole surface of a body without hollows.
     std::optional<std::vector<std::array<Index, 3>>> faces{};
-    std::variant<TimeTable, GasFilling, LiquidFilling> filling{};
+    std::variant<TimeTable, GasFilling, LiquidFilling> filling{};  // default: the pressure 0
     // Volume of the gas or liquid at the start. Required if the faces do not enclose a volume, as those of a piston:
     // the volume then changes by the volume that the faces sweep in steps. Calls that place nodes, such as
     // World::reset(body), keep this volume and the mass of the gas; World::reset(saved) restores those of the saved
@@ -55,14 +55,14 @@ struct CavitySettings {
 /// Present state of a cavity.
 struct CavityState {
     BodyHandle body{};
-    CavityLaw law = CavityLaw::pressure;
-    Index faces = 0;            // number of faces
-    bool closed = false;        // whether the faces enclose a volume
-    Real pressure = 0;          // above ambient [Pa]
-    Real volume = 0;            // 0 if neither faces nor settings define a volume [m^3]
-    Real mass = 0;              // mass of the gas; 0 for other fillings [kg]
-    Real energy = 0;            // work that the filling would do if it expanded to ambient pressure [J]
-    Vec3 force = Vec3::Zero();  // sum of the pressure forces on the body; zero for closed faces [N]
+    CavityLaw law = CavityLaw::pressure;  // kind of the filling
+    Index faces = 0;                      // number of faces
+    bool closed = false;                  // whether the faces enclose a volume
+    Real pressure = 0;                    // above ambient [Pa]
+    Real volume = 0;                      // 0 if neither faces nor settings define a volume [m^3]
+    Real mass = 0;                        // mass of the gas; 0 for other fillings [kg]
+    Real energy = 0;                      // work that the filling would do if it expanded to ambient pressure [J]
+    Vec3 force = Vec3::Zero();            // sum of the pressure forces on the body; zero for closed faces [N]
 };
 
 /// A pipe between two cavities with the same gas, or between a cavity and a reservoir of this gas. The mass flow is

@@ -23,8 +23,8 @@ struct Twist {
 
 /// Collision groups of an object, and groups that it can touch, both as bits. See BodySettings::collision_group.
 struct CollisionGroups {
-    std::uint32_t group = 0;
-    std::uint32_t mask = 0;
+    std::uint32_t group = 0;  // groups of the object
+    std::uint32_t mask = 0;   // groups that it can touch
 };
 
 /// Friction and restitution of one body or collider. For a body, missing values are those of its material. For a

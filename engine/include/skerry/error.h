@@ -11,9 +11,11 @@ namespace skerry {
 /// The parts of the message of a SceneError. text() joins them to
 /// "FILE: OBJECT: FIELD: found FOUND, expected EXPECTED (HINT)" and leaves out empty parts.
 struct Complaint {
-    std::string file, object, field, found, expected, hint;
+    std::string file, object, field, found, expected, hint;  // parts of the message; each may be empty
 
+    /// Returns the message.
     std::string text() const;
+    /// Throws a SceneError with these parts.
     [[noreturn]] void raise() const;
 };
 

@@ -34,7 +34,7 @@ struct FillSettings {
     // shell are clockwise as seen from its outside. Otherwise it is the boundary of a region with a label of its own.
     bool cavities = false;
     MaterialSettings material{};  // material for which the stable steps of meshes are compared
-    FillLimits limits{};
+    FillLimits limits{};          // time and memory of each mesher
     // Python interpreter with the package wildmeshing. If it is empty: the value of the environment variable
     // SKERRY_FILL_PYTHON, or else python3 in PATH.
     std::string python{};
@@ -42,15 +42,16 @@ struct FillSettings {
 
 /// Largest and mean distance of the points of two surfaces to the nearest point of the other surface [m].
 struct SurfaceDistance {
-    Real from_first = 0, from_second = 0;
-    Real mean_from_first = 0, mean_from_second = 0;
+    Real from_first = 0, from_second = 0;            // largest distance of the points of one surface
+    Real mean_from_first = 0, mean_from_second = 0;  // mean distance
 
+    /// The larger one of both largest distances.
     Real greatest() const { return from_first > from_second ? from_first : from_second; }
 };
 
 /// Result of fill(): the mesh, its distance from the given surface, and notes.
 struct FilledMesh {
-    Mesh mesh;
+    Mesh mesh;                   // tetrahedra, with a label for each region and a set for each shell
     std::string mesher;          // "Netgen", "fTetWild", or "fTetWild and Netgen"
     bool exact = false;          // true if the new surface is SurfaceReport::cleaned, bitwise
     SurfaceReport surface;       // check of the given surface

@@ -70,9 +70,9 @@ struct JointSettings {
     Vec3 axis = {0, 0, 1};                 // axis of a hinge or slider in the world; the length must not be zero
     Real coordinate = 0;                   // coordinate of a hinge or slider in the present poses [rad or m]
     std::optional<Real> lower{}, upper{};  // limits of the joint coordinate, lower <= upper
-    std::optional<JointMotor> motor{};
-    JointPassive passive{};
-    bool bodies_touch = false;  // true: the two bodies may collide while the joint exists
+    std::optional<JointMotor> motor{};     // motor on the axis; default: none
+    JointPassive passive{};                // spring, damper and dry friction on the axis
+    bool bodies_touch = false;             // true: the two bodies may collide while the joint exists
 };
 
 /// State of a joint. Force and moment are those of the last step. They act on the first body and are given in world

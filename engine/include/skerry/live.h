@@ -16,11 +16,11 @@ namespace skerry {
 
 /// Settings of a live view.
 struct LiveSettings {
-    std::string title = "Skerry";
-    int port = 0;         // TCP port from 0 to 65535; 0: a free port
-    Real rate = 1;        // simulated time per wall time, >= 0; 0: as fast as possible
-    bool paused = false;  // true: the view waits for the user to press play
-    std::vector<Slider> sliders{};
+    std::string title = "Skerry";         // title of the page
+    int port = 0;                         // TCP port from 0 to 65535; 0: a free port
+    Real rate = 1;                        // simulated time per wall time, >= 0; 0: as fast as possible
+    bool paused = false;                  // true: the view waits for the user to press play
+    std::vector<Slider> sliders{};        // values that users may change
     std::vector<RecordedProbe> probes{};  // plotted while the world runs
 };
 

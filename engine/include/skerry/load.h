@@ -24,7 +24,7 @@ struct ForceLoad {
     BodyHandle body{};
     std::vector<Index> nodes{};  // numbers in the mesh of the body, at least one, each at most once
     Vec3 force = Vec3::Zero();   // total force on all nodes, in world axes [N]
-    TimeTable scale = 1;
+    TimeTable scale = 1;         // factor over time
 };
 
 /// A traction on some surface faces of a body. Its direction is fixed in the world. The nodes of a face share its force
@@ -33,8 +33,8 @@ struct TractionLoad {
     BodyHandle body{};
     // Faces as World::surface(body) lists them: numbers of nodes in any order; at least one face, each at most once.
     std::vector<std::array<Index, 3>> faces{};
-    Vec3 traction = Vec3::Zero();  // force per area, in world axes [Pa]
-    TimeTable scale = 1;
+    Vec3 traction = Vec3::Zero();         // force per area, in world axes [Pa]
+    TimeTable scale = 1;                  // factor over time
     LoadArea area = LoadArea::reference;  // the area of the faces in the rest shape (dead load), or the present area
 };
 
@@ -42,7 +42,7 @@ struct TractionLoad {
 struct AccelerationField {
     std::optional<BodyHandle> body{};  // if it is not given, the field acts on all bodies
     Vec3 acceleration = Vec3::Zero();  // [m/s^2]
-    TimeTable scale = 1;
+    TimeTable scale = 1;               // factor over time
 };
 
 /// Multiplies the weight, which is the gravity of the settings times the mass. A factor of one body replaces that of
@@ -50,7 +50,7 @@ struct AccelerationField {
 /// loads.
 struct GravityScale {
     std::optional<BodyHandle> body{};  // if it is not given, the factor applies to all bodies
-    TimeTable scale = 1;
+    TimeTable scale = 1;               // factor over time
 };
 
 /// A drag towards the velocity of a wind: the force on a node of mass m and velocity v is m rate (wind - v). A body
@@ -63,6 +63,7 @@ struct DragField {
     TimeTable scale = 1;               // factor of `wind`
 };
 
+/// A load of any kind.
 using AnyLoad = std::variant<ForceLoad, TractionLoad, AccelerationField, GravityScale, DragField>;
 
 /// State of a load at the present time.

@@ -12,26 +12,26 @@ namespace skerry {
 
 /// A number from the literature, with its source.
 struct SourcedValue {
-    Real value;
+    Real value;               // in the unit of the member that has this value
     std::string_view source;  // citation, and the way in which the value was derived from it
 };
 
 /// A material of named_materials(). Its values are typical; measure those that decide your result.
 struct NamedMaterial {
-    std::string_view name;       // for named_material() and for the key "like" of scene files
-    std::string_view title;      // description for people
-    SourcedValue young_modulus;  // at small strain [Pa]
-    SourcedValue poisson_ratio;  // rubber, gels and tissue have 0.49 in place of almost 0.5
-    SourcedValue density;        // [kg/m^3]
-    std::optional<SourcedValue> loss_factor;
+    std::string_view name;                       // for named_material() and for the key "like" of scene files
+    std::string_view title;                      // description for people
+    SourcedValue young_modulus;                  // at small strain [Pa]
+    SourcedValue poisson_ratio;                  // rubber, gels and tissue have 0.49 in place of almost 0.5
+    SourcedValue density;                        // [kg/m^3]
+    std::optional<SourcedValue> loss_factor;     // tangent of the phase angle between stress and strain
     std::optional<SourcedValue> yield_stress{};  // for Plasticity, which named_material() does not set [Pa]
 };
 
 /// Friction coefficients of two clean, dry surfaces.
 struct KnownFriction {
-    std::string_view first, second;  // names of materials
-    Real static_friction, dynamic_friction;
-    std::string_view source;
+    std::string_view first, second;          // names of materials
+    Real static_friction, dynamic_friction;  // coefficients
+    std::string_view source;                 // citation
 };
 
 /// All materials, in groups from soft to stiff.
@@ -46,7 +46,7 @@ MaterialSettings named_material(std::string_view name);
 
 /// A term of the law of Ogden as papers give it: modulus mu_p [Pa] and exponent alpha_p, of the same sign.
 struct OgdenTerm {
-    Real modulus, exponent;
+    Real modulus, exponent;  // mu_p [Pa] and alpha_p
 };
 /// `base` with the law of Ogden (1972, eq. 18), split into changes of shape and volume: Psi = sum_p mu_p / alpha_p
 /// (s_1^ alpha_p + s_2^alpha_p + s_3^alpha_p - 3) + K/2 (J - 1)^2, with the principal stretches s_i divided by J^(1/3),

@@ -20,6 +20,7 @@ struct MeshSet {
     std::vector<std::array<Index, 3>> faces{};  // nodes of faces of tetrahedra
     std::vector<Index> tetrahedra{};            // indices of tetrahedra, ascending
 
+    /// True if the set lists nothing.
     bool empty() const { return nodes.empty() && faces.empty() && tetrahedra.empty(); }
     bool operator==(const MeshSet&) const = default;
 };
@@ -100,8 +101,9 @@ struct TableShape {
     Real height = 0.3;      // total height, including the top [m]
     Real thickness = 0.05;  // thickness of the top [m]
     Real leg = 0.05;        // edge length of the square cross-section of a leg [m]
-    int cells_per_leg = 1;
+    int cells_per_leg = 1;  // number of cells across a leg, >= 1
 };
+/// Returns a mesh of a table.
 Mesh table(const TableShape& shape);
 
 /// Reads a mesh from Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary), VTK XML .vtu
@@ -177,6 +179,7 @@ std::vector<Index> tetrahedra_of(const MeshSet& set, std::span<const std::array<
 
 /// Statistics of a mesh, as printed by `skerry inspect`.
 struct MeshReport {
+    // Numbers of nodes, tetrahedra, triangles of the surface, and parts without a common node.
     std::size_t nodes = 0, tetrahedra = 0, boundary_triangles = 0, components = 0;
     Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // bounding box [m]
     Real volume = 0;                                  // [m^3]

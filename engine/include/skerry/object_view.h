@@ -19,6 +19,7 @@ class World;
 template <class HandleType>
 class ObjectView {
 public:
+    /// `world` must exist as long as the view.
     explicit ObjectView(World& world) : world_(&world) {}
 
     /// Removes an object, and wakes its bodies.

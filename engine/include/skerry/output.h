@@ -29,6 +29,7 @@ namespace skerry {
 /// Throws SceneError if the folder cannot be written.
 class VtkWriter {
 public:
+    /// Writes into `folder`, which is made if necessary. `name`: begin of the names of all files.
     VtkWriter(const std::filesystem::path& folder, const std::string& name);
     ~VtkWriter();
     /// Continues an existing series of `frames` frames, `frame_step` seconds apart. Frames of this series whose files
@@ -82,8 +83,8 @@ struct EnumNames<FilmColor> {
 
 /// Settings of a film in USD format.
 struct FilmSettings {
-    Real frame_step = 1.0 / 60;  // time between two frames, which have consecutive numbers in the film [s]
-    FilmColor color = FilmColor::none;
+    Real frame_step = 1.0 / 60;         // time between two frames, which have consecutive numbers in the film [s]
+    FilmColor color = FilmColor::none;  // none: each body has its own colour
     // Value at the upper end of the colours, which begin at zero, in the unit of the quantity. If empty, 99 % of the
     // values above zero are below it.
     std::optional<Real> color_max{};

@@ -19,7 +19,7 @@ namespace skerry {
 /// vector (u_N + mu |u_T|, u_T) lies in the dual cone, and the two vectors are orthogonal. The matrix W is stored in
 /// compressed rows of 3x3 blocks.
 struct ContactProblem {
-    std::string name;
+    std::string name;               // name in messages and files
     std::vector<Index> row_offset;  // index of the first block of each row; contacts + 1 entries
     std::vector<Index> column;      // column of each block, ascending in each row; the diagonal block is always stored
     std::vector<Mat3> block;        // 3x3 blocks of W, row by row [1/kg]
@@ -36,10 +36,10 @@ struct ContactProblem {
 
 /// Settings of solve_problem().
 struct ProblemSettings {
-    SolverMethod method = SolverMethod::automatic;
-    Friction friction = Friction::cone;
-    Real tolerance = 1e-6;  // upper bound on ProblemSolution::error
-    Index max_iterations = 100000;
+    SolverMethod method = SolverMethod::automatic;  // contact solver
+    Friction friction = Friction::cone;             // friction law
+    Real tolerance = 1e-6;                          // upper bound on ProblemSolution::error
+    Index max_iterations = 100000;                  // largest number of sweeps over a region
     // Relaxation factor of the sweeps, > 0 and < 2. Only methods that sweep use it.
     Real relaxation = 1;
 };
@@ -47,8 +47,8 @@ struct ProblemSettings {
 /// Result of solve_problem(): the impulses, their errors and the effort of the solver.
 struct ProblemSolution {
     std::vector<Vec3> reaction;  // impulses in the contact frames of the problem [N s]
-    Index regions = 0;
-    Index iterations = 0;  // iterations of the region that needed most iterations
+    Index regions = 0;           // number of regions
+    Index iterations = 0;        // iterations of the region that needed most iterations
     // Computing time of the solve, without reading and checking the problem [s]. A short solve is repeated, and the
     // median time is given.
     double seconds = 0;
@@ -98,13 +98,13 @@ ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> 
 
 /// Nodes with a coupled mass matrix: an impulse on one node changes the velocities of all these nodes.
 struct CoupledNodes {
-    std::vector<Index> node;
+    std::vector<Index> node;    // numbers of the nodes
     std::vector<Real> inverse;  // inverse mass matrix, stored row by row, symmetric [1/kg]
 };
 
 /// Rigid motion of a rigid or implicit body, and the nodes of this body that contacts touch.
 struct RigidPoints {
-    std::vector<Index> node;
+    std::vector<Index> node;              // numbers of the nodes
     std::vector<Vec3> arm;                // node position relative to the centre of mass [m]
     Real inverse_mass = 0;                // [1/kg]
     Mat3 inverse_inertia = Mat3::Zero();  // [1/(kg m^2)]
@@ -118,7 +118,7 @@ struct RigidPoints {
 /// Deformation of an implicit body, and the nodes of this body that contacts touch. RigidPoints describes the rigid
 /// motion of the same body.
 struct StrainedPoints {
-    std::vector<Index> node;
+    std::vector<Index> node;  // numbers of the nodes
     // velocity change of a node per impulse on a node, for each pair of nodes, row by row, symmetric [1/kg]
     std::vector<Mat3> response;
 };
@@ -128,9 +128,9 @@ struct StrainedPoints {
 /// inverse_mass[node[a]] r_i to the velocity of node a.
 struct LumpedContacts {
     // The following arrays have one entry per contact.
-    std::vector<std::array<Index, 4>> node;
-    std::vector<std::array<Real, 4>> weight;
-    std::vector<Vec3> normal;  // unit normal of the contact
+    std::vector<std::array<Index, 4>> node;   // nodes of the stencil
+    std::vector<std::array<Real, 4>> weight;  // their signed weights
+    std::vector<Vec3> normal;                 // unit normal of the contact
     // Velocity offset of the contact [m/s]: the sum of the contributions of the gap, of the collider's motion and of
     // the angular velocity of round bodies, minus a friction correction. This correction is half of the change of the
     // sliding velocity due to the forces of the step, perpendicular to the sliding direction.
@@ -140,9 +140,9 @@ struct LumpedContacts {
     std::vector<Real> inverse_mass;  // inverse mass; 0 if no impulse moves the node [1/kg]
     std::vector<Vec3> velocity;      // velocity before the contact impulses [m/s]
     // For the nodes in the following lists inverse_mass must not be 0, but its value is not used.
-    std::vector<CoupledNodes> coupled{};
-    std::vector<RigidPoints> rigid{};
-    std::vector<StrainedPoints> strained{};
+    std::vector<CoupledNodes> coupled{};     // groups of nodes with a common mass matrix
+    std::vector<RigidPoints> rigid{};        // rigid and implicit bodies
+    std::vector<StrainedPoints> strained{};  // deformation of implicit bodies
 };
 
 /// Converts lumped contacts to a problem with general blocks. The frame of a contact is right-handed: its normal and

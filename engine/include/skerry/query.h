@@ -13,12 +13,12 @@ namespace skerry {
 
 /// Selects the surfaces that a query tests.
 struct QueryFilter {
-    bool bodies = true;
-    bool colliders = true;
+    bool bodies = true;     // whether bodies are tested
+    bool colliders = true;  // whether colliders are tested
     // only bodies and colliders whose collision group is in this bit set are tested
     std::uint32_t groups = 0xffffffffu;
-    std::vector<BodyHandle> except_bodies{};
-    std::vector<ColliderHandle> except_colliders{};
+    std::vector<BodyHandle> except_bodies{};         // bodies that are not tested
+    std::vector<ColliderHandle> except_colliders{};  // colliders that are not tested
 };
 
 /// A point on the surface of a body or a collider.

@@ -43,12 +43,12 @@ struct BodyProbe {
 /// collider.
 struct BodyForceProbe {
     BodyHandle body{};
-    std::optional<std::variant<BodyHandle, ColliderHandle>> by{};
+    std::optional<std::variant<BodyHandle, ColliderHandle>> by{};  // the other object; default: all objects
 };
 /// Records the contact forces on a collider, summed over all contacts, or over the contacts with one body.
 struct ColliderForceProbe {
     ColliderHandle collider{};
-    std::optional<BodyHandle> by{};
+    std::optional<BodyHandle> by{};  // the touching body; default: all bodies
 };
 /// Records the force of an attachment on its body.
 struct ReactionProbe {
@@ -81,7 +81,7 @@ struct EnergyProbe {};
 /// numbers within the body.
 struct StressProbe {
     BodyHandle body{};
-    std::vector<Index> nodes{};
+    std::vector<Index> nodes{};  // numbers within the body; empty: all nodes
 };
 /// Records the smallest ratio of present volume to rest volume among the tetrahedra of a body. A negative ratio means
 /// that a tetrahedron is inverted.
@@ -109,15 +109,16 @@ struct RecordedProbe {
     std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, JointProbe, CableProbe,
                  EnergyProbe, StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe, CavityProbe, SpringProbe,
                  TieProbe>
-        what;
+        what;  // the recorded quantity and its object
 };
 
 /// A column of a time series. Its heading is "PROBE.QUANTITY [UNIT]". The first column has the heading "time [s]".
 struct SeriesColumn {
-    std::string probe;  // name of the probe; empty for the time column
-    std::string quantity;
-    std::string unit;  // SI unit; 1 for counts and ratios
+    std::string probe;     // name of the probe; empty for the time column
+    std::string quantity;  // for example force_x
+    std::string unit;      // SI unit; 1 for counts and ratios
 
+    /// Returns "PROBE.QUANTITY [UNIT]".
     std::string heading() const;
 };
 

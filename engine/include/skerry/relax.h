@@ -26,17 +26,17 @@ struct RelaxSettings {
 
 /// Result of relax(): whether an equilibrium was found, and the body that is farthest from it.
 struct RelaxReport {
-    bool converged = false;
-    Real load = 0;  // share of the loads in the last equilibrium that was found: 1 if converged
+    bool converged = false;  // whether all bodies are in equilibrium
+    Real load = 0;           // share of the loads in the last equilibrium that was found: 1 if converged
     // The largest out-of-balance force of a body in the last step, relative to the sum of the magnitudes of the
     // weights, loads and contact forces on its nodes.
     Real residual = 0;
     std::optional<BodyHandle> worst{};  // the body with this force; missing if no body can move
-    std::string worst_name;
-    Real speed = 0;       // largest speed of a node of this body in the last step [m/s]
-    int steps = 0;        // number of steps
-    Real seconds = 0;     // sum of the step lengths [s]
-    std::string message;  // reason why a step could not be completed; otherwise empty
+    std::string worst_name;             // name of this body
+    Real speed = 0;                     // largest speed of a node of this body in the last step [m/s]
+    int steps = 0;                      // number of steps
+    Real seconds = 0;                   // sum of the step lengths [s]
+    std::string message;                // reason why a step could not be completed; otherwise empty
 };
 
 /// Moves the bodies of a world to a static equilibrium by dynamic relaxation with kinetic damping (Day 1965;

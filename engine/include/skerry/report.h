@@ -61,6 +61,7 @@ struct Contact {
     // Number of each node within its body. node[a] belongs to `first` if weight[a] > 0 and to `second` if weight[a] <
     // 0. node[a] is -1 if weight[a] is 0.
     std::array<Index, 4> node{};
+    // Signed weight of each node in the relative velocity of the contact (docs/methods/contact.md 1.1).
     std::array<Real, 4> weight{};
     Vec3 point = Vec3::Zero();   // contact point on the second body or the collider [m]
     Vec3 normal = Vec3::Zero();  // unit normal, pointing towards the first body
@@ -78,7 +79,7 @@ struct Contact {
     // previous step to the middle of this step. It equals the step length if both steps are equally long, with
     // leapfrog, and for contacts of implicit bodies alone.
     Real seconds = 0;
-    ContactMotion motion = ContactMotion::open;
+    ContactMotion motion = ContactMotion::open;  // motion after the step
     Index region = -1;  // region number; -1 if no node of the contact can move, or if its bodies sleep
 
     /// Mean force on the first body during the step [N]. The forces on a sleeping body balance its weight and loads,
@@ -88,10 +89,10 @@ struct Contact {
 
 /// Computing time and number of runs of one stage of the step.
 struct StageReport {
-    std::string name;    // name in the form FOLDER/STAGE
-    double seconds = 0;  // elapsed time of all runs of the stage [s]
-    std::uint64_t runs = 0;
-    std::uint64_t skipped = 0;
+    std::string name;           // name in the form FOLDER/STAGE
+    double seconds = 0;         // elapsed time of all runs of the stage [s]
+    std::uint64_t runs = 0;     // number of times that the stage ran
+    std::uint64_t skipped = 0;  // number of times that the stage had nothing to do
 };
 
 /// Energies of a world.
@@ -114,9 +115,9 @@ public:
     /// first element that turned inside out. Empty if there is neither such a body nor such an element.
     std::string warning() const;
 
-    StepStatus status = StepStatus::ok;
-    BodyHandle body;  // the body that caused the failure, if not ok
-    Index node = -1;  // number of the node within the body, if a node caused the failure
+    StepStatus status = StepStatus::ok;  // kind of the failure
+    BodyHandle body;                     // the body that caused the failure, if not ok
+    Index node = -1;                     // number of the node within the body, if a node caused the failure
     // Number of the element within the body, if an element caused the failure; `node` is one of its corners
     Index element = -1;
     // Measured value that caused the failure. too_fast: norm of the change of the element's deformation gradient.
@@ -147,7 +148,7 @@ public:
     Real held_penetration = 0;
     Index inverted = 0;          // number of elements that turned inside out, including those in discarded attempts
     BodyHandle inverted_body{};  // body of the first element that turned inside out
-    std::string inverted_name;
+    std::string inverted_name;   // name of inverted_body
     // Number of the first element that turned inside out, in the mesh of its body.
     Index inverted_element = -1;
     // Number of crossings (a node through a triangle, or an edge through an edge) that no attempt at the step could
@@ -158,10 +159,10 @@ public:
 
 /// Statistics of the steps whose length one particular cause has limited, since the world was made.
 struct StepLimitReport {
-    StepLimit limit = StepLimit::rest;
-    BodyHandle body{};      // a stale handle if the cause is not a body (for example a setting or a crossing)
-    std::string body_name;  // name of the body when it limited a step
-    std::uint64_t steps = 0;
+    StepLimit limit = StepLimit::rest;  // the cause
+    BodyHandle body{};        // a stale handle if the cause is not a body (for example a setting or a crossing)
+    std::string body_name;    // name of the body when it limited a step
+    std::uint64_t steps = 0;  // number of steps that this cause limited
     std::uint64_t tries = 0;  // number of attempts at a step that were discarded for this cause
     Real seconds = 0;         // sum of the lengths of the steps that this cause limited [s]
 };
@@ -221,10 +222,10 @@ struct DynamicsChoice {
 /// by the user. Surfaces that only touch, or are closer than the contact distance, do not overlap.
 struct StartOverlap {
     BodyHandle first{};
-    BodyHandle second{};                  // the other body; a stale handle if the partner is a collider
-    ColliderHandle collider{};            // the collider; a stale handle if both partners are bodies
-    std::string first_name, second_name;  // names of the two partners when the overlap was found
-    OverlapKind kind = OverlapKind::crossing;
+    BodyHandle second{};                       // the other body; a stale handle if the partner is a collider
+    ColliderHandle collider{};                 // the collider; a stale handle if both partners are bodies
+    std::string first_name, second_name;       // names of the two partners when the overlap was found
+    OverlapKind kind = OverlapKind::crossing;  // position of the surfaces to each other
     // Approximate length of the shortest translation of `first` that ends the overlap [m].
     Real depth = 0;
     Vec3 direction = Vec3::Zero();  // unit direction of the translation of `first` that ends the overlap
@@ -262,7 +263,7 @@ struct SelfCrossing {
 
 /// Sums and maxima over all steps since the world was made.
 struct RunCounters {
-    std::uint64_t steps = 0;
+    std::uint64_t steps = 0;  // number of steps
     // Number of steps with so little work that they run on one thread, because waking other threads would take longer.
     std::uint64_t inline_steps = 0;
     std::uint64_t resting_steps = 0;  // number of steps in which all bodies are asleep and nothing moves; no stage runs
@@ -287,8 +288,9 @@ struct RunCounters {
     std::uint64_t large_strain_steps = 0;
     // Number of Newton steps, and of factorisations of the tangent stiffness, for implicit bodies of large strain.
     std::uint64_t newton_steps = 0, tangent_factors = 0;
+    // Largest number of contacts and of regions in any step, and of contacts in any region.
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
-    Real worst_error = 0;
+    Real worst_error = 0;    // largest relative solver error of a region in any step
     Index worst_region = 0;  // number of contacts of the region with worst_error
     Real dissipated = 0;     // dissipated by contacts, damping, material losses and plastic flow [J]
     Real plastic_work = 0;   // part of `dissipated`: plastic flow in steps [J]
@@ -302,9 +304,9 @@ inline constexpr Real largest_trusted_error = 0.5;
 
 /// The counters of the run, and measures of the present state. Computing these measures takes a pass over all tables.
 struct WorldReport : RunCounters {
-    Real time = 0;           // [s]
-    std::size_t asleep = 0;  // number of bodies that are asleep now
-    std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;
+    Real time = 0;                                                   // [s]
+    std::size_t asleep = 0;                                          // number of bodies that are asleep now
+    std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;  // numbers of objects now
     // Stable step of the stiffest body now [s]. If no body limits the step: the step that advance() takes.
     Real stable_step = 0;
     std::string stable_step_body;  // name of the stiffest body; empty if no body limits the step
@@ -318,7 +320,7 @@ struct WorldReport : RunCounters {
     // Overlaps found by the last check, and bodies that were moved to resolve them. The check runs before the first
     // step after an object was added or moved by the user.
     std::vector<StartOverlap> start_overlaps;
-    std::vector<StartMove> start_moves;
+    std::vector<StartMove> start_moves;  // see start_overlaps
     // Bodies whose surface was found to cross itself, in the order in which they were found.
     std::vector<SelfCrossing> self_crossings;
     std::vector<StepLimitReport> step_limits;  // one entry per cause, sorted by number of steps, the largest first
@@ -336,8 +338,8 @@ struct WorldReport : RunCounters {
     // Largest overlap of surfaces that no contact can move, in any step [m], and the names of the two objects: a body
     // with held nodes, and a collider or another body. The names are empty if one of the objects was removed.
     Real held_penetration = 0;
-    std::string held_body, held_in;
-    Energy energy;
+    std::string held_body, held_in;        // see held_penetration
+    Energy energy;                         // present energies of the world
     Vec3 momentum = Vec3::Zero();          // [kg m/s]
     Vec3 angular_momentum = Vec3::Zero();  // angular momentum about the origin [kg m^2/s]
     // Errors of the balances of energy and momentum: changes that loads, weight, colliders and losses do not explain.
@@ -350,8 +352,8 @@ struct WorldReport : RunCounters {
     Real momentum_error = 0, momentum_error_share = 0;
     // Number of steps since the balances were restarted by the last change from outside, such as an added body.
     std::uint64_t balanced_steps = 0;
-    Real worst_volume_ratio = 1;  // smallest det F (volume ratio) of a tetrahedron now; negative if inverted
-    std::string worst_volume_body;
+    Real worst_volume_ratio = 1;    // smallest det F (volume ratio) of a tetrahedron now; negative if inverted
+    std::string worst_volume_body;  // name of its body
     // Number of the tetrahedron with worst_volume_ratio, in the mesh of its body.
     Index worst_volume_element = -1;
     Index near_inversion = 0;  // number of tetrahedra with det F (volume ratio) below 0.1
@@ -359,14 +361,14 @@ struct WorldReport : RunCounters {
     // each other although none of them is inverted. `folded_body` is the first body with such elements,
     // `folded_element` a tetrahedron of the most compressed element of this body.
     Index folded = 0;
-    std::string folded_body;
-    Index folded_element = -1;
-    Index inverted = 0;  // number of tetrahedra with det F (volume ratio) below 0
+    std::string folded_body;    // see folded
+    Index folded_element = -1;  // see folded
+    Index inverted = 0;         // number of tetrahedra with det F (volume ratio) below 0
     // Rotation of the fastest rotating collider during the longest step allowed now [rad]. Contacts assume that the
     // collider's surface moves straight within a step. The position error is half the square of this angle times the
     // distance from the axis of rotation.
     Real collider_turn = 0;
-    std::string turning_collider;
+    std::string turning_collider;  // name of this collider
 
     /// Describes why positions, forces and energies of the run cannot be trusted: surfaces passed through each other,
     /// or a contact region kept an error above largest_trusted_error. Empty if neither happened.

@@ -57,7 +57,7 @@ struct ValueControl {
 struct RolloutControl {
     std::variant<PoseControl, VelocityControl, MotorSpeedControl, MotorPositionControl, NodeForceControl,
                  BodyForceControl, GravityControl, ValueControl>
-        what;
+        what;  // the controlled object and quantity
     // Values in the order (world, interval, number), or in the order (interval, number) for all worlds. The values are
     // not copied and must exist until rollout() returns.
     std::span<const Real> values;
@@ -65,18 +65,18 @@ struct RolloutControl {
 
 /// Progress of a rollout, for RolloutSettings::go_on.
 struct RolloutProgress {
-    std::size_t worlds_done = 0, worlds = 0;
-    std::size_t intervals_done = 0;  // number of completed intervals of all worlds
+    std::size_t worlds_done = 0, worlds = 0;  // number of completed worlds, and of all worlds
+    std::size_t intervals_done = 0;           // number of completed intervals of all worlds
 };
 
 /// Settings of rollout(): number and duration of the intervals, the controls, and the recorded quantities.
 struct RolloutSettings {
-    std::size_t intervals = 1;  // number of control intervals, >= 1
-    Real dt = 0;                // duration of an interval, > 0 [s]
-    std::vector<RolloutControl> controls{};
-    std::vector<RecordedProbe> record{};  // quantities that are recorded at the end of each interval
-    int threads = 0;                      // number of threads of the rollout; 0: the number of cores
-    bool keep_worlds = false;             // true: the result contains the worlds at the end of the rollout
+    std::size_t intervals = 1;               // number of control intervals, >= 1
+    Real dt = 0;                             // duration of an interval, > 0 [s]
+    std::vector<RolloutControl> controls{};  // quantities that change at the start of each interval
+    std::vector<RecordedProbe> record{};     // quantities that are recorded at the end of each interval
+    int threads = 0;                         // number of threads of the rollout; 0: the number of cores
+    bool keep_worlds = false;                // true: the result contains the worlds at the end of the rollout
     // If given, called with each copy of a world and its number before the first interval, to change materials, poses
     // and the like. The calls come from several threads at once. They must not remove objects that controls or probes
     // name. An exception ends the rollout, which rethrows the exception of the lowest number.
@@ -88,8 +88,8 @@ struct RolloutSettings {
 
 /// Values of one probe, with the columns that a Recorder gives it.
 struct RolloutSeries {
-    std::string name;
-    std::vector<SeriesColumn> columns;
+    std::string name;                   // name of the probe
+    std::vector<SeriesColumn> columns;  // without the time
     std::vector<Real> values;  // in the order (world, interval, column); NaN in intervals that were not completed
 };
 

@@ -16,6 +16,7 @@ namespace skerry {
 
 /// Values with which the caller replaces settings of a scene file.
 struct SceneOverrides {
+    // Values of the members of Settings with the same names.
     std::optional<int> threads{};
     std::optional<Backend> backend{};
     std::optional<ContactRegions> contact_regions{};
@@ -44,15 +45,15 @@ struct Probe {
 struct Scene {
     std::string name;
     std::string description;
-    std::vector<std::string> materials;  // names of the materials, in the order added
-    Real seconds = 2;                    // default duration of a run [s]
-    Real frame_step = 1.0 / 60;          // time between two frames of output [s]
-    World world;
-    std::vector<Probe> probes;
+    std::vector<std::string> materials;   // names of the materials, in the order added
+    Real seconds = 2;                     // default duration of a run [s]
+    Real frame_step = 1.0 / 60;           // time between two frames of output [s]
+    World world;                          // the world at the time 0
+    std::vector<Probe> probes;            // node sets whose contacts the run reports
     std::vector<RecordedProbe> recorded;  // probes for a Recorder, in the order of the file
     // Time between two samples of `probes`, or between two recorded rows of `recorded` [s].
     Real probe_step = 1.0 / 60;
-    std::vector<Slider> sliders{};
+    std::vector<Slider> sliders{};     // values that a user of the live view changes
     std::vector<std::string> notes{};  // corrections and doubts of the reading, for example of filled surfaces
 };
 

@@ -21,6 +21,7 @@ class World;
 /// lists the sets that the body has.
 class Sets {
 public:
+    /// `world` must exist as long as the view.
     explicit Sets(World& world) : world_(&world) {}
 
     std::vector<std::string> names(BodyHandle body) const;  // in alphabetical order
@@ -35,7 +36,9 @@ public:
     /// Numbers of the nodes, faces and tetrahedra of a set, as mesh::nodes_of, faces_of and tetrahedra_of find them.
     /// Throws SceneError if there are none.
     std::vector<Index> nodes(BodyHandle body, const std::string& name) const;
+    /// See nodes().
     std::vector<std::array<Index, 3>> faces(BodyHandle body, const std::string& name) const;
+    /// See nodes().
     std::vector<Index> tetrahedra(BodyHandle body, const std::string& name) const;
 
     /// Labels of the tetrahedra of a body (Mesh::label); empty if its mesh has none.

@@ -21,6 +21,7 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
+// Loss factor of explicit bodies whose material has none, and upper bounds of the properties of a material.
 inline constexpr Real default_loss_factor = 0.05, largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
 
 /// Term of the law `ogden`: share of the shear modulus, from 0 (not used) to 1, and exponent of the stretches.
@@ -59,8 +60,8 @@ struct MaterialSettings {
     std::optional<Real> loss_factor{};  // from 0 to 0.3
     // Damping ratio of volume changes of an element, at the highest natural frequency of this element. Implicit bodies
     // do not use this value.
-    Real bulk_viscosity = 0.06;  // from 0 to 1
-    MaterialModel model = MaterialModel::stable_neo_hookean;
+    Real bulk_viscosity = 0.06;                               // from 0 to 1
+    MaterialModel model = MaterialModel::stable_neo_hookean;  // elastic law
     // Terms of the law `ogden`, whose shares sum to 1. ogden() and mooney_rivlin() of materials.h set them from moduli.
     std::array<StretchTerm, 3> terms{{{1, 2}, {}, {}}};
     // Elastic constants of the law `orthotropic`. This law replaces young_modulus and poisson_ratio by those of an
@@ -108,8 +109,8 @@ struct BodySettings {
     Vec3 angular_velocity = Vec3::Zero();  // angular velocity about the centre of mass [rad/s]
     // contact distance, >= 0; default: 2 % of the mean edge length of the surface [m]
     std::optional<Real> contact_distance{};
-    bool self_contact = false;
-    BodyDynamics dynamics = BodyDynamics::automatic;
+    bool self_contact = false;                        // true: the body may touch itself
+    BodyDynamics dynamics = BodyDynamics::automatic;  // how the body moves
     // Mass properties of a rigid body. If none are given, they follow from the shape and the densities. `mass` alone
     // scales the densities. `center_of_mass` and `inertia` require each other and `mass`. They are in the frame of the
     // mesh, and the inertia tensor is about the centre of mass.
@@ -120,8 +121,8 @@ struct BodySettings {
     // masks contains a group of the other object.
     std::uint32_t collision_group = 1;
     std::uint32_t collision_mask = 0xffffffffu;
-    ElementKind element = ElementKind::smoothed;
-    std::string name{};  // name of the body in messages and output
+    ElementKind element = ElementKind::smoothed;  // finite elements of a deformable body
+    std::string name{};                           // name of the body in messages and output
 };
 
 /// A half-space. The side that the normal points to is free.
@@ -153,6 +154,7 @@ struct Bucket {
     Real height = 1;        // inner [m]
     Real thickness = 0.05;  // thickness of wall and floor [m]
 };
+/// The shape of a collider.
 using Shape = std::variant<Plane, Sphere, Box, Capsule, Cylinder, Bucket, SurfaceMesh>;
 
 /// One keyframe of a scripted motion. Between keyframes the position moves linearly and the rotation is about a fixed
@@ -168,7 +170,7 @@ struct MotionKey {
 struct Motion {
     Vec3 velocity = Vec3::Zero();          // [m/s]
     Vec3 angular_velocity = Vec3::Zero();  // [rad/s]
-    std::vector<MotionKey> keys{};
+    std::vector<MotionKey> keys{};         // poses at ascending times; empty: the velocities apply
 
     /// True if a key has a rotation.
     bool turns() const {
@@ -188,14 +190,14 @@ struct ColliderSettings {
     // Friction coefficient. If given, a contact uses the geometric mean of this value and the value of the body. If not
     // given, it uses the value of the body.
     std::optional<Real> friction{};
-    std::optional<Real> static_friction{}, dynamic_friction{};
+    std::optional<Real> static_friction{}, dynamic_friction{};  // each by default `friction`
     // Coefficient of restitution. If given, a contact uses the larger of this value and the value of the body. If not
     // given, it uses the value of the body.
     std::optional<Real> restitution{};
-    Real contact_distance = 0;          // thickness of the contact shell of a mesh collider [m]
-    std::uint32_t collision_group = 1;  // see BodySettings::collision_group
-    std::uint32_t collision_mask = 0xffffffffu;
-    std::string name{};
+    Real contact_distance = 0;                   // thickness of the contact shell of a mesh collider [m]
+    std::uint32_t collision_group = 1;           // see BodySettings::collision_group
+    std::uint32_t collision_mask = 0xffffffffu;  // see BodySettings::collision_group
+    std::string name{};                          // name of the collider in messages and output
 };
 
 /// Settings of the world and its step. The defaults suit most scenes.

@@ -10,25 +10,26 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
+/// Controls that a slider can have.
 using SliderControl = std::variant<PoseControl, MotorSpeedControl, MotorPositionControl, ValueControl>;
 
 /// An object that a slider moves or drives.
 struct SliderTarget {
-    SliderControl control;
-    Pose start{};  // for a PoseControl: pose of the object at the value 0
+    SliderControl control;  // the driven object
+    Pose start{};           // for a PoseControl: pose of the object at the value 0
 };
 
 /// A value within bounds that drives one object or several equal ones. For a PoseControl the value is a displacement
 /// along `along` or an angle about `about` through the origin of the object. For other controls it is the number that
 /// the control sets. Handles stay valid in clones of the world.
 struct Slider {
-    std::string name;           // unique in its scene
-    std::string unit;           // SI unit of the value; 1 for factors
-    Real low = 0, high = 0;     // bounds of the value, low < high
-    Real fastest = 0;           // greatest rate of change, > 0 [unit per s]
-    Vec3 along = Vec3::Zero();  // unit vector in the world, or zero
-    Vec3 about = Vec3::Zero();  // unit vector in the world, or zero
-    std::vector<SliderTarget> targets{};
+    std::string name;                     // unique in its scene
+    std::string unit;                     // SI unit of the value; 1 for factors
+    Real low = 0, high = 0;               // bounds of the value, low < high
+    Real fastest = 0;                     // greatest rate of change, > 0 [unit per s]
+    Vec3 along = Vec3::Zero();            // unit vector in the world, or zero
+    Vec3 about = Vec3::Zero();            // unit vector in the world, or zero
+    std::vector<SliderTarget> targets{};  // at least one
 };
 
 /// Present value of a slider, by the first of its objects. Throws SceneError if this object was removed.

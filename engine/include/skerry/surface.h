@@ -18,8 +18,8 @@ class World;
 /// Surface properties of contacts between two materials. A property that is not given follows the general rule: the
 /// geometric mean of both friction coefficients, and the larger restitution.
 struct MaterialPair {
-    MaterialHandle first{}, second{};
-    SurfaceSettings surface{};
+    MaterialHandle first{}, second{};  // may be the same
+    SurfaceSettings surface{};         // properties of the pair
 };
 
 /// A view of the pairs of materials of a world. It is valid until the world is moved or destroyed. Functions that
@@ -28,6 +28,7 @@ struct MaterialPair {
 /// order of the two materials of a pair has no effect.
 class SurfacePairs {
 public:
+    /// `world` must exist as long as the view.
     explicit SurfacePairs(World& world) : world_(&world) {}
 
     /// Sets the properties of contacts between two materials, and wakes the bodies that have one of them. A body has
@@ -51,6 +52,7 @@ private:
     World* world_;
 };
 
+/// Refers to a surface set of a body.
 using SurfaceSetHandle = Handle<struct SurfaceSetTag>;
 
 /// A part of the surface of a body with its own friction and restitution. It consists of the given faces with their

@@ -55,7 +55,7 @@ struct EnumNames<SurfaceFaultKind> {
 
 /// All faults of one kind. Triangles have their number in the given surface, counted from 0.
 struct SurfaceFault {
-    SurfaceFaultKind kind{};
+    SurfaceFaultKind kind{};    // the kind
     std::size_t count = 0;      // number of triangles, edges, nodes, pairs of triangles, holes, shells or places
     Index triangle = no_index;  // first triangle with the fault; for holes: a triangle at the longest hole
     Index other = no_index;     // second triangle of the first pair, or first triangle of the other shell
@@ -69,7 +69,7 @@ struct SurfaceFault {
 struct SurfaceShell {
     std::size_t triangles = 0;  // number of triangles
     Index triangle = no_index;  // first triangle, by its number in the given surface
-    bool closed = false;
+    bool closed = false;        // true if no edge is free
     Real volume = 0;  // enclosed volume after turning; negative for a void in another shell; 0 if not closed [m^3]
     // Row in SurfaceReport::shells of the smallest shell around this one; no_index: none. A shell inside another one
     // bounds a void if its volume is negative, else a region of its own.

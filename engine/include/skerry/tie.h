@@ -47,13 +47,13 @@ struct TieState {
     BodyHandle body{};
     std::optional<BodyHandle> to_body{};
     std::optional<ColliderHandle> to_collider{};
-    Real break_force = infinity;  // [N]
-    Vec3 point = Vec3::Zero();    // mean position of the tied nodes, for a ball weighted by their masses [m]
-    Vec3 force = Vec3::Zero();    // [N]
-    Vec3 moment = Vec3::Zero();   // moment about `point` [N m]
-    Real largest_force = 0;       // largest magnitude of `force` in a step since the tie was added [N]
-    Real error = 0;               // largest error of a node that has not broken off [m]
-    std::vector<TiedNode> nodes{};
+    Real break_force = infinity;    // [N]
+    Vec3 point = Vec3::Zero();      // mean position of the tied nodes, for a ball weighted by their masses [m]
+    Vec3 force = Vec3::Zero();      // [N]
+    Vec3 moment = Vec3::Zero();     // moment about `point` [N m]
+    Real largest_force = 0;         // largest magnitude of `force` in a step since the tie was added [N]
+    Real error = 0;                 // largest error of a node that has not broken off [m]
+    std::vector<TiedNode> nodes{};  // state of each node, in the order of the settings
 };
 
 extern template class __attribute__((visibility("default"))) ObjectView<TieHandle>;

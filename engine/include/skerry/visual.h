@@ -15,7 +15,7 @@ class World;
 
 /// Colour, opacity and texture of triangles of a visual surface.
 struct VisualMaterial {
-    std::string name;
+    std::string name;                          // name in the file
     std::array<Real, 3> color{0.8, 0.8, 0.8};  // red, green and blue of sRGB, each in [0, 1]
     Real opacity = 1;                          // in [0, 1]
     std::string texture{};                     // path of the image that replaces the colour; empty: none
@@ -31,7 +31,7 @@ struct VisualSurface {
     // Indices of `texture_points` for the corners of each triangle. A triangle without texture has three times
     // no_index. The list is empty if no triangle has a texture.
     std::vector<std::array<Index, 3>> texture_corners{};
-    std::vector<VisualMaterial> materials{};
+    std::vector<VisualMaterial> materials{};  // materials of the triangles
     // Index in `materials` for each triangle, or no_index. The list is empty if `materials` is empty.
     std::vector<Index> material{};
     std::string file{};  // file from which the surface was read; empty: none
@@ -65,6 +65,7 @@ struct VisualFit {
 /// therefore reproduced exactly, and the surface stays connected (docs/outputs.md).
 class Visuals {
 public:
+    /// `world` must exist as long as the view.
     explicit Visuals(World& world) : world_(&world) {}
 
     /// Gives a body a visual surface, which replaces an earlier one. Throws SceneError that names the field if an index

@@ -32,8 +32,8 @@ struct StepProblem;  // defined in problem.h
 /// Settings of a loaded world or of a clone that do not change its results. For a missing value, the value of the
 /// original world is used. If this build does not have the backend of the original world, `automatic` is used.
 struct LoadSettings {
-    std::optional<Backend> backend{};
-    std::optional<int> threads{};  // >= 0; a world with one thread starts no other thread
+    std::optional<Backend> backend{};  // library that manages the threads
+    std::optional<int> threads{};      // >= 0; a world with one thread starts no other thread
 };
 
 /// A simulation. A world must not be used by several threads at once, not even for reading. Different worlds are
@@ -59,8 +59,9 @@ public:
     /// Reads a world that save() wrote. If a part of the file is not as expected, throws SceneError that names the
     /// file, the data set, and the found and the expected value.
     static World load(const std::filesystem::path& file, const LoadSettings& settings = {});
-    /// Returns the bytes that save() writes, and makes a world from such bytes.
+    /// Returns the bytes that save() writes.
     std::vector<std::byte> to_bytes() const;
+    /// Makes a world from bytes of to_bytes() or of a saved file.
     static World from_bytes(std::span<const std::byte> bytes, const LoadSettings& settings = {});
 
     // Building the world; allowed between calls of advance. In callbacks of advance these functions throw SceneError.
@@ -195,7 +196,7 @@ public:
     MotionKey pose(AttachmentHandle attachment) const;
     /// Shape of a collider in its own frame.
     const Shape& shape(ColliderHandle collider) const;
-    const std::string& name(ColliderHandle collider) const;
+    const std::string& name(ColliderHandle collider) const;       // name in messages and output
     std::vector<AttachmentHandle> attachments() const;            // in the order added
     BodyHandle body(AttachmentHandle attachment) const;           // body of the attached nodes
     std::vector<Index> nodes(AttachmentHandle attachment) const;  // numbers of the attached nodes within the body
@@ -233,10 +234,10 @@ public:
     void set_positions(BodyHandle body, std::span<const Vec3> position);
     /// Sets the velocities of all nodes of a body [m/s].
     void set_velocities(BodyHandle body, std::span<const Vec3> velocity);
-    /// set_pose() moves a body in its present shape to another pose. set_velocity() gives all nodes the velocities of a
-    /// rigid motion about the centre of mass [m/s, rad/s]. For a rigid body, set_positions() accepts only positions
-    /// that are a pose of the body, and set_velocities() takes the nearest rigid motion.
+    /// Moves a body in its present shape to another pose. For a rigid body, set_positions() accepts only positions that
+    /// are a pose of the body, and set_velocities() takes the nearest rigid motion.
     void set_pose(BodyHandle body, const Pose& pose);
+    /// Gives all nodes the velocities of a rigid motion about the centre of mass [m/s, rad/s].
     void set_velocity(BodyHandle body, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
     /// Changes the kind of a body. Handle, name, settings and shape stay, and the body counts as added last. Centre of
     /// mass, momentum and angular momentum stay the same up to rounding. Between explicit and implicit bodies,
