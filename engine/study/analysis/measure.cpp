@@ -151,8 +151,7 @@ void combine(MeasuredQuantity& quantity) {
     }
 }
 
-void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Real agree_until, Real wanted,
-           MeasuredQuantity& quantity) {
+void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Real wanted, MeasuredQuantity& quantity) {
     StudyQuantity& r = quantity.result;
     const auto decide = [&r](StudyVerdict verdict, const std::string& sentence) {
         r.verdict = verdict;
@@ -161,9 +160,8 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     const StudyColumn& scene = family.scene->columns[column];
     if (figure != StudyFigure::agreed && !is_statistic(scene) && quantity.noise > agreement_share * r.scale) {
         r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
-        return decide(StudyVerdict::chaotic, "runs begun 1e-12 m apart agree until " +
-                                                 short_number(std::min(agree_until, family.scene->time.back())) +
-                                                 " s; the value of this one run says nothing about others");
+        return decide(StudyVerdict::chaotic,
+                      "runs begun 1e-12 m apart end with other values, so this one value says nothing about them");
     }
     if (const std::string text = singular_text(family, column, figure); !text.empty()) {
         r.error = r.mesh = infinity;
@@ -311,7 +309,7 @@ MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFig
     StudyQuantity& r = quantity.result;
     r.name = what.probe + "." + what.quantity + ending_of(figure);
     r.agree_until = agree_until;
-    judge(family, column, figure, agree_until, wanted, quantity);
+    judge(family, column, figure, wanted, quantity);
     for (const StudyRun& run : *family.all) {
         const bool comparable = std::ranges::find(family.comparable, &run) != family.comparable.end();
         r.run_values.push_back(comparable ? value_of(run) : no_value);
