@@ -1,11 +1,13 @@
 #include <algorithm>
-#include <cmath>
+#include <functional>
 #include <map>
 
 #include "engine/estimate/contact_area.h"
 #include "engine/estimate/contact_error.h"
 #include "engine/estimate/mesh_error.h"
 #include "engine/estimate/step_error.h"
+#include "engine/world/elements_of_body.h"
+#include "engine/world/kernels.h"
 #include "engine/world/world_state.h"
 #include "skerry/estimate.h"
 
@@ -16,21 +18,31 @@ namespace {
 /// Errors of the meshes of all bodies, each at the sample with the largest elastic energy of the body.
 class MeshErrors {
 public:
-    /// `all`: also samples sleeping bodies that were not sampled before.
-    void sample(const World& world, bool all) {
+    /// Takes a sample of the bodies with the most elastic energy, at least of one. `share`: of all tetrahedra. `last`:
+    /// also samples sleeping bodies that were not sampled before.
+    void sample(const World& world, Real share, bool last) {
         const Model& model = WorldAccess::state_of(world).model;
-        for (const BodyHandle handle : world.bodies()) {
-            const auto body = static_cast<std::size_t>(model.row(handle, "ErrorEstimator::sample"));
-            const bool is_new = !found_.contains(handle);
-            if (model.bodies.asleep[body] != 0 && !(all && is_new)) continue;
-            const MeshError error = measure_mesh_error(world, handle);
-            if (!(error.stored > (is_new ? 0 : found_[handle].stored))) continue;
-            found_[handle] = {.stored = error.stored,
-                              .mesh = error.mesh(),
-                              .deflection = model.yields(body) ? not_estimated : error.deflection(),
-                              .stress = error.stress,
-                              .worst = static_cast<Index>(std::ranges::max_element(error.error) - error.error.begin()),
-                              .time = world.time()};
+        struct Strained {
+            BodyHandle body;
+            std::size_t row;
+            Real energy;
+        };
+        std::vector<Strained> strained;
+        Real left = 0;  // number of tetrahedra that may still be sampled
+        for (const BodyHandle body : world.bodies()) {
+            const auto row = static_cast<std::size_t>(model.row(body, "ErrorEstimator::sample"));
+            left += share * model.bodies.tetrahedron_count[row];
+            if (model.bodies.asleep[row] != 0 && !(last && !found_.contains(body))) continue;
+            const ElementsOfBody elements(model, row);
+            if (elements.blocks.size() > 0)
+                strained.push_back(
+                    {body, row, kernels().elastic_energy(elements.elements, elements.blocks, elements.position)});
+        }
+        std::ranges::stable_sort(strained, std::greater(), &Strained::energy);
+        for (const auto& [body, row, energy] : strained) {
+            left -= model.bodies.tetrahedron_count[row];
+            if (left < 0 && body != strained.front().body) return;
+            add(measure_mesh_error(world, body), body, model.yields(row), world.time());
         }
     }
 
@@ -52,8 +64,34 @@ private:
         Index worst;
         Real time;
     };
+
+    void add(const MeshError& error, BodyHandle body, bool yields, Real time) {
+        if (!(error.stored > (found_.contains(body) ? found_[body].stored : 0))) return;
+        found_[body] = {.stored = error.stored,
+                        .mesh = error.mesh(),
+                        .deflection = yields ? not_estimated : error.deflection(),
+                        .stress = error.stress,
+                        .worst = static_cast<Index>(std::ranges::max_element(error.error) - error.error.begin()),
+                        .time = time};
+    }
+
     std::map<BodyHandle, Found> found_;
 };
+
+/// Computing times in steps of the world, and numbers of steps between samples. All samples together take less than 2 %
+/// of the computing time of the steps.
+struct Pace {
+    std::uint64_t first_mesh;  // steps in which the first sample of all meshes, with its plans, takes 1 %
+    std::uint64_t mesh;        // steps between samples of meshes
+    std::uint64_t motion;      // steps between samples of motion and contacts
+};
+Pace pace_of(const World& world) {
+    constexpr Pace explicit_pace{5000, 2000, 200}, implicit_pace{250, 100, 20};
+    const Model& model = WorldAccess::state_of(world).model;
+    // Worlds without explicit bodies take few, long steps.
+    return model.implicit_nodes.displacement.size() > 0 || model.all_blocks().size() == 0 ? implicit_pace
+                                                                                          : explicit_pace;
+}
 
 }  // namespace
 
@@ -63,8 +101,8 @@ struct ErrorEstimator::Impl {
     ContactError contact;
     ContactArea area;
     std::vector<ErrorEstimate> bodies;
-    // Steps in which something moved, at the last sample of the mesh, and at the last sample of motion and contacts.
-    std::uint64_t steps = 0, motion_steps = 0;
+    // Steps in which something moved: at the start, and at the last samples of meshes and of motion and contacts.
+    std::uint64_t start = 0, mesh_steps = 0, motion_steps = 0;
     bool has_moved = false;  // true after the first sample with motion
 
     /// Steps in which something moved, since the world was made.
@@ -80,10 +118,6 @@ struct ErrorEstimator::Impl {
         contact.sample(world);
         area.sample(world);
     }
-    void sample_mesh(const World& world, bool last) {
-        steps = steps_of(world);
-        mesh.sample(world, last);
-    }
     void list(const World& world) {
         bodies.clear();
         for (const BodyHandle body : world.bodies()) bodies.push_back({.body = body, .name = world.name(body)});
@@ -95,7 +129,7 @@ struct ErrorEstimator::Impl {
 };
 
 ErrorEstimator::ErrorEstimator(const World& world) : impl_(std::make_unique<Impl>()) {
-    impl_->steps = Impl::steps_of(world);
+    impl_->start = impl_->mesh_steps = Impl::steps_of(world);
     impl_->sample_motion(world);
 }
 ErrorEstimator::~ErrorEstimator() = default;
@@ -103,25 +137,19 @@ ErrorEstimator::ErrorEstimator(ErrorEstimator&&) noexcept = default;
 ErrorEstimator& ErrorEstimator::operator=(ErrorEstimator&&) noexcept = default;
 
 void ErrorEstimator::sample(const World& world) {
-    // A sample of the mesh takes the computing time of about ten explicit steps, and that of less than one implicit
-    // step. A sample of motion and contacts takes that of up to one explicit step, and of a fifth of a step of implicit
-    // or rigid bodies alone.
-    constexpr std::uint64_t explicit_steps = 1000, implicit_steps = 50, explicit_motion = 100, other_motion = 20;
-    const Model& model = WorldAccess::state_of(world).model;
-    const bool is_implicit = model.implicit_nodes.displacement.size() > 0;
-    const bool is_explicit = model.elements.first.size() > 0 && !is_implicit;
+    const Pace pace = pace_of(world);
     const std::uint64_t steps = Impl::steps_of(world);
     const bool starts = !impl_->has_moved && steps > impl_->motion_steps;
-    const bool moved = steps - impl_->motion_steps >= (is_explicit ? explicit_motion : other_motion);
-    const bool deformed = steps - impl_->steps >= (is_implicit ? implicit_steps : explicit_steps);
-    if (starts || moved) impl_->sample_motion(world);
-    if (deformed) impl_->sample_mesh(world, false);
-    if (starts || moved || deformed) impl_->list(world);
+    if (starts || steps - impl_->motion_steps >= pace.motion) impl_->sample_motion(world);
+    if (steps - impl_->start < pace.first_mesh || steps - impl_->mesh_steps < pace.mesh) return;
+    impl_->mesh_steps = steps;
+    impl_->mesh.sample(world, 1, false);
 }
 
 void ErrorEstimator::finish(const World& world) {
     impl_->sample_motion(world);
-    impl_->sample_mesh(world, true);
+    const auto steps = static_cast<Real>(Impl::steps_of(world) - impl_->start);
+    impl_->mesh.sample(world, std::min<Real>(1, steps / static_cast<Real>(pace_of(world).first_mesh)), true);
     impl_->list(world);
 }
 

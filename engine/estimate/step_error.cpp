@@ -83,6 +83,12 @@ std::map<BodyHandle, AttachmentHandle> holders_of(const World& world) {
     return holders;
 }
 
+/// Angular momentum of a rigid body about its centre of mass [kg m^2/s].
+Vec3 spin_momentum(const World& world, BodyHandle body) {
+    const Model& model = model_of(world);
+    return model.rigid_bodies.angular_momentum[static_cast<std::size_t>(model.bodies.rigid[row_of(world, body)].begin)];
+}
+
 bool has_restitution(const World& world) {
     return std::ranges::any_of(world.materials(),
                                [&](MaterialHandle m) { return world.material(m).restitution > 0; }) ||
@@ -141,7 +147,9 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
         const Mat3 to_frame = frame.pose.rotation.transpose();
         motion.mesh = {to_frame * (added.position - frame.pose.position), to_frame * added.rotation};
     }
-    if (world.dynamics(body) != BodyDynamics::rigid)
+    if (world.dynamics(body) == BodyDynamics::rigid)
+        motion.start_spin = spin_momentum(world, body);
+    else
         motion.deformation = deformation_of(world, body, frame, motion.mesh);
     return motion;
 }
@@ -155,8 +163,12 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
     const std::span<const Vec3> position = world.positions(body);
     const Real radius = mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - frame.center); });
     const Twist &now = frame.motion, &start = motion.start_velocity;
-    const Real change =
-        (now.velocity - start.velocity).norm() + radius * (now.angular_velocity - start.angular_velocity).norm();
+    // A free rigid body tumbles with errors of second order, so only torques count.
+    const Real turned =
+        motion.deformation.displacement.empty()
+            ? (spin_momentum(world, body) - motion.start_spin).norm() / (world.mass(body) * radius * radius)
+            : (now.angular_velocity - start.angular_velocity).norm();
+    const Real change = (now.velocity - start.velocity).norm() + radius * turned;
     if (motion.acceleration < 0) motion.acceleration = change / interval.seconds;
     // Impacts change the velocity without such an error.
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);

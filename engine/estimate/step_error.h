@@ -30,6 +30,7 @@ private:
         Real start_time = 0;                       // [s]
         std::vector<Vec3> start;                   // node positions at the start [m]
         Twist start_velocity;                      // rigid motion at the start
+        Vec3 start_spin = Vec3::Zero();            // angular momentum of a rigid body at the start [kg m^2/s]
         Vec3 velocity = Vec3::Zero();              // of the centre of mass at the last sample [m/s]
         std::optional<AttachmentHandle> holder{};  // an attachment that holds nodes of the body
         RigidPose mesh{};                          // pose of the rest mesh in the frame of the deformation

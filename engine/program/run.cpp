@@ -4,6 +4,7 @@
 #include <optional>
 #include <ostream>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 

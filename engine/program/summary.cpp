@@ -78,23 +78,27 @@ std::string balance_text(const WorldReport& r) {
                                                 : percent(r.momentum_error_share));
 }
 
-/// Returns the largest estimated errors of all bodies, for example "mesh about 3 % of deflections (body 'arm') and 12 %
-/// of the largest stress (body 'arm'), steps about 0.1 % (body 'ball')".
+/// Returns the largest estimated errors of all bodies, for example "mesh about 3 % of the motion (body 'arm') and about
+/// 12 % of the largest stress (body 'arm'), steps about 0.1 % of the motion (body 'ball')".
 std::string errors_text(const std::vector<ErrorEstimate>& errors) {
     std::string text;
-    const auto add = [&](const char* between, const std::string& before, Real ErrorEstimate::*error,
-                         const std::string& after) {
-        const ErrorEstimate* largest = nullptr;
+    const auto add = [&](const char* between, const std::string& before, const std::string& after, auto&& error_of) {
+        const ErrorEstimate* worst = nullptr;
+        Real largest = 0;
         for (const ErrorEstimate& of : errors)
-            if (std::abs(of.*error) > (largest ? std::abs(largest->*error) : 0)) largest = &of;
-        if (largest)
-            text += (text.empty() ? "" : between) + before + "about " + percent(std::abs(largest->*error)) + after +
-                    " (body '" + largest->name + "')";
+            if (const Real error = std::abs(error_of(of)); error > largest) {
+                worst = &of;
+                largest = error;
+            }
+        if (worst)
+            text += (text.empty() ? "" : between) + before + "about " + percent(largest) + " of " + after + " (body '" +
+                    worst->name + "')";
     };
-    add("", "mesh ", &ErrorEstimate::deflection, " of deflections");
-    add(" and ", text.empty() ? "mesh " : "", &ErrorEstimate::stress, " of the largest stress");
-    add(", ", "steps ", &ErrorEstimate::step, " of the motion");
-    add(", ", "contacts ", &ErrorEstimate::contact, " of the forces");
+    // The mesh changes only the displacements by deformation.
+    add("", "mesh ", "the motion", [](const ErrorEstimate& of) { return of.deflection * of.deformation; });
+    add(" and ", text.empty() ? "mesh " : "", "the largest stress", [](const ErrorEstimate& of) { return of.stress; });
+    add(", ", "steps ", "the motion", [](const ErrorEstimate& of) { return of.step; });
+    add(", ", "contacts ", "the forces", [](const ErrorEstimate& of) { return of.contact; });
     return text;
 }
 

@@ -1,6 +1,6 @@
 // Estimated errors of steps and contacts, compared with the true ones (docs/methods/error_estimates.md).
 #include <catch2/catch.hpp>
-#include <functional>
+#include <cmath>
 #include <string>
 
 #include "engine/estimate/contact_area.h"

@@ -120,7 +120,7 @@ TEST_CASE("the estimated error of the stress of a bent bar is within a fifth of 
     }
 }
 
-TEST_CASE("the estimated error of the deflection of a cantilever is within a factor of 3", "[scene][estimate]") {
+TEST_CASE("the estimated error of the deflection of a cantilever is within a factor of 3.2", "[scene][estimate]") {
     constexpr Real traction = 1;  // Pa
     struct Case {
         ElementKind kind;
@@ -151,7 +151,7 @@ TEST_CASE("the estimated error of the deflection of a cantilever is within a fac
         const Real exact = 1 - deflection / exact_deflection(traction * height * height);
         const Real found = measure_mesh_error(world, body).deflection();
         INFO(name_of(kind) << ", " << layers << " layers: estimated " << found << ", exact " << exact);
-        CHECK(found > exact / 3);
+        CHECK(found > exact / 3.2);
         CHECK(found < 3.2 * exact);
     }
 }

@@ -15,15 +15,15 @@ namespace skerry {
 inline constexpr Real not_estimated = std::numeric_limits<Real>::quiet_NaN();
 
 /// Estimated relative errors of one body. A value is `not_estimated` if the error does not exist for the body, as the
-/// error of the mesh of a rigid body, or if its estimate would have cost too much.
+/// error of the mesh of a rigid body.
 struct ErrorEstimate {
     BodyHandle body{};
     std::string name;  // name of the body
-    // Error of the stress within the elements, due to the mesh: energy norm of the error over the energy norm of the
-    // stress. The samples are averaged, weighted by their elastic energy.
+    // Error of the stress of the tetrahedra, due to the mesh: energy norm of the error over that of the stress. This
+    // and the next two values are those at the sample with the largest elastic energy of the body.
     Real mesh = not_estimated;
     // Error of a displacement under given loads, due to the mesh. Positive if the mesh is too stiff, negative if it is
-    // too soft. Averaged like `mesh`.
+    // too soft. Times `deformation` it is the error of the motion.
     Real deflection = not_estimated;
     Real stress = not_estimated;  // error of the largest von Mises stress at the nodes, due to the mesh
     // Error of the motion, due to the length of the steps: largest distance of the nodes from where infinitely short
@@ -54,13 +54,14 @@ public:
     ErrorEstimator(ErrorEstimator&&) noexcept;
     ErrorEstimator& operator=(ErrorEstimator&&) noexcept;
 
-    /// Call this after every call of advance(). Takes a sample if the steps since the last sample took enough computing
-    /// time; samples take about 1.5 % of the computing time of the steps.
+    /// Call this after every call of advance(). Takes a sample if there were enough steps since the last one; samples
+    /// take less than 2 % of the computing time of the steps.
     void sample(const World& world);
-    /// Takes the last sample, at the end of a run. A body without any sample before is left out if the steps took too
-    /// little computing time.
+    /// Takes the last sample. Call this once, at the end of a run. After less than about 5000 explicit steps, meshes
+    /// are sampled of the bodies with the most elastic energy only, and of at least one, so that short runs are not
+    /// slowed.
     void finish(const World& world);
-    /// Estimates for all bodies of the world at the last sample, in the order of World::bodies().
+    /// Estimates for all bodies of the world at finish(), in the order of World::bodies().
     std::vector<ErrorEstimate> bodies() const;
 
 private:
