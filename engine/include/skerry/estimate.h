@@ -57,7 +57,7 @@ public:
     /// Call this after every call of advance(). Takes a sample if there were enough steps since the last one; samples
     /// take less than 2 % of the computing time of the steps.
     void sample(const World& world);
-    /// Takes the last sample. Call this once, at the end of a run. After less than about 5000 explicit steps, meshes
+    /// Takes the last sample. Call this once, at the end of a run. After less than 8000 explicit steps, meshes
     /// are sampled of the bodies with the most elastic energy only, and of at least one, so that short runs are not
     /// slowed.
     void finish(const World& world);
