@@ -15,7 +15,7 @@ namespace skerry {
 namespace {
 
 /// CPU time so far of this thread, or of the whole process if the world has several threads [s].
-double cpu_time(bool one_thread) {
+double cpu_clock(bool one_thread) {
     timespec now{};
     clock_gettime(one_thread ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
@@ -63,9 +63,9 @@ private:
     }
 
     bool advance(double duration) {
-        const double before = cpu_time(one_thread_);
+        const double before = cpu_clock(one_thread_);
         const StepReport report = scene_.world.advance(duration, [&](const StepReport&) { return !stop_; });
-        run_.cpu_seconds += cpu_time(one_thread_) - before;
+        run_.cpu_seconds += cpu_clock(one_thread_) - before;
         share_ = std::min(1.0, scene_.world.time() / plan_.seconds);
         recorder_.sample();
         if (report.ok()) return true;

@@ -24,7 +24,8 @@ def scene(tmp_path: Path) -> Path:
 def test_a_study_has_error_bars_runs_and_a_cheapest_scene(scene: Path, tmp_path: Path) -> None:
     found = sk.study(scene, error=0.5, threads=1, budget=60, overrides={"seconds": 0.04})
     height = found.quantities["ball.displacement_z_end"]
-    assert height.unit == "m" and height.error > 0 and height.mesh >= 0 and height.verdict == "known"
+    assert height.unit == "m" and height.error > 0 and height.mesh >= 0
+    assert height.verdict in ("known", "irregular")
     assert [run.name for run in found.runs[:4]] == ["scene", "draw_1", "draw_2", "element_smoothed"]
     first = found.runs[0]
     np.testing.assert_allclose(first.time, [0, 0.01, 0.02, 0.03, 0.04])

@@ -99,15 +99,8 @@ class Study:
         self._core = core
         self._scene = scene
         values = json.loads(core.json())
-
-        def missing(key: str) -> float:
-            return math.inf if key == "agree_until" else math.nan
-
         self.quantities: dict[str, StudyQuantity] = {
-            quantity["name"]: StudyQuantity(
-                **{key: missing(key) if value is None else value for key, value in quantity.items()}
-            )
-            for quantity in values["quantities"]
+            quantity["name"]: _quantity(quantity) for quantity in values["quantities"]
         }
         """Numbers with their error bars, by name."""
         self.runs: tuple[StudyRun, ...] = tuple(
@@ -180,8 +173,8 @@ def study(
     names = list(checked(probes, "study: probes", Iterable))
     if isinstance(probes, str) or not all(isinstance(name, str) for name in names):
         raise TypeError(f"study: probes: found {probes!r}, expected a list of names")
-    if not callable(progress):
-        progress = _show if flag(progress, "study: progress") else None
+    called: Callable[[float, int, int], object] | None
+    called = progress if callable(progress) else _show if flag(progress, "study: progress") else None
     core = _core.study(
         file,
         real(error, "study: error"),
@@ -193,15 +186,21 @@ def study(
         "" if folder is None else path_text(folder, "folder"),
         flag(redo, "study: redo"),
         os.environ.get("SKERRY_FILL_PYTHON", sys.executable),
-        progress,
+        called,
     )
-    if progress is _show:
+    if called is _show:
         print("\r100 %", file=sys.stderr)
     return Study(core, file)
 
 
 def _show(share: float, done: int, total: int) -> None:
     print(f"\r{100 * share:.0f} %, {done} of {total} runs", end="", file=sys.stderr, flush=True)
+
+
+def _quantity(values: dict[str, Any]) -> StudyQuantity:
+    """A number that is not finite is None in JSON."""
+    absent = {key: math.inf if key == "agree_until" else math.nan for key, value in values.items() if value is None}
+    return StudyQuantity(**{**values, **absent})
 
 
 def _run(values: dict[str, Any], series: tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]) -> StudyRun:
