@@ -158,7 +158,8 @@ def pendulum():
                      {"position": [-math.sin(start) * length / 2, 0, -math.cos(start) * length / 2],
                       "rotation": {"axis": [0, 1, 0], "radians": start}},
                      seconds, "box.displacement_x", (math.sin(start) - math.sin(angle)) * length / 2,
-                     "equation of the pendulum", joints=[{"kind": "hinge", "first": "box", "point": [0, 0, 0], "axis": [0, 1, 0]}])
+                     "equation of the pendulum",
+                     joints=[{"kind": "hinge", "first": "box", "point": [0, 0, 0], "axis": [0, 1, 0]}])
 
 
 def wing_nut():

@@ -66,8 +66,8 @@ def drag(time):
 
 
 def bar(length, height, cells, load, *, nu=0.3, modulus=E, down=0.0, model="linear", width=None, **keys):
-    """A bar along x, held at x = -length/2. `load` is a shear stress on its end, `down` an acceleration along -z; `keys`
-    are keys of the body."""
+    """A bar along x, held at x = -length/2. `load` is a shear stress on its end, `down` an acceleration along -z.
+    `keys` are keys of the body."""
     time = period(length, height, modulus)
     body = {"name": "bar", "mesh": box((length, width or height, height), cells), "material": "rubber",
             "pin": {"box": slab(0, -length / 2)}, **keys}
