@@ -58,7 +58,7 @@ def hertz_impact():
     return Item("hertz_impact", scene(0.8 * lasts, [ball], {"rubber": elastic(nu, mu=0)},
                                       [{"name": "ball", "quantity": "motion", "body": "ball"}],
                                       colliders=[{"name": "floor", "shape": {"plane": {}}}]),
-                "ball.displacement_z", -deepest, "(15 m v^2/(16 E* sqrt R))^(2/5)", at="min", doubt=0.05)
+                "ball.displacement_z", -deepest, "(15 m v^2/(16 E* sqrt R))^(2/5)", at="min", doubt=0.07)
 
 
 def block(name, push, seconds, probe, truth, formula, doubt=0.0, loads=(), **keys):
