@@ -95,11 +95,9 @@ REASONS = {
     "balloon": "as `hollow_sphere`",
     "bar_step_implicit": "at this time the error of the steps passes through zero",
     "cantilever_release": "the period converges from both sides: coarse meshes are too stiff, finer ones too soft",
-    "two_bars": "the nodes of both ends meet exactly, so that rounding chooses the contacts: named chaotic",
     "hertz_impact": "formula too uncertain for this ratio",
     "incline_stick": "exact on the mesh of the scene, because the block is at rest",
     "toppling": "errors of steps and of the contact distance cancel; the study does not vary the latter",
-    "bar_tension": "rounding",
 }
 
 PAGE = """# Error bars against known solutions
