@@ -20,7 +20,6 @@ class Item:
     doubt: float = 0  # relative error of the known value
     at_rest: bool = False  # whether the end of the run is a state of rest
     verdict: str = ""  # the only right verdict of the study, for a quantity without a known value
-    reason: str = ""  # why the error bar misses the error
     meshes: dict = dataclasses.field(default_factory=dict)  # content of mesh files by name
 
 
@@ -62,13 +61,13 @@ def critical(time):
 
 
 def drag(time):
-    """Critical damping of the motion as a whole. The damping of a material leaves out rigid motion, which rollers allow."""
+    """Critical damping of the whole motion. The damping of a material leaves out rigid motion, which rollers allow."""
     return {"kind": "drag", "rate": critical(time)}
 
 
 def bar(length, height, cells, load, *, nu=0.3, modulus=E, down=0.0, model="linear", width=None, **keys):
-    """A bar along x, held at x = -length/2. `load` is a shear stress on its end, `down` an acceleration along -z; `keys` are
-    keys of the body."""
+    """A bar along x, held at x = -length/2. `load` is a shear stress on its end, `down` an acceleration along -z.
+    `keys` are keys of the body."""
     time = period(length, height, modulus)
     body = {"name": "bar", "mesh": box((length, width or height, height), cells), "material": "rubber",
             "pin": {"box": slab(0, -length / 2)}, **keys}
