@@ -250,9 +250,9 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
         pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
     }
     if (pair.kind == PairKind::self) {
-        renew_leaf_pairs(self_motion_of(inputs, settings, pairs.state[p], pair.first, h,
-                                        std::max(pairs.longer_motion[p], Real(0))),
-                         box, anew, p, pairs);
+        renew_leaf_pairs(
+            self_motion_of(inputs, settings, pairs.state[p], pair.first, h, std::max(pairs.longer_motion[p], Real(0))),
+            box, anew, p, pairs);
         pair.leaf_pairs = pairs.leaf_pairs[p].searched.span();
         pair.margin = least_spare(pairs.leaf_pairs[p].listed.span());
     } else {
