@@ -96,8 +96,8 @@ void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool 
 /// Smallest spare distance [m].
 Real least_spare(std::span<const LeafPair> pairs);
 
-/// True if the nodes move so nearly at their present velocities that the motion of the step is within the reach R of all
-/// pairs of leaves. R exceeds the relative motion at constant velocities by at least the reach at zero speed.
+/// True if the nodes move so nearly at their present velocities that the motion of the step is within the reach R of
+/// all pairs of leaves. R exceeds the relative motion at constant velocities by at least the reach at zero speed.
 bool moves_as_expected(const SelfMotion& motion, const StepMotion& step);
 
 /// True if features that are not in the candidate list of the body with itself cannot meet during the motion of the

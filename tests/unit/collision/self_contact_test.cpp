@@ -205,6 +205,38 @@ TEST_CASE("an end that is thrown through the other end within one step is stoppe
     CHECK(strip.w.crossings.row.size() > 0);
 }
 
+TEST_CASE("an end that is thrown through the other end while the strip turns is noticed", "[unit]") {
+    RollingStrip strip;
+    strip.steer(5.9, 0, 0);
+    strip.w.drift(h);
+    const PairTable& pairs = strip.w.pairs;
+    Real turn = 0;
+    // The strip turns until its list is valid although the travel of the body exceeds the margin of the list.
+    for (int step = 0; step < 100; ++step) {
+        turn += 0.005;
+        strip.steer(5.9, turn, 0);
+        strip.w.find(h);
+        if (step > 2 && !pairs.fresh[0] && !(pairs.travel_bound[0] < pairs.valid_until[0])) break;
+        strip.w.drift(h);
+    }
+    REQUIRE_FALSE(pairs.fresh[0]);
+    REQUIRE_FALSE(pairs.travel_bound[0] < pairs.valid_until[0]);
+    CHECK(strip.crossings() == 0);
+    CHECK_FALSE(strip.w.crossings.beyond_lists);
+
+    const std::vector<Vec3> turning(strip.w.nodes.velocity.begin(), strip.w.nodes.velocity.end());
+    std::vector<Vec3> thrown = turning;
+    for (std::size_t n = 0; n < thrown.size(); ++n)
+        if (strip.w.nodes.rest_position[n].x() > 0.4 * length) thrown[n] += Vec3(-2, 0, 0) / h;
+    std::ranges::copy(thrown, strip.w.nodes.velocity.begin());
+    strip.w.measure_speed();
+    std::ranges::copy(turning, strip.w.nodes.velocity.begin());
+    const std::vector<Vec3> none(thrown.size(), Vec3::Zero());
+    CHECK(find_crossings(*strip.w.executor, strip.w.inputs(), strip.w.settings, h, thrown, none, strip.w.pairs,
+                         strip.w.crossings) > 0);
+    CHECK(strip.w.crossings.beyond_lists);
+}
+
 TEST_CASE("a flat body that is turned does not cross itself, whatever the rounding errors", "[unit]") {
     for (int i = 1; i <= 20; ++i) {
         RollingStrip strip;
