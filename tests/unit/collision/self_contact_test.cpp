@@ -213,7 +213,7 @@ TEST_CASE("an end that is thrown through the other end while the strip turns is 
     Real turn = 0;
     // The strip turns until its list is valid although the travel of the body exceeds the margin of the list.
     for (int step = 0; step < 100; ++step) {
-        turn += 0.005;
+        turn += 0.03;
         strip.steer(5.9, turn, 0);
         strip.w.find(h);
         if (step > 2 && !pairs.fresh[0] && !(pairs.travel_bound[0] < pairs.valid_until[0])) break;
