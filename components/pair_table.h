@@ -49,17 +49,42 @@ struct NearCandidate {
     Real distance;    // distance of the features at the start of the step [m]
 };
 
-/// Positions at the last search of a body for contacts with itself, and bounds on the motion of its parts since then
-/// (self_motion.h). All columns are empty while no body is paired with itself.
+/// Two leaves in the tree of one body, or a leaf paired with itself. `first` and `second` are rows of BvhTable, counted
+/// from the root of the tree.
+struct LeafPair {
+    Index first;
+    Index second;
+    // Features of the two leaves that are not listed as candidates may approach each other by this distance before
+    // they could touch [m].
+    Real spare;
+};
+template <>
+struct MembersOf<LeafPair> {
+    static std::span<const Member> list();
+};
+
+/// Close leaves of a body that is paired with itself.
+struct LeafPairTable {
+    // The first row is the pair of the root with itself. It stands for all pairs of leaves that are not listed. The
+    // other rows are sorted by `first` and `second`. The column is saved with the role `memory`.
+    Column<LeafPair> listed;
+    Column<LeafPair> before;    // working memory: the earlier list
+    Column<LeafPair> searched;  // pairs whose features were compared in the last search; spare: margin of the search
+};
+
+/// Working memory of the searches of bodies for contacts with themselves (self_motion.h). All columns are empty while
+/// no body is paired with itself.
 struct SelfSearch {
-    // For each node at the last search: position, and displacement in one step at the velocity of that time [m]. Both
-    // are saved with the role `memory`.
-    Column<Vec3> origin, origin_step;
-    // Working memory. For each node: displacement since the last search, or at the end of the step, without the common
-    // rotation of the body [m].
+    // For each node: position at the last update of LeafPair::spare [m]. The column is saved with the role `memory`.
+    Column<Vec3> origin;
+    // For each node: displacement since `origin`, or from `origin` to the end of the step, without the common rotation
+    // of the body [m].
     Column<Vec3> moved;
-    // Boxes of `origin`, of `origin_step`, of `moved` [m] and of the velocities of the nodes [m/s], by row of BvhTable.
-    Column<Aabb> origin_box, origin_step_box, moved_box, speed_box;
+    // Boxes of `moved` [m] and of the velocities of the nodes [m/s], by row of BvhTable.
+    Column<Aabb> moved_box, speed_box;
+    // For each row of VertexTable, EdgeTable and TriangleTable: row of BvhTable of the leaf that owns the feature.
+    Column<Index> leaf_of_vertex, leaf_of_edge, leaf_of_triangle;
+    Column<std::uint8_t> is_searched;  // by row of BvhTable: 1 for a leaf in LeafPairTable::searched
 };
 
 /// One row per pair of objects whose bounding boxes were close at the last broad search, in the order of
@@ -97,6 +122,7 @@ struct PairTable {
     std::vector<Column<Candidate>> candidates;  // by pair: candidate list, sorted by `feature`
     // Value of travel_bound below which the candidate cannot touch, by pair and candidate [m].
     std::vector<Column<Real>> asleep_until;
+    std::vector<LeafPairTable> leaf_pairs;  // by pair; empty for two bodies, and for a body and a collider
     // Cost of testing the candidates of a group of pairs, by group; later the sum of the costs of all earlier groups.
     Column<std::int64_t> work;
     // Position at which each block of find_contacts starts, and the end position of the last block.
@@ -220,6 +246,7 @@ struct SearchMemory {
     Column<std::uint8_t> given_away;
     std::vector<Column<Candidate>> candidates;  // temporary storage used while the candidate lists are reordered
     std::vector<Column<Real>> asleep_until;
+    std::vector<LeafPairTable> leaf_pairs;
     Column<Index> expired;    // rows of PairTable whose candidate list is no longer valid
     Column<Index> near, far;  // expired pairs that must be searched, and expired pairs that are known to be far apart
     Column<std::uint8_t> needs_refit;  // by body: 1 if the boxes of its tree must be recomputed

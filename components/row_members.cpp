@@ -94,4 +94,10 @@ std::span<const Member> MembersOf<Candidate>::list() {
     return list;
 }
 
+std::span<const Member> MembersOf<LeafPair>::list() {
+    using S = LeafPair;
+    static const std::array list{Member{"first", &S::first}, Member{"second", &S::second}, Member{"spare", &S::spare}};
+    return list;
+}
+
 }  // namespace skerry

@@ -7,6 +7,7 @@
 - A comment after an empty line or `public:` in a class is the title of the members that follow.
 - The members of one declaration become one declaration each, with the same comment.
 - A function without a comment, below a function of the same name, gets the comment of that function.
+- Destructors, move constructors and defaulted functions without a comment are left out.
 """
 
 import re
@@ -16,6 +17,7 @@ COMMENT = re.compile(r"( *)//(?!/) ?(.*)")
 BEHIND = re.compile(r"(.*[^\s/].*?)\s+//(?!/) (.*)")
 MEMBER = r"\w+(?:\{\}| = [^,;(){}]+(?:\(\))?)?"
 MEMBERS = re.compile(rf"( +)([\w:]+(?:<[^;]*>)?) ({MEMBER}(?:, {MEMBER})+);( +///< .*)?")
+SPECIAL = re.compile(r".*(= default;|~\w+\(\);|\(\w+&&\) noexcept;)")
 FUNCTION = re.compile(r" *(?:[\w:]+(?:<[^;()]*>)?[&*]? )+[&*]?(\w+)\(")
 
 
@@ -62,6 +64,8 @@ def with_shared_docstrings(lines: list[str]) -> list[str]:
         if re.match(r" */// (?!@)", line):
             above.append(line)
             result.append(line)
+            continue
+        if not above and SPECIAL.fullmatch(line):
             continue
         members, function = MEMBERS.fullmatch(line), FUNCTION.match(line) if starts else None
         if members and (above or members[4]):

@@ -1,6 +1,7 @@
 """Links of the repository's Markdown files, and players of recorded runs.
 
 - A link to a folder leads to the page about this folder.
+- The page of the accuracy tests ends with the table of all checks.
 - A docstring that names a page, as in `docs/methods/contact.md`, links to it.
 - Below a block of commands of docs/gallery.md that writes a page, the page plays.
 """
@@ -34,9 +35,11 @@ PAGE = re.compile(r"docs/[\w/-]+\.md")
 
 
 def complete_page(app: Sphinx, page: str, source: list[str]) -> None:
-    """Replaces links to the keys of PAGE_OF, puts the README on the first page, and lists the methods below theirs."""
+    """Replaces links to the keys of PAGE_OF, and adds parts that the files of some pages do not have."""
     if page == "index":
         source[0] = (pathlib.Path(app.srcdir) / "README.md").read_text("utf-8") + source[0]
+    if page == "docs/accuracy":
+        source[0] += "\n## All checks\n\n```{csv-table}\n:file: accuracy/accuracy.csv\n:header-rows: 1\n```\n"
     if page == "docs/methods/README":
         source[0] += "\n```{toctree}\n:glob:\n:hidden:\n\n*\n```\n"
     # The links of a page that scripts/site moves count from its place in the repository.

@@ -1,6 +1,7 @@
 // Replacement for engine/scene if SKERRY_SCENES=OFF.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/scene.h"
+#include "skerry/study.h"
 
 namespace skerry {
 
@@ -13,6 +14,21 @@ Scene load_scene_text(const std::string&, const std::filesystem::path&, const Sc
 }
 std::string scene_schema() {
     refuse_absent("scene_schema", "SKERRY_SCENES");
+}
+StudyResult study(const std::filesystem::path&, const StudySettings&) {
+    refuse_absent("study", "SKERRY_SCENES");
+}
+std::string study_text(const StudyResult&) {
+    refuse_absent("study_text", "SKERRY_SCENES");
+}
+std::string study_page(const StudyResult&) {
+    refuse_absent("study_page", "SKERRY_SCENES");
+}
+std::string study_json(const StudyResult&) {
+    refuse_absent("study_json", "SKERRY_SCENES");
+}
+void write_cheapest_scene(const std::filesystem::path&, const StudyResult&, const std::filesystem::path&) {
+    refuse_absent("write_cheapest_scene", "SKERRY_SCENES");
 }
 
 }  // namespace skerry

@@ -87,7 +87,10 @@ struct Pace {
 };
 Pace pace_of(const World& world) {
     constexpr Pace explicit_pace{8000, 2000, 100}, implicit_pace{250, 100, 20};
-    return WorldAccess::state_of(world).model.implicit_nodes.displacement.size() > 0 ? implicit_pace : explicit_pace;
+    const Model& model = WorldAccess::state_of(world).model;
+    // Worlds without explicit bodies take few, long steps.
+    return model.implicit_nodes.displacement.size() > 0 || model.all_blocks().size() == 0 ? implicit_pace
+                                                                                          : explicit_pace;
 }
 
 }  // namespace

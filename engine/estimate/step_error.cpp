@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -13,11 +14,19 @@
 
 namespace skerry {
 
+/// Frame relative to which a body deforms: that of an attachment that holds the body, else that of its mesh.
+struct StepError::Frame {
+    RigidPose pose;
+    Vec3 center;  // point of the frame that moves with motion.velocity [m]
+    Twist motion;
+};
+
 /// The steps between two samples.
 struct StepError::Interval {
     Real seconds;                   // duration [s]
     Real step;                      // mean length of the steps [s]
-    std::set<BodyHandle> collided;  // bodies that touch another body
+    std::set<BodyHandle> collided;  // bodies that began or ceased to touch another body
+    bool rebounds;                  // true if contacts have restitution
 };
 
 namespace {
@@ -51,36 +60,6 @@ Real size_of(const World& world, BodyHandle body, std::span<const Vec3> of_node)
     return mean_size(world, body, [&](std::size_t n) { return of_node[n]; });
 }
 
-/// Frame relative to which a body deforms: that of an attachment that holds the body, else that of its mesh.
-struct Frame {
-    RigidPose pose;
-    Vec3 center;  // point of the frame that moves with motion.velocity [m]
-    Twist motion;
-};
-
-Frame frame_of(const World& world, BodyHandle body, const std::optional<AttachmentHandle>& holder) {
-    if (!holder)
-        return {pose_of_body(model_of(world), row_of(world, body)), world.center_of_mass(body), world.velocity(body)};
-    const MotionKey pose = world.pose(*holder);
-    return {{pose.position, rotation_matrix(pose.rotation)}, pose.position, world.velocity(*holder)};
-}
-
-/// `mesh`: pose of the rest mesh in the frame.
-Deformation deformation_of(const World& world, BodyHandle body, const Frame& frame, const RigidPose& mesh) {
-    const Model& model = model_of(world);
-    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[row_of(world, body)]);
-    const std::span<const Vec3> position = world.positions(body), velocity = world.velocities(body);
-    const Mat3 to_frame = frame.pose.rotation.transpose();
-    Deformation found;
-    for (std::size_t n = 0; n < rest.size(); ++n) {
-        found.displacement.push_back(to_frame * (position[n] - frame.pose.position) - mesh.position -
-                                     mesh.rotation * rest[n]);
-        found.velocity.push_back(to_frame * (velocity[n] - frame.motion.velocity -
-                                             frame.motion.angular_velocity.cross(position[n] - frame.center)));
-    }
-    return found;
-}
-
 Real elastic_energy_of(const World& world, BodyHandle body) {
     const Model& model = model_of(world);
     const std::size_t row = row_of(world, body);
@@ -104,8 +83,22 @@ std::map<BodyHandle, AttachmentHandle> holders_of(const World& world) {
     return holders;
 }
 
+/// Angular momentum of a rigid body about its centre of mass [kg m^2/s].
+Vec3 spin_momentum(const World& world, BodyHandle body) {
+    const Model& model = model_of(world);
+    return model.rigid_bodies.angular_momentum[static_cast<std::size_t>(model.bodies.rigid[row_of(world, body)].begin)];
+}
+
+bool has_restitution(const World& world) {
+    return std::ranges::any_of(world.materials(),
+                               [&](MaterialHandle m) { return world.material(m).restitution > 0; }) ||
+           std::ranges::any_of(world.colliders(), [&](ColliderHandle c) {
+               return world.surface_properties(c).restitution.value_or(0) > 0;
+           });
+}
+
 /// Bodies that touch another body.
-std::set<BodyHandle> touching(const World& world) {
+std::set<BodyHandle> touching_bodies(const World& world) {
     std::set<BodyHandle> found;
     for (const Contact& contact : world.contacts())
         if (world.alive(contact.first) && world.alive(contact.second) && !contact.impulse.isZero(0))
@@ -114,6 +107,30 @@ std::set<BodyHandle> touching(const World& world) {
 }
 
 }  // namespace
+
+StepError::Frame StepError::frame_of(const World& world, BodyHandle body,
+                                     const std::optional<AttachmentHandle>& holder) {
+    if (!holder)
+        return {pose_of_body(model_of(world), row_of(world, body)), world.center_of_mass(body), world.velocity(body)};
+    const MotionKey pose = world.pose(*holder);
+    return {{pose.position, rotation_matrix(pose.rotation)}, pose.position, world.velocity(*holder)};
+}
+
+StepError::Deformation StepError::deformation_of(const World& world, BodyHandle body, const Frame& frame,
+                                                 const RigidPose& mesh) {
+    const Model& model = model_of(world);
+    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[row_of(world, body)]);
+    const std::span<const Vec3> position = world.positions(body), velocity = world.velocities(body);
+    const Mat3 to_frame = frame.pose.rotation.transpose();
+    Deformation found;
+    for (std::size_t n = 0; n < rest.size(); ++n) {
+        found.displacement.push_back(to_frame * (position[n] - frame.pose.position) - mesh.position -
+                                     mesh.rotation * rest[n]);
+        found.velocity.push_back(to_frame * (velocity[n] - frame.motion.velocity -
+                                             frame.motion.angular_velocity.cross(position[n] - frame.center)));
+    }
+    return found;
+}
 
 StepError::Motion StepError::begin(const World& world, BodyHandle body, std::optional<AttachmentHandle> holder) {
     const std::span<const Vec3> position = world.positions(body);
@@ -124,13 +141,15 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
                   .velocity = world.velocity(body).velocity,
                   .holder = holder,
                   .mesh = {Vec3::Zero(), Mat3::Identity()},
-                  .moved = least_motion * world.mean_edge(body)};
+                  .still = least_motion * world.mean_edge(body)};
     if (holder) {
         const RigidPose& added = model_of(world).body_records[row_of(world, body)].start;
         const Mat3 to_frame = frame.pose.rotation.transpose();
         motion.mesh = {to_frame * (added.position - frame.pose.position), to_frame * added.rotation};
     }
-    if (world.dynamics(body) != BodyDynamics::rigid)
+    if (world.dynamics(body) == BodyDynamics::rigid)
+        motion.start_spin = spin_momentum(world, body);
+    else
         motion.deformation = deformation_of(world, body, frame, motion.mesh);
     return motion;
 }
@@ -138,21 +157,29 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
 /// With symplectic Euler, given velocities count as those of half a step before the start, and rigid motion has an
 /// error of the same size: the change of the velocity since the start times half a step. Collisions of bodies turn an
 /// error of the place into an error of the direction in which a body continues.
-Real StepError::rigid_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {
+Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
+                            Motion& motion) {
     if (motion.holder || world.settings().integrator == Integrator::leapfrog) return 0;
-    const Vec3 center = world.center_of_mass(body);
     const std::span<const Vec3> position = world.positions(body);
-    const Real radius = mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - center); });
-    const Twist now = world.velocity(body), start = motion.start_velocity;
-    const Real change =
-        (now.velocity - start.velocity).norm() + radius * (now.angular_velocity - start.angular_velocity).norm();
+    const Real radius = mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - frame.center); });
+    const Twist &now = frame.motion, &start = motion.start_velocity;
+    // A free rigid body tumbles with errors of second order, so only torques count.
+    const Real turned =
+        motion.deformation.displacement.empty()
+            ? (spin_momentum(world, body) - motion.start_spin).norm() / (world.mass(body) * radius * radius)
+            : (now.angular_velocity - start.angular_velocity).norm();
+    const Real change = (now.velocity - start.velocity).norm() + radius * turned;
     if (motion.acceleration < 0) motion.acceleration = change / interval.seconds;
     // Impacts change the velocity without such an error.
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
     const Real error = std::min(change, accelerated) * motion.first_step / 2 + motion.deflected;
-    if (interval.collided.contains(body)) {
-        const Real kick = (now.velocity - motion.velocity - interval.seconds * world.settings().gravity).norm();
-        motion.deflection_rate += kick * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
+    const Vec3 sudden = now.velocity - motion.velocity;
+    if (interval.collided.contains(body))
+        motion.deflection_rate += sudden.norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
+    // Restitution reverses the velocity at the end of a step instead of at the time of touch.
+    if (interval.rebounds) {
+        const Real kick = (sudden - interval.seconds * world.settings().gravity).norm();
+        motion.deflected += std::min(sudden.norm(), kick) * interval.step / 2;
     }
     motion.velocity = now.velocity;
     motion.deflection_rate = std::min(motion.deflection_rate, now.velocity.norm());
@@ -160,8 +187,9 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Interval&
     return error;
 }
 
-Real StepError::deformation_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {
-    Deformation now = deformation_of(world, body, frame_of(world, body, motion.holder), motion.mesh);
+Real StepError::deformation_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
+                                  Motion& motion) {
+    Deformation now = deformation_of(world, body, frame, motion.mesh);
     std::swap(now, motion.deformation);
     const Deformation &before = now, &after = motion.deformation;
     const Real size = size_of(world, body, after.displacement), speed = size_of(world, body, after.velocity);
@@ -193,8 +221,11 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Int
 
 void StepError::go_on(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {
     if (motion.first_step == 0) motion.first_step = interval.step;
-    Real error = rigid_error(world, body, interval, motion);
-    if (!motion.deformation.displacement.empty()) error += deformation_error(world, body, interval, motion);
+    const Frame frame = frame_of(world, body, motion.holder);
+    Real error = rigid_error(world, body, frame, interval, motion);
+    const bool strained = model_of(world).bodies.unstrained[row_of(world, body)] == 0;
+    if (strained && !motion.deformation.displacement.empty())
+        error += deformation_error(world, body, frame, interval, motion);
     const std::span<const Vec3> position = world.positions(body);
     motion.error = std::max(motion.error, error);
     motion.moved = std::max(motion.moved,
@@ -205,9 +236,11 @@ void StepError::sample(const World& world) {
     const std::uint64_t steps = WorldAccess::state_of(world).record.counters.steps;
     const std::map<BodyHandle, AttachmentHandle> holders = holders_of(world);
     const auto taken = static_cast<Real>(steps - steps_);
-    Interval interval{world.time() - time_, (world.time() - time_) / taken, touching(world)};
-    interval.collided.insert(touching_.begin(), touching_.end());
-    touching_ = touching(world);
+    Interval interval{world.time() - time_, (world.time() - time_) / taken, {}, has_restitution(world)};
+    std::set<BodyHandle> touching = touching_bodies(world);
+    std::ranges::set_symmetric_difference(touching, touching_,
+                                          std::inserter(interval.collided, interval.collided.end()));
+    touching_.swap(touching);
     for (const BodyHandle body : world.bodies()) {
         const auto holder = holders.find(body);
         const auto held = holder == holders.end() ? std::nullopt : std::optional(holder->second);
@@ -226,7 +259,11 @@ void StepError::sample(const World& world) {
 void StepError::add_to(std::vector<ErrorEstimate>& bodies) const {
     for (ErrorEstimate& estimate : bodies) {
         const auto motion = motions_.find(estimate.body);
-        if (motion != motions_.end()) estimate.step = std::min(Real{1}, motion->second.error / motion->second.moved);
+        if (motion == motions_.end()) continue;
+        const Motion& of = motion->second;
+        if (!(of.moved > of.still)) continue;
+        estimate.step = std::min(Real{1}, of.error / of.moved);
+        if (!of.deformation.displacement.empty()) estimate.deformation = std::min(Real{1}, of.largest / of.moved);
     }
 }
 

@@ -12,11 +12,6 @@
 
 namespace skerry {
 
-/// Motion of the nodes of a body relative to the frame in which it deforms, in the axes of this frame.
-struct Deformation {
-    std::vector<Vec3> displacement, velocity;  // by node [m, m/s]
-};
-
 /// Estimates how far the nodes of each body are from the places to which infinitely short steps would move them
 /// (docs/methods/error_estimates.md 2).
 class StepError {
@@ -27,10 +22,15 @@ public:
     void add_to(std::vector<ErrorEstimate>& bodies) const;
 
 private:
+    /// Motion of the nodes of a body relative to the frame in which it deforms, in the axes of this frame.
+    struct Deformation {
+        std::vector<Vec3> displacement, velocity;  // by node [m, m/s]
+    };
     struct Motion {
         Real start_time = 0;                       // [s]
         std::vector<Vec3> start;                   // node positions at the start [m]
         Twist start_velocity;                      // rigid motion at the start
+        Vec3 start_spin = Vec3::Zero();            // angular momentum of a rigid body at the start [kg m^2/s]
         Vec3 velocity = Vec3::Zero();              // of the centre of mass at the last sample [m/s]
         std::optional<AttachmentHandle> holder{};  // an attachment that holds nodes of the body
         RigidPose mesh{};                          // pose of the rest mesh in the frame of the deformation
@@ -46,14 +46,21 @@ private:
         Real lost = 0;     // amplitude of the vibrations that the theta method has damped [m]
         Real largest = 0;  // largest displacement by deformation so far [m]
         Real error = 0;    // largest error so far [m]
-        Real moved = 0;    // largest displacement from the start so far, at least least_motion edges [m]
+        Real moved = 0;    // largest displacement from the start so far [m]
+        Real still = 0;    // largest displacement that counts as rest [m]
     };
     struct Interval;
+    struct Frame;
 
+    static Frame frame_of(const World& world, BodyHandle body, const std::optional<AttachmentHandle>& holder);
+    /// `mesh`: pose of the rest mesh in the frame.
+    static Deformation deformation_of(const World& world, BodyHandle body, const Frame& frame, const RigidPose& mesh);
     static Motion begin(const World& world, BodyHandle body, std::optional<AttachmentHandle> holder);
     static void go_on(const World& world, BodyHandle body, const Interval& interval, Motion& motion);
-    static Real rigid_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion);
-    static Real deformation_error(const World& world, BodyHandle body, const Interval& interval, Motion& motion);
+    static Real rigid_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
+                            Motion& motion);
+    static Real deformation_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
+                                  Motion& motion);
 
     std::map<BodyHandle, Motion> motions_;
     std::set<BodyHandle> touching_;  // bodies that touched another body at the last sample

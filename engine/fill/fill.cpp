@@ -35,11 +35,11 @@ struct GivenSurface {
     std::vector<std::string> names;
     std::vector<Index> first_triangle;
 
-    void add(const SurfaceMesh& part, std::string name) {
+    void add(const SurfaceMesh& part, Real scale, std::string name) {
         const auto first = static_cast<Index>(surface.nodes.size());
         names.push_back(std::move(name));
         first_triangle.push_back(static_cast<Index>(surface.triangles.size()));
-        surface.nodes.insert(surface.nodes.end(), part.nodes.begin(), part.nodes.end());
+        for (const Vec3& node : part.nodes) surface.nodes.emplace_back(scale * node);
         for (const auto& [a, b, c] : part.triangles) surface.triangles.push_back({first + a, first + b, first + c});
     }
     std::size_t file_of(Index triangle) const {
@@ -93,6 +93,7 @@ private:
         const auto require = [&](bool valid, const char* name, Real value, const char* expected) {
             if (!valid) refuse(short_text(value), expected, {}, name);
         };
+        require(settings_.scale > 0, "scale", settings_.scale, "a factor above 0");
         if (settings_.edge) require(*settings_.edge > 0, "edge", *settings_.edge, "a length above 0 m");
         require(settings_.tolerance >= 0 && settings_.tolerance < 1, "tolerance", settings_.tolerance,
                 "a fraction of the diagonal of at least 0 and below 1");
@@ -104,8 +105,9 @@ private:
     void check_edge() const {
         if (!settings_.edge) return;
         const Real edge = *settings_.edge, diagonal = box_diagonal(surface());
-        const std::string size = "the surface measures " + short_text(diagonal) +
-                                 " across its bounding box, in the unit of its file, to which no \"scale\" is applied";
+        const std::string size =
+            "the surface measures " + short_text(diagonal) + " across its bounding box, " +
+            (settings_.scale == 1 ? "in the unit of its file, to which no \"scale\" is applied" : "after scaling");
         if (edge > diagonal) refuse(short_text(edge), "an edge length below the size of the surface", size, "edge");
         const Real least = std::cbrt((result_.surface.upper - result_.surface.lower).prod() / most_cells);
         if (edge < least) refuse(short_text(edge), "an edge length of at least " + short_text(least), size, "edge");
@@ -267,7 +269,7 @@ private:
 FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillSettings& settings,
                 const FillProgress& progress) {
     GivenSurface given;
-    given.add(surface, name);
+    given.add(surface, settings.scale, name);
     return Filling(given, settings, progress).run();
 }
 
@@ -276,7 +278,8 @@ FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSetti
     if (files.empty()) Complaint{{}, "surface", {}, "no files", "at least one file of a surface", {}}.raise();
     GivenSurface given;
     std::vector<std::string> notes;
-    for (const std::filesystem::path& file : files) given.add(read_surface(file.string(), &notes), file.string());
+    for (const std::filesystem::path& file : files)
+        given.add(read_surface(file.string(), &notes), settings.scale, file.string());
     FilledMesh filled = Filling(given, settings, progress).run();
     filled.notes.insert(filled.notes.begin(), notes.begin(), notes.end());
     return filled;

@@ -100,7 +100,8 @@ Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings
     const auto note = [&](const std::string& text) {
         if (notes) notes->push_back(file.string() + ": " + text);
     };
-    const SurfaceMesh surface = read_surface(file.string(), notes);
+    SurfaceMesh surface = read_surface(file.string(), notes);
+    for (Vec3& node : surface.nodes) node *= settings.scale;
     const bool has_netgen = !netgen_program().empty();
     const std::filesystem::path cache = cache_file(file, surface, settings, has_netgen);
     if (std::filesystem::exists(cache)) try {
@@ -114,6 +115,7 @@ Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings
         }
     FillSettings of_cache = settings;
     of_cache.material = {};
+    of_cache.scale = 1;
     FilledMesh filled = fill(surface, file.string(), of_cache, progress);
     std::ranges::for_each(filled.notes, note);
     if (filled.may_change && has_netgen)

@@ -14,6 +14,7 @@
 #include "skerry/output.h"
 #include "skerry/problem.h"
 #include "skerry/scene.h"
+#include "skerry/study.h"
 
 namespace skerry {
 
@@ -120,5 +121,14 @@ struct SweepOptions {
     bool quiet = false;
 };
 int sweep(const SweepOptions& options);
+
+struct StudyOptions {
+    std::filesystem::path scene;
+    StudySettings settings;  // without folder; that is `out`
+    // Folder of the results. If empty, it is out/NAME_study for the scene file NAME.json.
+    std::filesystem::path out;
+    bool quiet = false;
+};
+int study(const StudyOptions& options);
 
 }  // namespace skerry

@@ -37,16 +37,16 @@ std::string text_of(const ErrorEstimate& estimate, const Probed& probed) {
     const Real cells = estimate.contact_radius / estimate.contact_edge;
     const bool stress = probed.stress && cells < resolves_stress, force = probed.force && cells < resolves_impacts;
     if (!stress && !force) return {};
-    std::string text = "the contact areas of body '" + estimate.name + "' have a radius of up to " +
-                       with_unit(estimate.contact_radius, "m") +
-                       " by the theory of Hertz, less than the edges there, " + with_unit(estimate.contact_edge, "m") +
-                       ": ";
+    std::string effect;
     if (force)
-        text += "impacts take about " + short_number(impact_duration * std::sqrt(cells), 2) +
-                " times as long as they should, and their forces are too large accordingly";
-    if (stress) text += force ? ", and the stress there is wrong" : "the stress there is wrong";
-    return text + ": make the cells there " +
-           short_number((stress ? 2 * resolves_stress : resolves_impacts) / cells, 2) + " times smaller";
+        effect = "impacts take about " + short_number(impact_duration * std::sqrt(cells), 2) +
+                 " times as long as they should, and their forces are too large accordingly";
+    if (stress) effect += force ? ", and the stress there is wrong" : "the stress there is wrong";
+    const Real finer = (stress ? 2 * resolves_stress : resolves_impacts) / cells;
+    return "the contact areas of body '" + estimate.name + "' have a radius of up to " +
+           with_unit(estimate.contact_radius, "m") + " by the theory of Hertz, less than the edges there, " +
+           with_unit(estimate.contact_edge, "m") + ": " + effect + ": make the cells there " + short_number(finer, 2) +
+           " times smaller";
 }
 
 }  // namespace

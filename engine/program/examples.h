@@ -13,6 +13,7 @@ inline constexpr const char* general_examples = R"(Examples:
   skerry fill bunny.obj bunny.msh --scene bunny.json       fill a surface with tetrahedra, and write a first scene
   skerry solve problem.hdf5 --tolerance 1e-6               solve a frictional contact problem of FCLIB
   skerry sweep examples/incline_sweep.json                 simulate a scene with many values, one case per core
+  skerry study scenes/gripper.json --error 1%              error bars, and the cheapest settings for errors of 1 %
 
 Exit codes: 0 success, 1 the simulation failed, the solver did not converge, or a run with --strict has warnings,
 2 invalid input, 3 an output of a run could not be written, 4 the results of a run cannot be trusted, because surfaces
@@ -52,7 +53,7 @@ gravity off, and move the sliders of the scene. Plots show its probes. The serve
 contains a secret token: who knows it can control the run, so do not pass it on. On a machine with other users give
 --no-open, because they can read the arguments with which the browser is opened.
 At the end the program prints the simulated time, the speed, and the numbers of frames sent and dropped.
-Exit codes: 0 ended by Ctrl-C or after --seconds, 2 invalid input or a port in use.)";
+Exit codes: 0 ended by Ctrl-C, by SIGTERM or after --seconds, 2 invalid input or a port in use.)";
 
 inline constexpr const char* inspect_examples = R"(Examples:
   skerry inspect bunny.msh                                 sizes, quality, problems, tetrahedra that limit the step
@@ -71,6 +72,7 @@ inline constexpr const char* fill_examples = R"(Examples:
   skerry fill bunny.obj bunny.msh                          keep the triangles of the surface if it has no faults
   skerry fill bunny.obj bunny.msh --edge 0.01              tetrahedra and triangles with edges of about 1 cm
   skerry fill scan.stl scan.msh --edge 0.01 --tolerance 0.005   allow the surface to move by 0.5 % of its size
+  skerry fill part.stl part.msh --scale 0.001              a surface in millimetres
   skerry fill bone.stl skin.stl leg.msh                    two regions, if one surface lies inside the other
   skerry fill ball.stl ball.msh --cavities                 leave the inside of inner shells empty
 From a surface to a film:
@@ -116,5 +118,23 @@ more files are written: sweep.csv, a table for spreadsheets, and sweep.html, a p
 case that fails, or whose scene is refused, also has a result. A case that was killed has no result and is run again.
 Exit codes: 0 all cases of this process have a result, 1 a case has no result (with --strict also: a case failed, was
 refused or has warnings), 2 invalid input, 3 a file could not be written, 128 + n stopped by signal n.)";
+
+inline constexpr const char* study_examples = R"(Examples:
+  skerry study scenes/gripper.json                         error bars of all probes, and the cheapest settings for 1 %
+  skerry study scenes/gripper.json --error 5% --probe cube     only quantities of the probe "cube"
+  skerry study scenes/gripper.json --budget 60             allow 60 times the time of one run, for finer meshes
+  skerry study scenes/gripper.json                         after Ctrl-C: continue with the runs that ended
+  skerry run out/gripper_study/cheapest.json               run the scene with the cheapest settings
+
+A study runs the scene as it is, with finer and coarser meshes, shorter and longer steps, a smaller tolerance of the
+contact solver, other elements, and twice with nodes moved by 1e-12 m. From the differences it computes an error bar for
+the result of the scene as it is, and its parts by mesh, step and contacts. It names values without an error bar:
+stresses that grow without limit as the mesh gets finer, and values that depend on tiny differences of the start.
+
+Results in the folder --out: study.html, a page with plots; study.csv, a table; study.json, all numbers; cheapest.json,
+a scene with the cheapest settings for the wanted error; and one file per run (run_scene.json, ...), written at its end.
+Runs that do not fit into --budget are left out, and the report says so. docs/study.md describes the rules.
+Exit codes: 0 success, 1 the scene itself cannot be run to its end, 2 invalid input, 3 a file could not be written,
+128 + n stopped by signal n.)";
 
 }  // namespace skerry

@@ -11,6 +11,7 @@
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
 #include "engine/program/require_writable.h"
+#include "engine/scene/write_scene.h"
 #include "skerry/error.h"
 #include "skerry/materials.h"
 
@@ -36,10 +37,6 @@ void check_outputs(const FillOptions& options) {
 
 /// A scene in which the body falls on a floor from half of its size.
 Json starter_scene(const FillOptions& options, const MaterialSettings& given, const MeshReport& report) {
-    const auto from_scene = [&](const std::filesystem::path& file) {
-        const std::filesystem::path folder = std::filesystem::absolute(options.scene).parent_path();
-        return std::filesystem::absolute(file).lexically_relative(folder).string();
-    };
     const Real gravity = 9.81, height = report.upper.z() - report.lower.z(), fall = height / 2;
     const Real rounding = std::pow(10, std::ceil(std::log10(height)) - 3);
     // Time of six falls, enough for the body to come to rest.
@@ -49,10 +46,13 @@ Json starter_scene(const FillOptions& options, const MaterialSettings& given, co
     if (!options.material.empty()) material = {{"like", options.material}};
     const std::string name = options.surfaces.front().stem().string();
     Json body{{"name", name},
-              {"mesh", {{"file", from_scene(options.mesh)}}},
+              {"mesh", {{"file", path_in_scene(options.mesh, options.scene)}}},
               {"material", "body"},
               {"position", {0, 0, std::ceil((fall - report.lower.z()) / rounding) * rounding}}};
-    if (options.surfaces.size() == 1) body["visual"] = {{"file", from_scene(options.surfaces.front())}};
+    if (options.surfaces.size() == 1) {
+        body["visual"] = {{"file", path_in_scene(options.surfaces.front(), options.scene)}};
+        if (options.settings.scale != 1) body["visual"]["scale"] = options.settings.scale;
+    }
     return {{"description", name + " falls on a floor."},
             {"seconds", seconds},
             {"materials", {{"body", material}}},

@@ -246,7 +246,8 @@ int inspect_scene(const InspectOptions& options) {
                            {"low", slider.low},
                            {"high", slider.high}});
     progress.begin("timing the first steps");
-    const SceneCost cost = try_run(scene.world, plan_run(scene, run), overlap);
+    const SceneCost cost =
+        try_run(scene.world, plan_run(scene, run.scene, run.seconds, run.frames_per_second), overlap);
     const Problems problems = problems_of(plan, kinds, start, cost);
     std::size_t surfaces = 0;
     for (const BodyPlan& body : plan.bodies) surfaces += body.surfaces.size();

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #ifdef __GLIBC__
@@ -14,6 +15,7 @@
 
 #include "engine/program/commands.h"
 #include "engine/program/examples.h"
+#include "engine/program/number_text.h"
 #include "engine/program/output_formats.h"
 #include "engine/program/sweep/cases/sweep_file.h"
 #include "engine/scene/place.h"
@@ -41,6 +43,21 @@ const CLI::Validator share(
                    : "found " + text + ", expected a number of at least 0 and below 1";
     },
     "0 <= NUMBER < 1");
+
+/// Validator that accepts numbers of the type of the bounds, within the bounds.
+template <class Number>
+CLI::Validator within(Number least, Number most) {
+    constexpr int digits = 10;
+    const std::string from = short_number(least, digits), to = short_number(most, digits);
+    return {[=](std::string& text) {
+                Number value{};
+                return CLI::detail::lexical_cast(text, value) && least <= value && value <= most
+                           ? std::string()
+                           : "found " + text + ", expected a " + (std::is_integral_v<Number> ? "whole " : "") +
+                                 "number from " + from + " to " + to;
+            },
+            from + " to " + to};
+}
 
 template <class Enum>
 std::vector<std::string> names_of_all() {
@@ -88,7 +105,7 @@ void add_count(CLI::App& app, const std::string& flag, std::optional<int>& targe
     constexpr int most = 2147483647;
     app.add_option_function<int>(
            flag, [&target](const int& value) { target = value; }, meaning)
-        ->check(CLI::Range(least, most));
+        ->check(within(least, most));
 }
 
 void add_outputs(CLI::App& command, RunOptions& options) {
@@ -143,7 +160,7 @@ void add_threads(CLI::App& command, SceneOverrides& overrides) {
         .add_option_function<int>(
             "--threads", [&overrides](const int& count) { overrides.threads = count; },
             "number of worker threads; 0: one per core")
-        ->check(CLI::Range(0, 1024));
+        ->check(within(0, 1024));
 }
 
 /// Adds the options for writing checkpoints and for resuming a run. Returns the option --restart.
@@ -191,11 +208,11 @@ void add_view(CLI::App& app, ViewOptions& options) {
     command
         .add_option("--rate", options.rate,
                     "simulated time per wall time: 1 is real time, 0.1 slow motion, 0 as fast as possible")
-        ->check(CLI::Range(0.0, 1000.0))
+        ->check(within(0.0, 1000.0))
         ->capture_default_str();
     command.add_flag("--paused", options.paused, "wait for the user to press play");
     command.add_option("--port", options.port, "port of the server; 0: a free port")
-        ->check(CLI::Range(0, 65535))
+        ->check(within(0, 65535))
         ->capture_default_str();
     command.add_flag("!--no-open", options.open, "only print the address, and do not open the browser");
     add_overrides(command, options.overrides);
@@ -223,7 +240,7 @@ void add_solve(CLI::App& app, SolveOptions& options) {
     command
         .add_option("--max-iterations", options.settings.max_iterations,
                     "largest number of sweeps over a contact region")
-        ->check(CLI::Range(1, 2147483647))
+        ->check(within(1, 2147483647))
         ->capture_default_str();
     command.add_option("--reactions", options.reactions,
                        "text file for the reactions: one line per contact with the normal and two tangential "
@@ -273,6 +290,12 @@ void add_fill(CLI::App& app, FillOptions& options) {
         ->required()
         ->expected(2, CLI::detail::expected_max_vector_size)
         ->type_name("SURFACE... OUT.msh");
+    command
+        .add_option("--scale", options.settings.scale,
+                    "factor for all coordinates of the surface, 0.001 for one in millimetres; other lengths are those "
+                    "after scaling")
+        ->check(positive_number)
+        ->capture_default_str();
     command
         .add_option_function<Real>(
             "--edge", [&options](const Real& edge) { options.settings.edge = edge; },
@@ -325,6 +348,53 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
     command.add_flag("--quiet", options.quiet, "print no progress and no table");
 }
 
+/// Reads a share: 0.01 or 1%.
+std::optional<double> read_share(std::string text) {
+    const bool percent = !text.empty() && text.back() == '%';
+    if (percent) text.pop_back();
+    double value = 0;
+    if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value) || !(value > 0)) return {};
+    return percent ? value / 100 : value;
+}
+
+void add_study(CLI::App& app, StudyOptions& options) {
+    CLI::App& command = *app.add_subcommand("study", "Determine the errors of the results of a scene");
+    command.footer(study_examples);
+    command.add_option("SCENE", options.scene, "scene file (JSON); `skerry schema` prints its format")->required();
+    command
+        .add_option_function<std::string>(
+            "--error", [&options](const std::string& text) { options.settings.error = *read_share(text); },
+            "wanted relative error, for which the cheapest settings are searched; default: 1%")
+        ->check(CLI::Validator(
+            [](std::string& text) {
+                return read_share(text) ? std::string() : "found " + text + ", expected a number above 0 such as 1%";
+            },
+            "SHARE"));
+    command
+        .add_option("--probe", options.settings.probes,
+                    "probe or body whose quantities get error bars, as NAME or NAME.QUANTITY; repeat the option for "
+                    "several; default: all probes of the scene, and place, contact force and largest stress of each "
+                    "body, and the energies")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+    add_number(command, "--seconds", options.settings.seconds,
+               "time at which the runs end [s]; default: \"seconds\" of the scene");
+    add_set(command, options.settings.assignments);
+    command
+        .add_option(
+            "--threads,--jobs", options.settings.threads,
+            "number of threads of the study; 0: one per core. The runs have one thread each, except very long ones")
+        ->check(CLI::Range(0, 1024));
+    add_number(
+        command, "--budget", options.settings.budget,
+        "largest wall time of the study, divided by that of one run with one thread; finer meshes and other runs "
+        "that do not fit are left out; default: 15, or more as long as the study takes less than 5 s");
+    command.add_option("--out", options.out, "folder for the results; default: out/NAME_study, if SCENE is NAME.json");
+    command.add_flag("--redo", options.settings.redo,
+                     "replace runs in the folder that belong to another version of the scene or to other settings");
+    command.add_flag("--quiet", options.quiet, "print no progress and no report");
+}
+
 /// Throws SceneError that names an unknown command. CLI11 only says that a command is required.
 void require_known_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return;
@@ -361,12 +431,14 @@ int run_command_line(int argc, char** argv) {
     InspectOptions inspect_options;
     FillOptions fill_options;
     SweepOptions sweep_options;
+    StudyOptions study_options;
     add_run(app, run_options);
     add_view(app, view_options);
     add_solve(app, solve_options);
     add_inspect(app, inspect_options);
     add_fill(app, fill_options);
     add_sweep(app, sweep_options);
+    add_study(app, study_options);
     bool schema_of_sweeps = false;
     app.add_subcommand("schema", "Print the JSON schema of scenes")
         ->add_flag("--sweep", schema_of_sweeps, "print the JSON schema of the input files of `skerry sweep` instead");
@@ -386,6 +458,7 @@ int run_command_line(int argc, char** argv) {
     if (app.got_subcommand("fill")) return fill(fill_options);
     if (app.got_subcommand("materials")) return materials(materials_as_json);
     if (app.got_subcommand("sweep")) return sweep(sweep_options);
+    if (app.got_subcommand("study")) return study(study_options);
     std::cout << (schema_of_sweeps ? sweep_schema() : scene_schema());
     return exit_ok;
 }

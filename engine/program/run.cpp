@@ -4,6 +4,7 @@
 #include <optional>
 #include <ostream>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -278,7 +279,8 @@ RunResult simulate(const RunOptions& asked) {
     count_bodies(world, result);
 
     setup.begin("choosing the step length");
-    const RunPlan run_plan = restart ? plan_run(options, memory, world.time()) : plan_run(scene, options);
+    const RunPlan run_plan = restart ? plan_run(options, memory, world.time())
+                                     : plan_run(scene, options.scene, options.seconds, options.frames_per_second);
     memory.frame_step = run_plan.frame_step;
     memory.samples = run_plan.samples;
     memory.probe_step = run_plan.probe_step;

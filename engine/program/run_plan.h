@@ -1,44 +1,12 @@
-// Plan of a run: its division into frames, the division of frames into calls of advance, and an estimate of the steps.
+// Plan of a run that is resumed.
 #pragma once
-
-#include <vector>
 
 #include "engine/program/checkpoint.h"
 #include "engine/program/commands.h"
+#include "engine/scene/run_plan.h"
 
 namespace skerry {
 
-struct RunPlan {
-    // Tolerance for rounding when a run is divided into frames, as a fraction of a frame: 0.1 s must give six frames of
-    // 1/60 s, not seven.
-    static constexpr double slack = 1e-9;
-
-    double seconds = 0, frame_step = 0;  // duration of the run, and time between two frames [s]
-    int samples = 1;                     // largest number of calls of advance per frame
-    double probe_step = 0;               // time between two samples of the probes; 0: there are no probes [s]
-
-    long frames() const;
-    /// True if the time between frames is a multiple of probe_step. Then each call of advance in a frame of full length
-    /// ends with a sample of the probes.
-    bool even() const;
-    /// Returns the times at which the calls of advance in a frame end [s]: multiples of probe_step, then the end of the
-    /// frame. Returns nothing for a frame that is divided into `samples` calls of equal length.
-    std::vector<double> ends_in(long frame) const;
-    /// Returns the length of a frame, which is the time since the previous frame [s]. The last frame may be shorter
-    /// than the others.
-    double length_of(long frame) const;
-    /// Longest simulated time of a call of advance [s].
-    double longest_call() const;
-    /// Returns an upper bound of the step length in the present state of the world [s]. A step is never longer than a
-    /// call of advance.
-    double longest_step(const World& world) const;
-    /// Estimates the number of remaining steps. Each call of advance is divided into equal steps.
-    double steps(const World& world) const;
-};
-
-/// Returns the plan of a new run. Options of the command line override the values of the scene. Throws SceneError if
-/// there are more than 1e9 frames, or more than 1e9 samples per frame.
-RunPlan plan_run(const Scene& scene, const RunOptions& options);
 /// Returns the plan of a run that is resumed at `time` [s]. The lengths of frames and samples stay the same, so that
 /// the calls of advance are the same as without the interruption. Throws SceneError if nothing is left to simulate.
 RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time);

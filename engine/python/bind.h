@@ -33,6 +33,7 @@ void bind_estimate(nb::module_& module);
 void bind_recorder(nb::module_& module);
 void bind_rollout(nb::module_& module);
 void bind_scene(nb::module_& module);
+void bind_study(nb::module_& module);
 void bind_visual_surface(nb::module_& module);
 void bind_world(nb::module_& module);
 

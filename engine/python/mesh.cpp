@@ -13,6 +13,7 @@
 #include "engine/python/mesh_sets.h"
 #include "engine/python/world/parts.h"
 #include "skerry/fill.h"
+#include "skerry/refine.h"
 #include "skerry/surface_check.h"
 
 namespace skerry::python {
@@ -60,10 +61,11 @@ nb::tuple read_surface(const std::string& path) {
 }
 
 /// Fills the surface of an array of file names, or of arrays of nodes and triangles. Returns the mesh and its notes.
-nb::tuple fill(const std::variant<std::vector<std::string>, std::tuple<Vectors, IndexRows<3>>>& given,
+nb::tuple fill(const std::variant<std::vector<std::string>, std::tuple<Vectors, IndexRows<3>>>& given, Real scale,
                std::optional<Real> edge, Real tolerance, bool cavities, Real seconds, Real bytes,
                const std::string& python) {
-    const mesh::FillSettings settings{.edge = edge,
+    const mesh::FillSettings settings{.scale = scale,
+                                      .edge = edge,
                                       .tolerance = tolerance,
                                       .cavities = cavities,
                                       .limits = {.seconds = seconds, .bytes = bytes},
@@ -203,7 +205,8 @@ void bind_mesh(nb::module_& module) {
     module.def("same_mesh", &same_mesh, nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg());
     module.def("read_mesh", &read);
     module.def("read_surface", &read_surface);
-    module.def("fill", &fill, nb::arg(), nb::arg().none(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg());
+    module.def("fill", &fill, nb::arg(), nb::arg(), nb::arg().none(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),
+               nb::arg());
     module.def("box", [](const Vec3& size, const std::array<int, 3>& cells) { return mesh::box(size, cells); });
     module.def("ball", &mesh::ball);
     module.def("cylinder", &mesh::cylinder);
@@ -217,6 +220,7 @@ void bind_mesh(nb::module_& module) {
         return arrays_of(surface);
     });
     module.def("inspect", &inspect_mesh);
+    module.def("refine", [](const Mesh& mesh) { return without_gil([&] { return mesh::refine(mesh); }); });
     module.def("check_surface", &check_surface);
 }
 

@@ -61,5 +61,6 @@ NB_MODULE(_core, module) {
     bind_recorder(module);
     bind_rollout(module);
     bind_scene(module);
+    bind_study(module);
     bind_live(module);
 }

@@ -96,9 +96,15 @@ struct FollowCourse {
     const TimeTable& course;
 
     void operator()(const PoseControl& control) const {
-        const Pose pose = pose_at(slider, target.start, course.keys.back().value);
-        const Real duration = course.keys.back().time - world.time();
-        std::visit([&](auto object) { world.move_to(object, pose, duration); }, control.object);
+        const TimeKey &from = course.keys.front(), &to = course.keys.back();
+        const auto key_at = [&](Real time, Real value) {
+            const Pose pose = pose_at(slider, target.start, value);
+            return Keyframe{time, pose.position, pose.rotation};
+        };
+        // Motion between two poses takes the shorter way round. The pose halfway leads it along the slider.
+        const std::array keys{key_at((from.time + to.time) / 2, (from.value + to.value) / 2),
+                              key_at(to.time, to.value)};
+        std::visit([&](auto object) { follow_poses(world, object, keys); }, control.object);
     }
     void operator()(const MotorSpeedControl& control) const {
         JointMotor motor;

@@ -9,7 +9,8 @@
 
 #include "components/split_mix.h"
 #include "engine/mesh/labels.h"
-#include "engine/mesh/surface/check_shells.h"
+#include "engine/scene/make_mesh.h"
+#include "engine/scene/mesh_levels.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_plan.h"
 
@@ -17,55 +18,10 @@ namespace skerry {
 
 namespace {
 
-/// How surfaces are filled. `progress`: gets the activity. `python`: see mesh::FillSettings.
-struct SurfaceFilling {
-    const mesh::FillProgress& progress;
-    const std::string& python;
-};
-
-/// `rigid`: true if the mesh may be a surface without tetrahedra. `notes`: gets remarks about the mesh file.
-Mesh make_shape(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes, const SurfaceFilling& filling) {
-    if (entry.box) return mesh::box(entry.box->size, entry.box->cells);
-    if (entry.ball) return mesh::ball(entry.ball->radius, entry.ball->resolution);
-    if (entry.cylinder)
-        return mesh::cylinder(entry.cylinder->radius, entry.cylinder->height, entry.cylinder->resolution);
-    if (entry.lathe) return mesh::lathe(entry.lathe->profile, entry.lathe->resolution);
-    if (entry.skittle) return mesh::skittle(entry.skittle->height, entry.skittle->resolution);
-    if (entry.table) return mesh::table(*entry.table);
-    if (entry.surface) {
-        mesh::FillSettings settings{.cavities = entry.cavities, .python = filling.python};
-        // The surface is filled in the units of its file and scaled afterwards, so that scenes of any scale share the
-        // mesh in the cache.
-        if (entry.edge) settings.edge = *entry.edge / entry.scale;
-        settings.tolerance = entry.tolerance.value_or(settings.tolerance);
-        std::vector<std::string> of_filling;
-        Mesh mesh = mesh::fill_cached(entry.surface->path, settings, filling.progress, &of_filling);
-        if (entry.scale != 1)
-            std::erase_if(of_filling, [](const std::string& note) { return note.ends_with(mesh::other_unit); });
-        notes.insert(notes.end(), of_filling.begin(), of_filling.end());
-        return mesh;
-    }
-    const std::string file = entry.file->path.string();
-    return rigid ? mesh::read_rigid(file, &notes) : mesh::read(file, &notes);
-}
-
-Mesh make_mesh(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes, const SurfaceFilling& filling) {
-    Mesh mesh = called_at(entry.place, [&] { return make_shape(entry, rigid, notes, filling); });
-    for (Vec3& node : mesh.nodes) node *= entry.scale;
-    return mesh;
-}
-
 Mesh picture_of(const BodyShapeEntry& shape) {
     if (shape.sphere) return mesh::sphere_picture(shape.sphere->radius);
     if (shape.capsule) return mesh::capsule_picture(shape.capsule->radius, shape.capsule->length);
     return mesh::cylinder_picture(shape.cylinder->radius, shape.cylinder->height);
-}
-
-SurfaceMesh make_surface(const MeshEntry& entry, std::vector<std::string>& notes, const SurfaceFilling& filling) {
-    if (!entry.file) return mesh::boundary(make_mesh(entry, false, notes, filling));
-    SurfaceMesh surface = called_at(entry.place, [&] { return mesh::read_surface(entry.file->path.string(), &notes); });
-    for (Vec3& node : surface.nodes) node *= entry.scale;
-    return surface;
 }
 
 Shape make_collider_shape(const ShapeEntry& entry, std::vector<std::string>& notes, const SurfaceFilling& filling) {
@@ -94,7 +50,7 @@ std::vector<Vec3> held_directions(const PinEntry& entry) {
     return directions;
 }
 
-PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh, const std::map<std::string, MeshSet>& sets) {
+PinPlan plan_pin(const PinEntry& entry, const PlannedMesh& mesh, const std::map<std::string, MeshSet>& sets) {
     return {.nodes = nodes_of(entry, mesh, sets),
             .motion = make_motion(entry.motion),
             .pivot = entry.pivot,
@@ -110,7 +66,8 @@ SurfaceSettings surface_of(const auto& entry) {
             .restitution = entry.restitution};
 }
 
-SurfacePlan plan_surface(const SurfaceEntry& entry, const Mesh& mesh, const std::map<std::string, MeshSet>& sets) {
+SurfacePlan plan_surface(const SurfaceEntry& entry, const PlannedMesh& mesh,
+                         const std::map<std::string, MeshSet>& sets) {
     SurfacePlan surface{.settings = {.surface = surface_of(entry),
                                      .friction_across = entry.friction_across,
                                      .direction = entry.direction},
@@ -186,7 +143,7 @@ struct PlannedBodies {
     std::set<std::string> names;
     // Index in ScenePlan::meshes of each mesh file that was read and of each surface that was filled, by the members of
     // the entry. The first two flags: the file is a surface to fill; the file is read for a rigid body.
-    std::map<std::tuple<std::filesystem::path, bool, bool, Real, std::optional<Real>, std::optional<Real>, bool>,
+    std::map<std::tuple<std::filesystem::path, bool, bool, Real, std::optional<Real>, std::optional<Real>, bool, int>,
              std::size_t>
         mesh_of_file;
     // by path and scale of the file, and index in ScenePlan::meshes
@@ -200,7 +157,7 @@ std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& 
     const bool rigid = entry.dynamics == BodyDynamics::rigid;
     if (!entry.mesh || !(entry.mesh->file || entry.mesh->surface)) {
         plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh, rigid, plan.notes, so_far.filling)
-                                         : picture_of(*entry.shape));
+                                         : PlannedMesh{picture_of(*entry.shape)});
         plan.mesh_files.emplace_back();
         return next;
     }
@@ -208,7 +165,7 @@ std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& 
     const std::filesystem::path& file = (mesh.file ? mesh.file : mesh.surface)->path;
     const bool filled = mesh.surface.has_value();
     const auto [known, is_new] = so_far.mesh_of_file.try_emplace(
-        {file, filled, rigid && !filled, mesh.scale, mesh.edge, mesh.tolerance, mesh.cavities}, next);
+        {file, filled, rigid && !filled, mesh.scale, mesh.edge, mesh.tolerance, mesh.cavities, mesh.refine}, next);
     if (!is_new) return known->second;
     plan.meshes.push_back(make_mesh(mesh, rigid, plan.notes, so_far.filling));
     plan.mesh_files.push_back(file);
@@ -235,7 +192,7 @@ std::shared_ptr<const BoundVisual> plan_visual(const BodyEntry& entry, const std
 void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far, ScenePlan& plan) {
     const std::size_t material = find_material(plan, entry.material, entry.place.key("material"));
     const std::size_t of_plan = plan_mesh(entry, so_far, plan);
-    const Mesh& mesh = plan.meshes[of_plan];
+    const PlannedMesh& mesh = plan.meshes[of_plan];
     if (entry.shape && !entry.sets.items.empty())
         entry.place.key("sets").refuse("sets of a body without a mesh", "a body with \"mesh\"");
     BodyPlan planned;
@@ -403,6 +360,7 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     apply(overrides, plan.settings);
     plan.materials = scene.materials.items;
     for (const PairEntry& pair : scene.pairs) plan_pair_once(pair, plan);
+    require_levels(scene);
     const SurfaceFilling filling{progress, overrides.fill_python};
     PlannedBodies so_far{.names = {}, .mesh_of_file = {}, .visuals = {}, .filling = filling};
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, so_far, plan);

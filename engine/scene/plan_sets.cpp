@@ -1,6 +1,7 @@
 // Resolves the sets of bodies, and the parts of bodies that entries of a scene file name.
 #include <algorithm>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "engine/mesh/labels.h"
@@ -19,22 +20,25 @@ const char* const mesh_frame =
     "coordinates are those of the mesh, before rotation and position of the body are applied";
 
 /// Returns the index in mesh.nodes of a node that the scene names by its number in the mesh file.
-Index node_of_file(const Mesh& mesh, int number, const Place& place) {
+Index node_of_file(const PlannedMesh& mesh, int number, const Place& place) {
+    // Subdivisions add their nodes at the end, and the file has no numbers for these.
+    const std::size_t count = mesh.subdivisions.empty() ? mesh.nodes.size() : mesh.subdivisions.front().node_count;
     if (mesh.file_number.empty()) {
-        if (static_cast<std::size_t>(number) >= mesh.nodes.size())
-            place.refuse("node " + std::to_string(number), "a node number below " + std::to_string(mesh.nodes.size()));
+        if (static_cast<std::size_t>(number) >= count)
+            place.refuse("node " + std::to_string(number), "a node number below " + std::to_string(count));
         return number;
     }
-    const auto found = std::ranges::lower_bound(mesh.file_number, number);
-    if (found == mesh.file_number.end() || *found != number)
+    const std::span<const Index> numbers = std::span(mesh.file_number).first(count);
+    const auto found = std::ranges::lower_bound(numbers, number);
+    if (found == numbers.end() || *found != number)
         place.refuse("node " + std::to_string(number) + ", which no tetrahedron of the mesh file uses",
-                     "the number of a node of a tetrahedron, from " + std::to_string(mesh.file_number.front()) +
-                         " to " + std::to_string(mesh.file_number.back()),
+                     "the number of a node of a tetrahedron, from " + std::to_string(numbers.front()) + " to " +
+                         std::to_string(numbers.back()),
                      "count all nodes of the file from 0, in their order in the file");
-    return static_cast<Index>(found - mesh.file_number.begin());
+    return static_cast<Index>(found - numbers.begin());
 }
 
-std::vector<Index> nodes_listed(const Mesh& mesh, const std::vector<int>& numbers, const Place& place) {
+std::vector<Index> nodes_listed(const PlannedMesh& mesh, const std::vector<int>& numbers, const Place& place) {
     if (numbers.empty()) place.refuse("an empty list", "at least one node number");
     std::vector<Index> nodes;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -45,6 +49,7 @@ std::vector<Index> nodes_listed(const Mesh& mesh, const std::vector<int>& number
                         "delete the repeated number");
         nodes.push_back(node);
     }
+    for (const mesh::Subdivision& subdivision : mesh.subdivisions) mesh::add_midpoints(subdivision, nodes);
     return nodes;
 }
 
@@ -52,7 +57,7 @@ bool is_inside(const RestBox& box, const Vec3& x) {
     return (x.array() >= box.lower.array()).all() && (x.array() <= box.upper.array()).all();
 }
 
-std::vector<std::array<Index, 3>> surface_of(const Mesh& mesh) {
+std::vector<std::array<Index, 3>> surface_faces(const Mesh& mesh) {
     std::vector<std::array<Index, 3>> surface = mesh.triangles;
     for (const BoundaryTriangle& triangle : boundary_triangles(mesh.tetrahedra)) surface.push_back(triangle.node);
     return surface;
@@ -80,10 +85,10 @@ MeshSet first_set(const SetEntry& entry, const Mesh& mesh, const NamedSets& know
     return set;
 }
 
-MeshSet plan_set(const SetEntry& entry, const Mesh& mesh, const NamedSets& known) {
+MeshSet plan_set(const SetEntry& entry, const PlannedMesh& mesh, const NamedSets& known) {
     MeshSet set = first_set(entry, mesh, known);
     if (entry.surface) {
-        const std::vector<std::array<Index, 3>> surface = surface_of(mesh);
+        const std::vector<std::array<Index, 3>> surface = surface_faces(mesh);
         set = {.nodes = {}, .faces = mesh::faces_of(set, mesh.tetrahedra, surface), .tetrahedra = {}};
         std::set<std::array<Index, 3>> outside;
         for (const std::array<Index, 3>& face : surface) outside.insert(mesh::sorted_face(face));
@@ -130,7 +135,7 @@ std::string expected_set(const Mesh& mesh, const NamedSets& sets) {
     return mesh::expected_set(names_of_all(mesh, sets));
 }
 
-NamedSets plan_sets(const Named<SetEntry>& entries, const Mesh& mesh, const Place& place) {
+NamedSets plan_sets(const Named<SetEntry>& entries, const PlannedMesh& mesh, const Place& place) {
     NamedSets sets;
     for (const auto& [name, entry] : entries.items) {
         if (mesh.sets.contains(name))
@@ -141,7 +146,7 @@ NamedSets plan_sets(const Named<SetEntry>& entries, const Mesh& mesh, const Plac
     return sets;
 }
 
-std::vector<Index> nodes_of(const PartEntry& part, const Mesh& mesh, const NamedSets& sets) {
+std::vector<Index> nodes_of(const PartEntry& part, const PlannedMesh& mesh, const NamedSets& sets) {
     if (part.set) return mesh::nodes_of(set_of_part(part, mesh, sets), mesh.tetrahedra);
     if (!part.box) return nodes_listed(mesh, part.nodes, part.place.key("nodes"));
     std::vector<Index> inside;
@@ -158,7 +163,7 @@ std::vector<Index> nodes_of(const PartEntry& part, const BodyPlan& body, const S
 }
 
 std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, const Mesh& mesh) {
-    return mesh::faces_of(set, mesh.tetrahedra, surface_of(mesh));
+    return mesh::faces_of(set, mesh.tetrahedra, surface_faces(mesh));
 }
 
 std::vector<std::array<Index, 3>> faces_of(const PartEntry& part, const BodyPlan& body, const ScenePlan& plan) {

@@ -57,6 +57,7 @@ struct MeshEntry {
     std::optional<Real> tolerance;
     bool cavities = false;
     Real scale = 1;
+    int refine = 0;  // number of halvings of the edges; < 0: of doublings
     Place place;
 };
 

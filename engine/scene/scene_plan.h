@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/mesh/subdivision.h"
 #include "engine/mesh/visual/bound_visual.h"
 #include "engine/output/series/follow_point.h"
 #include "engine/scene/place.h"
@@ -25,6 +26,10 @@
 
 namespace skerry {
 
+/// A mesh, and the subdivisions that made it from the mesh whose nodes the scene file names by number.
+struct PlannedMesh : Mesh {
+    std::vector<mesh::Subdivision> subdivisions{};
+};
 struct PinPlan {
     std::vector<Index> nodes;  // local numbers
     Motion motion;
@@ -153,7 +158,7 @@ struct ScenePlan {
     Tuning tuning{};  // set by tests and measurements, not by scene files
     std::vector<std::pair<std::string, MaterialSettings>> materials;
     // one mesh for each mesh file, filled surface and entry of "bodies" without a file; copies of a body share the mesh
-    std::vector<Mesh> meshes;
+    std::vector<PlannedMesh> meshes;
     std::vector<std::filesystem::path> mesh_files;  // file of each mesh or filled surface; else empty
     std::vector<std::string> notes;                 // remarks about mesh files that were corrected on reading
     std::vector<BodyPlan> bodies;
@@ -194,7 +199,7 @@ std::vector<std::array<Index, 3>> faces_of(const PartEntry& part, const BodyPlan
 /// Faces of a set of a mesh, as mesh::faces_of finds them.
 std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, const Mesh& mesh);
 /// Resolves a part of a body that is not complete yet. `sets`: BodyPlan::sets.
-std::vector<Index> nodes_of(const PartEntry& part, const Mesh& mesh, const std::map<std::string, MeshSet>& sets);
+std::vector<Index> nodes_of(const PartEntry& part, const PlannedMesh& mesh, const std::map<std::string, MeshSet>& sets);
 
 /// Returns a set of the mesh or of the scene. Throws SceneError if there is none of this name.
 const MeshSet& find_set(const std::string& name, const Mesh& mesh, const std::map<std::string, MeshSet>& sets,
@@ -202,7 +207,7 @@ const MeshSet& find_set(const std::string& name, const Mesh& mesh, const std::ma
 /// Returns the expected value in an error message about a set that does not exist.
 std::string expected_set(const Mesh& mesh, const std::map<std::string, MeshSet>& sets);
 /// Resolves the sets of a body in a scene file.
-std::map<std::string, MeshSet> plan_sets(const Named<SetEntry>& entries, const Mesh& mesh, const Place& place);
+std::map<std::string, MeshSet> plan_sets(const Named<SetEntry>& entries, const PlannedMesh& mesh, const Place& place);
 
 /// Returns the index of a body or a collider in a plan. Throws SceneError if the plan has none of this name.
 std::size_t find_body(const ScenePlan& plan, const std::string& name, const Place& place);

@@ -1,4 +1,5 @@
 // Keys of meshes, collider shapes and motions in a scene file.
+#include "engine/scene/mesh_levels.h"
 #include "engine/scene/scene_rules.h"
 
 namespace skerry {
@@ -119,6 +120,13 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
                  {.meaning = "with \"surface\": leave the inside of inner shells empty; default: false"})
             .key("scale", &MeshEntry::scale,
                  {.meaning = "factor for all coordinates of the mesh; default: 1", .limits = positive})
+            .key(
+                "refine", &MeshEntry::refine,
+                {.meaning =
+                     "number n of refinements; default: 0. The edges become 2^-n times as long: shapes other than "
+                     "\"table\" get more cells, and tetrahedra of other meshes are divided into eight each. With n < 0 "
+                     "they become longer: numbers of cells are halved, and the surface of a file is filled again",
+                 .limits = within(-most_refinements, most_refinements)})
             .exactly_one({"box", "ball", "cylinder", "lathe", "skittle", "table", "file", "surface"})
             .check([](const Place& place, const MeshEntry& mesh) {
                 if (!mesh.surface && (mesh.edge || mesh.tolerance || mesh.cavities))

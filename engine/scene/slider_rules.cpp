@@ -6,6 +6,7 @@
 #include "engine/rollout/controls.h"
 #include "engine/scene/scene_plan.h"
 #include "engine/scene/scene_rules.h"
+#include "engine/world/complaint.h"
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
 #include "skerry/fibre.h"
@@ -43,6 +44,19 @@ SliderTarget moved(const World& world, HandleType object, const Motion& motion, 
         place.refuse("an object with a \"motion\"", "an object that only the slider moves");
     const MotionKey pose = world.pose(object);
     return {PoseControl{object}, {pose.position, pose.rotation}};
+}
+
+/// The object of this name, for example a joint or a cable.
+template <class HandleType>
+HandleType find_object(const ObjectView<HandleType>& objects, const std::string& name, const Place& place) {
+    std::vector<std::string> names;
+    for (const HandleType object : objects.all()) names.push_back(objects.name(object));
+    const auto count = std::ranges::count(names, name);
+    if (count != 1)
+        place.refuse(in_quotes(name) + (count == 0 ? "" : ", which several objects have"),
+                     names.empty() ? "a name, but the scene has no such object" : "one of " + listed(names),
+                     nearest_hint(name, names));
+    return objects.find(name);
 }
 
 [[noreturn]] void refuse_pin(const Place& place, const std::string& body, std::size_t pins, std::size_t pin) {
@@ -102,7 +116,7 @@ private:
         const auto add_valued = [&]<class HandleType>(const char* key, const OneOrMore<std::string>& names,
                                                       const ObjectView<HandleType>& objects) {
             add(key, names, [&](const std::string& name, const Place& place) -> SliderTarget {
-                return {ValueControl{called_at(place, [&] { return objects.find(name); })}};
+                return {ValueControl{find_object(objects, name, place)}};
             });
         };
         add("collider", entry.collider, [&](const std::string& name, const Place& place) {
@@ -117,7 +131,8 @@ private:
             return moved(world_, handles_.pins[b][pin], pins[pin].motion, place);
         });
         add("joint", entry.joint, [&](const std::string& name, const Place& place) -> SliderTarget {
-            return {called_at(place, [&] { return motor_control(world_, Joints(world_).find(name)); })};
+            const JointHandle joint = find_object<JointHandle>(Joints(world_), name, place);
+            return {called_at(place, [&] { return motor_control(world_, joint); })};
         });
         add_valued("cable", entry.cable, ObjectView<CableHandle>(world_));
         add_valued("cavity", entry.cavity, ObjectView<CavityHandle>(world_));

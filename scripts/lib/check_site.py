@@ -2,7 +2,7 @@
 
 - Every link, picture and script leads to a file of the site, and every #anchor to an element of it.
 - No page loads anything from the network.
-- The search finds words in Chromium, from a file: address.
+- KaTeX renders all formulas, and the search finds words, in Chromium, from a file: address.
 """
 
 import html.parser
@@ -16,7 +16,7 @@ from browser import open_browser
 
 # Words that users search for, and a page that the search must list.
 SEARCHES = {"friction": "docs/methods/friction.html", "pressure": "docs/methods/cavities.html",
-            "tie": "docs/methods/ties.html", "young_modulus": "reference/scene.html",
+            "tie": "docs/methods/ties.html", "too slow": "docs/why.html", "young_modulus": "reference/scene.html",
             "add_body": "reference/python/skerry.World.html", "SpringSettings": "reference/cpp/spring.html"}
 LOADED = {("script", "src"), ("img", "src"), ("iframe", "src"), ("link", "href"), ("source", "src"), ("video", "src")}
 
@@ -59,9 +59,17 @@ def broken_links(folder):
             yield f"{file.relative_to(folder)}: loads {link}, expected a file of the site"
 
 
-def failed_searches(folder):
-    """Yields a message for each search that does not list its page."""
+def failed_pages(folder):
+    """Yields a message for each page with a formula that has an error, and for each search that does not list its
+    page."""
     with open_browser() as tab:
+        for file in sorted(folder.rglob("*.html")):
+            if 'class="math' not in file.read_text("utf-8"):
+                continue
+            tab.open(file.as_uri())
+            tab.wait("document.querySelector('.katex, .katex-error')")
+            if errors := tab.evaluate("[...document.querySelectorAll('.katex-error')].map(error => error.title)"):
+                yield f"{file.relative_to(folder)}: {errors}"
         for word, page in SEARCHES.items():
             tab.open(f"{(folder / 'search.html').as_uri()}?q={word}")
             tab.wait("/finished|not match/.test(document.querySelector('#search-results')?.innerText)")
@@ -73,7 +81,7 @@ def failed_searches(folder):
 def main():
     """Prints the problems of the site."""
     folder = pathlib.Path(sys.argv[1]).resolve()
-    problems = [*broken_links(folder), *failed_searches(folder)]
+    problems = [*broken_links(folder), *failed_pages(folder)]
     print("\n".join(problems))
     return 1 if problems else 0
 

@@ -54,13 +54,8 @@ CRITERIA = """- **1**: A block of 1 t on a block of 1 g comes to rest without pe
 In tests 29 to 31 no step is refused. At the end no element is inverted, and bodies have their undeformed shapes up to
 a hundredth of an edge length.
 
-## Notes
-
-- **6**: Nodes that lie exactly on a line stay on it until a disturbance.
-- **9**: The push-out moves overlapping nodes apart at up to 0.5 m/s. By elastic rebound the body leaves at up to twice
-  this speed.
-- **20**: With the default tolerance of 1e-3, a heap can creep in each step by 1e-3 of the distance that it would fall
-  without contacts. To keep it still for an hour, leave `sleep` on, or set `tolerance` to 1e-8.
+**20**: Without `sleep`, a heap can creep in each step by `tolerance` times the distance that it would fall without
+contacts.
 """
 
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <optional>
 
 #include "components/check.h"
 #include "jobs/parallel_for.h"
@@ -116,10 +115,9 @@ bool is_valid(const CollisionInputs& inputs, const CollisionSettings& settings, 
     if (pairs.travel_bound[p] < pairs.valid_until[p]) return true;
     if (pairs.kind[p] != PairKind::self || !settings.use_budgets || !(pairs.valid_until[p] > -infinity)) return false;
     const SelfMotion motion = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], h);
-    const Real base = pair_travel_base(inputs, pairs, p),
-               spare = spare_margin_of(motion, pairs.travel_bound[p] - base, pairs.self);
-    if (!(pairs.travel_bound[p] < base + spare)) return holds_for_step(motion, pairs.self);
-    pairs.valid_until[p] = base + spare;
+    const std::span<LeafPair> leaves = pairs.leaf_pairs[p].listed.span();
+    if (!update_spare(motion, leaves, pairs.self)) return false;
+    pairs.valid_until[p] = pair_travel_base(inputs, pairs, p) + least_spare(leaves);
     return true;
 }
 
@@ -221,10 +219,29 @@ void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aa
     });
 }
 
+/// Adds candidates to a list. Both are in feature order.
+void add_found(std::span<const FoundCandidate> found, Column<Candidate>& candidates, Column<Real>& asleep_until) {
+    std::size_t kept = candidates.size(), added = found.size(), row = kept + added;
+    candidates.resize(row);
+    asleep_until.resize(row);
+    while (added > 0) {
+        --row;
+        const FoundCandidate& next = found[added - 1];
+        if (kept > 0 && candidates[kept - 1].feature > next.candidate.feature) {
+            candidates[row] = candidates[--kept];
+            asleep_until[row] = asleep_until[kept];
+        } else {
+            candidates[row] = next.candidate;
+            asleep_until[row] = next.asleep_until;
+            --added;
+        }
+    }
+}
+
 void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<const Aabb> box,
                   Index p, const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair = pair_to_search(inputs, settings, box, memory, pairs, p);
-    std::optional<SelfMotion> parts;
+    const bool anew = !(pairs.valid_until[p] > -infinity) || pairs.state[p] != PairState::apart;
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
         // The state of the pair is determined before the search, because surfaces that are apart need a smaller search
         // distance.
@@ -233,21 +250,18 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
         pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
     }
     if (pair.kind == PairKind::self) {
-        parts.emplace(self_motion_of(inputs, settings, pairs.state[p], pair.first, h));
-        pair.longer_motion = std::max(pairs.longer_motion[p], Real(0));
-        pair.self_motion = &*parts;
-        pair.self = &pairs.self;
-        pair.margin = parts->skin;
-        store_origin(*parts, pairs.self);
+        renew_leaf_pairs(
+            self_motion_of(inputs, settings, pairs.state[p], pair.first, h, std::max(pairs.longer_motion[p], Real(0))),
+            box, anew, p, pairs);
+        pair.leaf_pairs = pairs.leaf_pairs[p].searched.span();
+        pair.margin = least_spare(pairs.leaf_pairs[p].listed.span());
+    } else {
+        pairs.candidates[p].clear();
+        pairs.asleep_until[p].clear();
     }
     pairs.longer_motion[p] = pairs.longer_motion[p] > 0 ? -pairs.longer_motion[p] : 0;
     pairs.valid_until[p] = search_pair(inputs, pair, box, found);
-    pairs.candidates[p].resize(found.size());
-    pairs.asleep_until[p].resize(found.size());
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        pairs.candidates[p][i] = found[i].candidate;
-        pairs.asleep_until[p][i] = found[i].asleep_until;
-    }
+    add_found(found.span(), pairs.candidates[p], pairs.asleep_until[p]);
 }
 
 /// Searches the expired pairs. Each block searches one near pair, which takes some tens of microseconds, and an equal

@@ -214,7 +214,7 @@ bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& sett
     if (reach_of(inputs, pairs, p, motion.h).travel_bound < pairs.valid_until[p] + drifted) return false;
     if (pairs.kind[p] != PairKind::self || !(pairs.valid_until[p] > -infinity)) return true;
     const SelfMotion parts = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
-    return !holds_for_motion(parts, motion, pairs.fresh[p] != 0, pairs.self);
+    return !holds_for_motion(parts, motion, pairs.leaf_pairs[p].listed.span(), pairs.self);
 }
 
 /// True if any pair moves further in this step than its candidate list allows. This happens almost never.

@@ -94,7 +94,7 @@ TEST_CASE("a tangent is the derivative of stress without its negative part", "[p
 }
 
 TEST_CASE("small strains meet the Lame moduli", "[property][accuracy]") {
-    // docs/methods/accuracy.md 19: dP/dF at rest is lambda I:dF + 2 mu sym(dF). The tolerance 1e-6 is for the
+    // docs/accuracy.md, item 19: dP/dF at rest is lambda I:dF + 2 mu sym(dF). The tolerance 1e-6 is for the
     // differences.
     std::mt19937_64 random(2);
     for (MaterialModel model : test::material_models) {
@@ -169,7 +169,7 @@ TEST_CASE("internal forces have no sum and, rotation-invariant models, no torque
 
 TEST_CASE("patch test: a homogeneous deformation leaves no force inside and one stress everywhere",
           "[property][accuracy]") {
-    // docs/methods/accuracy.md 17: interior forces <= 1e-12 E h^2.
+    // docs/accuracy.md, item 17: interior forces <= 1e-12 E h^2.
     const auto executor = make_executor(Backend::serial, 1);
     Mat3 A;
     A << 1.1, 0.05, 0, 0.02, 0.95, 0.03, -0.04, 0, 1.2;
@@ -207,7 +207,7 @@ TEST_CASE("patch test: a homogeneous deformation leaves no force inside and one 
 
 TEST_CASE("a turned body feels nothing, but for linear elasticity, which swells by the known amount",
           "[property][accuracy]") {
-    // docs/methods/accuracy.md 18.
+    // docs/accuracy.md, item 18.
     const auto executor = make_executor(Backend::serial, 1);
     std::mt19937_64 random(8);
     for (MaterialModel model : test::material_models) {

@@ -59,7 +59,7 @@ Momenta momenta(const ElasticBody& body) {
 }  // namespace
 
 TEST_CASE("the discrete frequency is 2/h asin(omega h / 2)", "[property][accuracy]") {
-    // docs/methods/accuracy.md 4. A sampled harmonic obeys x_n+1 + x_n-1 = 2 cos(omega_num h) x_n exactly.
+    // docs/accuracy.md, item 4. A sampled harmonic obeys x_n+1 + x_n-1 = 2 cos(omega_num h) x_n exactly.
     ElasticBody body = oscillator();
     const Real omega = omega_of(body), h = 0.5 / omega;
     Motion motion{body};
@@ -84,7 +84,7 @@ TEST_CASE("the discrete frequency is 2/h asin(omega h / 2)", "[property][accurac
 }
 
 TEST_CASE("the stability edge is omega h = 2", "[property][accuracy]") {
-    // docs/methods/accuracy.md 5.
+    // docs/accuracy.md, item 5.
     for (Real edge : {1.99, 2.01}) {
         ElasticBody body = oscillator();
         const Real h = edge / omega_of(body);
@@ -118,7 +118,7 @@ TEST_CASE("the stability edge is omega h = 2", "[property][accuracy]") {
 }
 
 TEST_CASE("plane waves have the speeds of the bulk", "[property][accuracy]") {
-    // docs/methods/accuracy.md 12. Nodes move along one axis only, as they would inside an infinite body: a standing
+    // docs/accuracy.md, item 12. Nodes move along one axis only, as they would inside an infinite body: a standing
     // wave with one wavelength over 20 elements.
     constexpr Index n = 20;
     constexpr Real h_element = 0.1, nu = 0.3, density = 1000;
@@ -178,7 +178,7 @@ TEST_CASE("a body runs at its stable step and keeps its momenta", "[property]") 
         const Momenta end = momenta(body);
         INFO(name_of(model));
         CHECK(largest < 10);  // initial value: 2.5
-        // docs/methods/accuracy.md 3: 1e-12 per step; symplectic Euler conserves the sum of x cross m v exactly.
+        // docs/accuracy.md, item 3: 1e-12 per step; symplectic Euler conserves the sum of x cross m v exactly.
         CHECK((end.linear - start.linear).norm() <= 1e-13 * steps * start.linear.norm());
         CHECK((end.angular - start.angular).norm() <= 1e-12 * steps * start.angular.norm());
     }

@@ -73,6 +73,8 @@ def test_regions_are_labelled_after_the_surface_was_remeshed() -> None:
 def test_errors_name_the_argument_and_the_package_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(sk.SceneError, match="edge: found -1"):
         sk.Mesh.fill(ball(0.5), edge=-1)
+    with pytest.raises(sk.SceneError, match="scale: found 0, expected a factor above 0"):
+        sk.Mesh.fill(ball(0.5), scale=0)
     with pytest.raises(sk.SceneError, match="time limit"):
         sk.Mesh.fill(ball(0.5), time_limit=0.01)
     with pytest.raises(TypeError):

@@ -212,6 +212,44 @@ def test_a_body_pulled_with_the_mouse_moves_as_a_critically_damped_spring(tab: T
     assert moved[held] == pytest.approx(expected[held, None] * way, abs=0.01 * float(np.linalg.norm(way)))
 
 
+def test_a_body_is_pulled_with_keys(tab: Tab) -> None:
+    """After 0.8 s a critically damped spring of 2 Hz has moved the body by 99.95 % of the way."""
+    world = sk.World(gravity=(0, 0, 0), threads=1, step_size=1e-3)
+    given: Any = {"mass": 1, "center_of_mass": (0, 0, 0), "inertia": 1e5 * np.eye(3)}
+    body = world.add_body(sk.Mesh.ball(0.1, 6).boundary(), sk.Material(), dynamics="rigid", **given)
+    with running(tab, world):
+        tab.press("q")
+        tab.wait("window.sent.some(({ do: name }) => name === 'pull')")
+        for key in ("ArrowUp", "ArrowUp", "ArrowLeft"):
+            tab.press(key)
+        tab.wait("window.sent.some(({ do: name }) => name === 'move')")
+        begun = time_of(tab)
+        tab.wait(f"Number(document.documentElement.dataset.time) > {begun + 0.8}")
+        tab.press("q")
+        tab.wait("window.sent.some(({ do: name }) => name === 'release')")
+        sent = tab.evaluate("window.sent")
+    assert not [message for message in sent if message["do"] == "step"]
+    (pull,) = [message for message in sent if message["do"] == "pull"]
+    way = np.array([message["to"] for message in sent if message["do"] == "move"][-1]) - np.array(pull["point"])
+    assert way[2] > 0.01  # z is up
+    assert body.center_of_mass == pytest.approx(way, abs=0.01 * float(np.linalg.norm(way)))
+
+
+def test_the_legend_can_be_folded_in_a_small_window(tab: Tab) -> None:
+    shown = "document.getElementById('color_legend').offsetHeight > 0"
+    size = {"height": 800, "deviceScaleFactor": 1, "mobile": False}
+    with running(tab, ball_world()[0]):
+        try:
+            tab.call("Emulation.setDeviceMetricsOverride", width=1280, **size)
+            tab.wait(f"{shown} && document.querySelector('[data-switch=legend]').offsetHeight === 0")
+            tab.call("Emulation.setDeviceMetricsOverride", width=420, **size)
+            for state in (f"!({shown})", shown):
+                tab.click("[data-switch=legend]")
+                tab.wait(state)
+        finally:
+            tab.call("Emulation.clearDeviceMetricsOverride")
+
+
 def test_a_page_with_a_wrong_token_says_so(tab: Tab, tmp_path: Path) -> None:
     with sk.view(ball_world()[0], open=False) as view:
         tab.open(view.address[:-8] + "00000000")

@@ -144,6 +144,15 @@ def test_the_notes_of_a_file_become_warnings(tmp_path: Path) -> None:
         sk.Mesh.read(tmp_path / "b.msh")
 
 
+def test_a_refined_mesh_has_eight_times_the_tetrahedra_and_the_same_sets() -> None:
+    mesh = sk.Mesh(NODES, TETRAHEDRA, labels=[7, 9], sets={"base": sk.MeshSet(nodes=[0, 1, 2])})
+    fine = mesh.refine()
+    assert fine.labels is not None and fine.labels.tolist() == [7] * 8 + [9] * 8
+    assert fine.nodes[:5].tolist() == NODES and fine.volume == pytest.approx(mesh.volume)
+    base = fine.nodes[fine.sets["base"].nodes]
+    assert len(base) == 6 and np.all(base[:, 2] == 0)
+
+
 def test_the_boundary_has_outward_triangles() -> None:
     surface = sk.Mesh.box((1, 1, 1), 2).boundary()
     corners = surface.nodes[surface.triangles]

@@ -1,5 +1,6 @@
 """A program that uses every name of the package with its type. mypy must find no mistake in it."""
 
+import json
 import math
 import pathlib
 import sys
@@ -29,6 +30,7 @@ box = sk.Mesh.box((0.1, 0.1, 0.1), (3, 3, 3))
 inside = np.abs(box.nodes[box.tetrahedra].mean(axis=1)).max(axis=1) < 0.1 / 6
 mesh = sk.Mesh(box.nodes, box.tetrahedra[~inside])
 quality: sk.MeshReport = mesh.inspect()
+finer: sk.Mesh = mesh.refine()
 dynamics: sk.Dynamics = "explicit"
 element: sk.ElementKind = "smoothed"
 cube: sk.Body = world.add_body(mesh, rubber, dynamics=dynamics, element=element, position=(0, 0, 0.0505), name="cube")
@@ -152,6 +154,11 @@ scene: sk.Scene = sk.load_scene(described)
 wind: sk.Slider = scene.sliders["wind"]
 wind.set(wind.low + wind.fastest * wind.value * 0.1)
 contact_probes: tuple[sk.ContactProbe, ...] = scene.contact_probes
+(folder / "described.json").write_text(json.dumps(described))
+study: sk.Study = sk.study(folder / "described.json", seconds=0.002, threads=1, budget=4)
+quantities: dict[str, sk.StudyQuantity] = study.quantities
+studied: tuple[sk.StudyRun, ...] = study.runs
+cheapest: sk.CheapestSettings | None = study.cheapest
 table = sk.sweep(described, {"materials.rubber.density": [500, 1000]}, jobs=1)
 assert math.isfinite(energy.kinetic) and "properties" in sk.scene_schema() and isinstance(sk.__version__, str)
 try:

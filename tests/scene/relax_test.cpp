@@ -8,6 +8,7 @@
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
 #include "skerry/load.h"
+#include "skerry/refine.h"
 #include "skerry/relax.h"
 #include "skerry/tie.h"
 #include "tests/support/hollow_sphere.h"
@@ -275,6 +276,34 @@ TEST_CASE("load steps end in the equilibrium of the whole loads", "[scene]") {
         return lowest(world, bar);
     };
     CHECK(lowest_after(3) + 0.1 == Approx(lowest_after(1) + 0.1).epsilon(1e-3));
+}
+
+TEST_CASE("the sag of a bar converges with the order 2 if its mesh is refined", "[scene]") {
+    // The sag of the centre of mass is the work of the weight over the weight. Its error is that of the energy, which
+    // linear elements reduce with the square of their size: by 4 for each refinement.
+    constexpr Real L = 0.4, E = 1e8, density = 1000;
+    Mesh mesh = mesh::box({0.1, 0.1, L}, {1, 1, 4});
+    for (Vec3& x : mesh.nodes)
+        if (std::abs(x.z()) < 0.4 * L) x.z() += 0.02 * std::sin(40 * x.x() + 60 * x.y());
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+        if (mesh.nodes[n].z() == L / 2) mesh.sets["top"].nodes.push_back(static_cast<Index>(n));
+    const Real exact = density * standard_gravity * L * L / (3 * E);
+    std::vector<Real> error;
+    for (int level = 0; level < 3; ++level) {
+        World world;
+        const auto material = world.add_material({.young_modulus = E, .poisson_ratio = 0.0, .density = density});
+        const auto bar = world.add_body(mesh, {.material = material, .element = ElementKind::linear});
+        world.attach(bar, mesh.sets["top"].nodes);
+        const Real start = world.center_of_mass(bar).z();
+        REQUIRE(relax(world, {.tolerance = 1e-6}).converged);
+        error.push_back(1 - (start - world.center_of_mass(bar).z()) / exact);
+        mesh = mesh::refine(std::move(mesh));
+    }
+    CHECK(error[0] < 0.05);
+    for (std::size_t level = 0; level < 2; ++level) {
+        CAPTURE(error[level], error[level + 1]);
+        CHECK(std::log2(error[level] / error[level + 1]) == Approx(2).margin(0.15));
+    }
 }
 
 TEST_CASE("a relaxation that fails or is refused leaves the world whole", "[scene]") {

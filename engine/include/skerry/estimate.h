@@ -27,9 +27,11 @@ struct ErrorEstimate {
     Real deflection = not_estimated;
     Real stress = not_estimated;  // error of the largest von Mises stress at the nodes, due to the mesh
     // Error of the motion, due to the length of the steps: largest distance of the nodes from where infinitely short
-    // steps would take them, over their largest displacement from the start, both as root mean squares.
+    // steps would take them, over their largest displacement from the start, both as root mean squares. Not estimated
+    // for a body at rest.
     Real step = not_estimated;
-    // Largest displacement by deformation over the largest displacement from the start, both as root mean squares.
+    // Largest displacement by deformation over the largest displacement from the start, both as root mean squares. Not
+    // estimated for a body at rest.
     Real deformation = not_estimated;
     // Error of the contact impulses, due to the tolerance of the solver: mean of the errors of the solver, weighted by
     // impulse. Regions that were left unsolved count with their errors.

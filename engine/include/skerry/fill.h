@@ -22,6 +22,8 @@ struct FillLimits {
 
 /// Settings of fill().
 struct FillSettings {
+    // Factor for all coordinates of the surfaces, > 0. All other lengths are those after scaling.
+    Real scale = 1;
     // Edge length of the new tetrahedra and of their surface, > 0 [m]. If it is not given, the triangles of a clean
     // surface are kept, and other surfaces get a twentieth of the diagonal of their bounding box.
     std::optional<Real> edge{};

@@ -47,14 +47,18 @@ void add_parts(const std::array<Index, 3>& corner, const std::array<Index, 3>& m
     parts.insert(parts.end(), std::begin(all), std::end(all));
 }
 
-/// Divides the faces of sets that are faces of second-order tetrahedra.
+/// Divides the faces of sets that are faces of second-order elements.
 void divide_faces(const RawMesh& mesh, std::map<std::string, MeshSet>& sets) {
     if (std::ranges::all_of(sets, [](const auto& item) { return item.second.faces.empty(); })) return;
     MiddleNodes middle_of;
-    for (std::size_t t = 0; t < mesh.middle.size(); ++t)
-        for (std::size_t e = 0; e < 6 && mesh.middle[t][0] != no_index; ++e)
-            middle_of[edge_key(mesh.tetrahedra[t][second_order_edges[e][0]],
-                               mesh.tetrahedra[t][second_order_edges[e][1]])] = mesh.middle[t][e];
+    const auto add = [&](const auto& elements, const auto& middle) {
+        for (std::size_t t = 0; t < middle.size(); ++t)
+            for (std::size_t e = 0; e < middle[t].size() && middle[t][0] != no_index; ++e)
+                middle_of[edge_key(elements[t][second_order_edges[e][0]], elements[t][second_order_edges[e][1]])] =
+                    middle[t][e];
+    };
+    add(mesh.triangles, mesh.triangle_middle);
+    add(mesh.tetrahedra, mesh.middle);
     for (auto& [name, set] : sets) {
         std::vector<std::array<Index, 3>> parts;
         for (const std::array<Index, 3>& face : set.faces) {
@@ -72,7 +76,6 @@ void divide_faces(const RawMesh& mesh, std::map<std::string, MeshSet>& sets) {
 }
 
 void divide_tetrahedra(RawMesh& mesh) {
-    divide_faces(mesh, mesh.sets);
     std::vector<std::array<Index, 4>> parts;
     std::vector<Index> first;  // number of the first part of each tetrahedron, then the number of all parts
     mesh.middle.resize(mesh.tetrahedra.size(), linear_tetrahedron);
@@ -116,13 +119,37 @@ void divide_triangles(RawMesh& mesh) {
     mesh.triangle_middle.clear();
 }
 
+/// Returns the node in the middle of an edge, which the first call for the edge adds to the mesh.
+Index middle_node(Index a, Index b, RawMesh& mesh, MiddleNodes& known) {
+    const auto [place, added] = known.try_emplace(edge_key(a, b), static_cast<Index>(mesh.nodes.size()));
+    if (added)
+        mesh.nodes.emplace_back((mesh.nodes[static_cast<std::size_t>(a)] + mesh.nodes[static_cast<std::size_t>(b)]) /
+                                2);
+    return place->second;
+}
+
 }  // namespace
+
+void add_middle_nodes(RawMesh& mesh) {
+    MiddleNodes known;
+    known.reserve(2 * (mesh.tetrahedra.size() + mesh.triangles.size()));
+    const auto add = [&](const auto& elements, auto& middle) {
+        middle.resize(elements.size());
+        for (std::size_t i = 0; i < elements.size(); ++i)
+            for (std::size_t e = 0; e < middle[i].size(); ++e)
+                middle[i][e] = middle_node(elements[i][second_order_edges[e][0]], elements[i][second_order_edges[e][1]],
+                                           mesh, known);
+    };
+    add(mesh.tetrahedra, mesh.middle);
+    add(mesh.triangles, mesh.triangle_middle);
+}
 
 void divide_second_order(RawMesh& mesh) {
     const std::size_t tetrahedra =
         mesh.middle.size() - static_cast<std::size_t>(std::ranges::count(mesh.middle, linear_tetrahedron));
     const std::size_t triangles = mesh.triangle_middle.size() -
                                   static_cast<std::size_t>(std::ranges::count(mesh.triangle_middle, linear_triangle));
+    divide_faces(mesh, mesh.sets);
     if (tetrahedra > 0) divide_tetrahedra(mesh);
     if (triangles > 0) divide_triangles(mesh);
     if (tetrahedra > 0)

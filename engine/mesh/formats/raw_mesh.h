@@ -75,6 +75,9 @@ void take_tetrahedron(std::span<const Index> nodes, const FileReader& reader, Ra
 /// Adds a triangle of first order (3 nodes) or second order (6 nodes). Throws SceneError if a node occurs twice.
 void take_triangle(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
 
+/// Makes all elements of a mesh of linear elements second-order elements. The new nodes follow the present ones.
+void add_middle_nodes(RawMesh& mesh);
+
 /// Divides each tetrahedron of second order into eight linear ones and each triangle of second order into four, which
 /// together use all nodes. Parts have the labels, vectors and sets of the whole. Adds a note.
 void divide_second_order(RawMesh& mesh);

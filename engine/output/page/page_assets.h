@@ -9,6 +9,6 @@ namespace skerry {
 extern const std::string_view page_html;  // page template; marks such as @style@ are replaced by parts of the page
 extern const std::string_view page_style;
 extern const std::string_view page_script;
-extern const std::string_view three_js;  // text of three.js; empty if the build did not find it
+extern const std::string_view three_js;  // three.js in the gzip format; empty if the build did not find it
 
 }  // namespace skerry

@@ -11,7 +11,6 @@
 
 #include "engine/output/escape_markup.h"
 #include "engine/output/page/page_assets.h"
-#include "engine/output/page/stream/deflate.h"
 #include "engine/output/page/stream/pack.h"
 #include "engine/output/write_file.h"
 #include "skerry/error.h"
@@ -164,13 +163,6 @@ std::string escape_html(const std::string& text) {
     return escape_markup(Json::parse(text_of(text)).get<std::string>());
 }
 
-/// Returns three.js in compressed form, which has about a fifth of the size of its text.
-std::string packed_three_js() {
-    Deflater deflater;
-    deflater.add(three_js);
-    return deflater.packed();
-}
-
 /// Parts of a page that are not the same in every page.
 struct PageParts {
     std::string title, run, frames, visuals;
@@ -189,7 +181,7 @@ void put_page(std::ostream& out, const PageParts& parts) {
     replace("@run@", parts.run);
     replace("@frames@", parts.frames);
     replace("@visuals@", parts.visuals);
-    replace("@three@", base64(packed_three_js()));
+    replace("@three@", base64(three_js));
     replace("@script@", page_script);
     out << rest;
 }

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -35,12 +36,12 @@ std::string csv_head(const std::vector<SeriesColumn>& columns) {
     return line + "\n";
 }
 
+/// The first value is the time. Its last digits are rounding errors of the sum of all steps and are left out.
 std::string csv_row(std::span<const Real> values) {
-    std::string line;
-    for (const Real value : values) {
-        if (!line.empty()) line += ",";
-        line += std::isfinite(value) ? number_text(value) : "nan";
-    }
+    char time[32];
+    std::snprintf(time, sizeof time, "%.14g", values.front());
+    std::string line = time;
+    for (const Real value : values.subspan(1)) line += "," + (std::isfinite(value) ? number_text(value) : "nan");
     return line + "\n";
 }
 

@@ -18,23 +18,19 @@ constexpr double longest_interval = 600;  // longest time between two lines [s]
 
 }  // namespace
 
-CaseProgress::CaseProgress(bool wanted, int count)
-    : wanted_(wanted && count > 0),
-      bar_(wanted && isatty(STDERR_FILENO) != 0),
-      count_(count),
-      next_(bar_ ? 0 : first_line_after) {}
+CaseProgress::CaseProgress(bool wanted, const char* kind)
+    : wanted_(wanted), bar_(wanted && isatty(STDERR_FILENO) != 0), kind_(kind), next_(bar_ ? 0 : first_line_after) {}
 
 CaseProgress::~CaseProgress() {
     if (bar_) clear_bar();
 }
 
-void CaseProgress::show(int done, int running) {
+void CaseProgress::show(int done, int running, int count, double share) {
     const double wall = watch_.seconds();
     if (!wanted_ || wall < next_) return;
-    const double share = static_cast<double>(done) / count_;
-    std::string text =
-        std::to_string(done) + " of " + std::to_string(count_) + " cases done, " + std::to_string(running) + " running";
-    if (done > 0) text += ", about " + duration_text(wall * (1 - share) / share) + " left";
+    std::string text = std::to_string(done) + " of " + std::to_string(count) + " " + kind_ + " done, " +
+                       std::to_string(running) + " running";
+    if (share > 0) text += ", about " + duration_text(wall * (1 - share) / share) + " left";
     if (bar_)
         std::fprintf(stderr, "\r\033[K%s %s", bar_text(share).c_str(), text.c_str());
     else

@@ -1,4 +1,5 @@
-// Displays the progress of a sweep: as a bar on a terminal, otherwise as a line from time to time.
+// Displays the progress of the runs of a sweep or a study: as a bar on a terminal, otherwise as a line from time to
+// time.
 #pragma once
 
 #include "engine/program/progress.h"
@@ -7,19 +8,21 @@ namespace skerry {
 
 class CaseProgress {
 public:
-    /// `count` is the number of cases. If `wanted` is false, nothing is displayed. All output goes to standard error.
-    CaseProgress(bool wanted, int count);
+    /// `kind`: name of the items in the plural, for example "cases". If `wanted` is false, nothing is displayed. All
+    /// output goes to standard error.
+    CaseProgress(bool wanted, const char* kind);
     ~CaseProgress();
     CaseProgress(const CaseProgress&) = delete;
     CaseProgress& operator=(const CaseProgress&) = delete;
 
     /// Displays the progress if the last display was long enough ago: the bar ten times a second, lines after 1, 2, 4,
-    /// ... s and later every ten minutes. `done` and `running` are numbers of cases.
-    void show(int done, int running);
+    /// ... s and later every ten minutes. `done`, `running` and `count` are numbers of items, `share` is the share of
+    /// the work that is done.
+    void show(int done, int running, int count, double share);
 
 private:
     bool wanted_, bar_;
-    int count_;
+    const char* kind_;
     Stopwatch watch_;
     double next_;  // wall time of the next display [s]
 };

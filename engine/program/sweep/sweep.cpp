@@ -134,7 +134,8 @@ struct SweepRun {
 
 SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs, const SweepOptions& options) {
     SweepRun run;
-    CaseProgress progress(!options.quiet, static_cast<int>(left.size()));
+    const auto count = static_cast<int>(left.size());
+    CaseProgress progress(!options.quiet && count > 0, "cases");
     const auto index_of = [&](int job) { return left[static_cast<std::size_t>(job)]; };
     const auto one = [&](int job) { return run_case(plan.job(index_of(job), options.probes)); };
     const auto goes_on = [&](int, int code) {
@@ -143,8 +144,10 @@ SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs
         run.output_failed |= code == exit_output;
         return !run.output_failed;
     };
-    const auto show = [&](int done, int running) { progress.show(done, running); };
-    run.end = run_in_processes(static_cast<int>(left.size()), jobs, {one, goes_on, show});
+    const auto show = [&](int done, int running) {
+        progress.show(done, running, count, static_cast<double>(done) / count);
+    };
+    run.end = run_in_processes(count, jobs, {one, goes_on, show});
     for (const auto& [job, how] : run.end.lost) remove_unfinished(plan, index_of(job));
     for (const int job : run.end.stopped) remove_unfinished(plan, index_of(job));
     clear_bar();

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/program/sweep/case_hash.h"
 #include "engine/scene/assign.h"
+#include "engine/scene/case_hash.h"
 #include "engine/scene/scene_file.h"
 
 namespace skerry {

@@ -60,6 +60,7 @@ from ._settings import (
     SurfaceMesh,
     TieKind,
 )
+from ._study import CheapestSettings, Study, StudyQuantity, StudyRun, study
 from ._surface_check import SurfaceFault, SurfaceFaultKind, SurfaceReport, SurfaceShell, check_surface
 from ._sweep import sweep
 from ._visual import VisualMaterial, VisualSurface
@@ -141,6 +142,7 @@ __all__ = [
     "CavityLaw",
     "CavityProbe",
     "CavityState",
+    "CheapestSettings",
     "Collider",
     "ContactProbe",
     "ContactRegions",
@@ -231,6 +233,9 @@ __all__ = [
     "StepReport",
     "SurfaceSet",
     "StressProbe",
+    "Study",
+    "StudyQuantity",
+    "StudyRun",
     "Surface",
     "SurfaceFault",
     "SurfaceFaultKind",
@@ -264,6 +269,7 @@ __all__ = [
     "rollout",
     "scene_schema",
     "solve",
+    "study",
     "sweep",
     "view",
 ]

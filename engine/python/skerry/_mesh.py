@@ -116,6 +116,7 @@ class Mesh:
     def fill(
         surface: SurfaceMesh | Path | Sequence[Path],
         *,
+        scale: float = 1,
         edge: float | None = None,
         tolerance: float = 1e-3,
         cavities: bool = False,
@@ -124,6 +125,7 @@ class Mesh:
     ) -> Mesh:
         """Fills a triangle surface, or the surfaces of one or more files, with tetrahedra.
 
+        scale: factor for all coordinates of the surfaces, 0.001 for millimetres. Other lengths are those after scaling.
         edge: edge length of the tetrahedra and of their surface [m]. Without it the triangles of a surface without
             faults are kept, and other surfaces get a twentieth of the diagonal of the bounding box.
         tolerance: largest distance between surface and mesh, as a fraction of this diagonal. With 0 all triangles are
@@ -146,7 +148,8 @@ class Mesh:
         length = None if edge is None else real(edge, "edge")
         limits = real(time_limit, "time_limit"), real(memory_limit, "memory_limit")
         python = os.environ.get("SKERRY_FILL_PYTHON", sys.executable)
-        core, notes = _core.fill(given, length, real(tolerance, "tolerance"), bool(cavities), *limits, python)
+        factor, share = real(scale, "scale"), real(tolerance, "tolerance")
+        core, notes = _core.fill(given, factor, length, share, bool(cavities), *limits, python)
         _warn(notes)
         return Mesh._of(core)
 
@@ -332,6 +335,13 @@ class Mesh:
         """The triangles of the boundary, counter-clockwise as seen from outside."""
         nodes, triangles = _core.boundary(self._core)
         return SurfaceMesh(nodes=nodes, triangles=triangles)
+
+    def refine(self) -> Mesh:
+        """The mesh with each tetrahedron divided into eight by new nodes at the midpoints of its edges. The shape of
+        the surface stays the same, the new nodes follow the present ones, and parts have the labels and sets of the
+        whole. A set of nodes gets the midpoints of edges of faces whose nodes are all in the set, and of edges between
+        its nodes outside of such faces, as on a curve."""
+        return Mesh._of(_core.refine(self._core))
 
     def inspect(self) -> MeshReport:
         """Statistics of size, quality and faults."""

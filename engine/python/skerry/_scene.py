@@ -202,9 +202,7 @@ def load_scene(
 
     Corrections and doubts are warnings Doubt, for example of a filled surface. SceneError: names the place, the value
     found and the value expected; for an unknown key the nearest known one."""
-    if not isinstance(overrides, Mapping | None):
-        raise TypeError(f"overrides: found {overrides!r}, expected a mapping from places to values")
-    assignments = [f"{place}={json.dumps(_plain(value, str(place)))}" for place, value in (overrides or {}).items()]
+    assignments = assignments_of(overrides)
     count = None if threads is None else counted(threads, "threads")
     python = os.environ.get("SKERRY_FILL_PYTHON", sys.executable)
     if isinstance(scene, Mapping):
@@ -218,6 +216,13 @@ def load_scene(
             "scene: found a text in JSON, expected a path of a JSON file or a mapping, such as json.loads(text)"
         )
     return _with_doubts(_core.load_scene(file, assignments, count, python))
+
+
+def assignments_of(overrides: Mapping[str, Json] | None) -> list[str]:
+    """Assignments PLACE=VALUE with the values that replace others of a scene."""
+    if not isinstance(overrides, Mapping | None):
+        raise TypeError(f"overrides: found {overrides!r}, expected a mapping from places to values")
+    return [f"{place}={json.dumps(_plain(value, str(place)))}" for place, value in (overrides or {}).items()]
 
 
 def _with_doubts(values: dict[str, Any]) -> Scene:

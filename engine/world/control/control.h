@@ -93,6 +93,13 @@ void release_ties(WorldState& world);
 /// See Fibres::state.
 FibreState fibre_state(const WorldState& world, FibreHandle fibres);
 
+// control_motion.cpp
+
+/// Moves a collider or an attachment steadily from its present pose to each of the poses in turn, where it stops. Their
+/// times increase, from a time after the present one. Each rotation must be less than half a revolution.
+void follow_poses(World& world, ColliderHandle collider, std::span<const Keyframe> poses);
+void follow_poses(World& world, AttachmentHandle attachment, std::span<const Keyframe> poses);
+
 // control_springs.cpp
 
 /// Returns the present state of a spring.

@@ -1,5 +1,6 @@
 // Changes of the motion of colliders and attachments. Each collider and attachment has a script: constant velocities
 // since a start time, or keyframes.
+#include <array>
 #include <vector>
 
 #include "engine/world/complaint.h"
@@ -45,17 +46,23 @@ struct Scripted {
         script().start = now;
         table.initial[row] = {pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()};
     }
-    void start_keys(const Keyframe& from, const Keyframe& to) const {
-        constexpr Index two = 2;
-        if (script().key_end - script().key_begin != two) {
+    /// Replaces the script by the key `from` and the poses `to`. A rotation has many rotation vectors, which differ by
+    /// full revolutions. The vector nearest to that of the key before is used, so that the object makes no additional
+    /// revolution.
+    void start_keys(const Keyframe& from, std::span<const Keyframe> to) const {
+        if (keys().size() != to.size() + 1) {
             erase_keys();
-            for (Index k = 0; k < two; ++k) table.keyframe.push_back({});
+            for (std::size_t k = 0; k <= to.size(); ++k) table.keyframe.push_back({});
             script().key_end = static_cast<Index>(table.keyframe.size());
         }
         script().velocity = script().angular_velocity = Vec3::Zero();
         script().start = 0;
-        table.keyframe[static_cast<std::size_t>(script().key_begin)] = from;
-        table.keyframe[static_cast<std::size_t>(script().key_begin) + 1] = to;
+        Keyframe* key = &table.keyframe[static_cast<std::size_t>(script().key_begin)];
+        *key = from;
+        for (const Keyframe& next : to) {
+            key[1] = {next.time, next.position, nearest_turn(next.rotation, key->rotation)};
+            ++key;
+        }
     }
 };
 
@@ -82,23 +89,21 @@ bool set_velocity(const Scripted<Table>& scripted, const Vec3& velocity, const V
     return true;
 }
 
+/// Moves an object steadily from its present pose to each of the poses `to` in turn.
 template <class Table>
-void move_to(const Scripted<Table>& scripted, const Pose& pose, Real duration, Real now) {
+void follow(const Scripted<Table>& scripted, std::span<const Keyframe> to, Real now) {
     const RigidPose from = scripted.pose(now);
     const MotionScript& script = scripted.script();
+    const Pose end{to.back().position, to.back().rotation};
     const bool is_still = scripted.has_keys()
                               ? !(now < scripted.keys().back().time)
                               : script.velocity == Vec3::Zero() && script.angular_velocity == Vec3::Zero();
-    if (is_still && is_at(from, pose)) return;
-    const Real end = now + duration;
-    const bool has_target = script.key_end - script.key_begin == 2;
-    if (has_target && scripted.keys().back().time == end && scripted.keys().front().time <= now &&
-        is_at({scripted.keys().back().position, rotation_matrix(scripted.keys().back().rotation)}, pose))
+    if (is_still && is_at(from, end)) return;
+    const bool has_target = scripted.keys().size() == to.size() + 1;
+    if (has_target && scripted.keys().back().time == to.back().time && scripted.keys().front().time <= now &&
+        is_at({scripted.keys().back().position, rotation_matrix(scripted.keys().back().rotation)}, end))
         return;
-    const Vec3 rotation = rotation_vector(from.rotation);
-    // A rotation has many rotation vectors, which differ by full revolutions. The vector nearest to the present one is
-    // used, so that the object makes no additional revolution.
-    scripted.start_keys({now, from.position, rotation}, {end, pose.position, nearest_turn(pose.rotation, rotation)});
+    scripted.start_keys({now, from.position, rotation_vector(from.rotation)}, to);
 }
 
 template <class Table>
@@ -202,14 +207,25 @@ void World::set_velocity(AttachmentHandle attachment, const Vec3& velocity, cons
     skerry::set_velocity(Scripted{state_->model.attachments, row}, velocity, angular_velocity, time());
 }
 
+void follow_poses(World& world, ColliderHandle collider, std::span<const Keyframe> poses) {
+    WorldState& state = state_between_steps(world, "move_to");
+    for_each_script(state.model, state.model.row(collider, "move_to"),
+                    [&](const auto& scripted) { follow(scripted, poses, world.time()); });
+}
+
+void follow_poses(World& world, AttachmentHandle attachment, std::span<const Keyframe> poses) {
+    WorldState& state = state_between_steps(world, "move_to");
+    const auto row = static_cast<std::size_t>(state.model.row(attachment, "move_to"));
+    follow(Scripted{state.model.attachments, row}, poses, world.time());
+}
+
 void World::move_to(ColliderHandle collider, const Pose& pose, Real duration) {
     state_->require_between_steps("move_to");
     const Index row = state_->model.row(collider, "move_to");
     const auto object = [&] { return title_of(state_->model, row); };
     require_pose(object, pose);
     require_duration(object, duration, time());
-    for_each_script(state_->model, row,
-                    [&](const auto& scripted) { skerry::move_to(scripted, pose, duration, time()); });
+    follow_poses(*this, collider, std::array{Keyframe{time() + duration, pose.position, pose.rotation}});
 }
 
 void World::move_to(AttachmentHandle attachment, const Pose& pose, Real duration) {
@@ -218,7 +234,7 @@ void World::move_to(AttachmentHandle attachment, const Pose& pose, Real duration
     const auto object = [&] { return title_of_attachment(state_->model, row); };
     require_pose(object, pose);
     require_duration(object, duration, time());
-    skerry::move_to(Scripted{state_->model.attachments, row}, pose, duration, time());
+    follow_poses(*this, attachment, std::array{Keyframe{time() + duration, pose.position, pose.rotation}});
 }
 
 void World::set_pose(ColliderHandle collider, const Pose& pose) {

@@ -78,6 +78,7 @@ void move_lists(std::span<const Range> gone, std::size_t count, PairTable& pairs
         for (auto from = static_cast<std::size_t>(gone[i].end); from < stop; ++from, ++to) {
             pairs.candidates[from].swap(pairs.candidates[to]);
             pairs.asleep_until[from].swap(pairs.asleep_until[to]);
+            std::swap(pairs.leaf_pairs[from], pairs.leaf_pairs[to]);
         }
     }
 }
@@ -100,8 +101,7 @@ void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, Cont
         [&](std::size_t p) { rows.renumber(p); });
     move_lists(gone, count, pairs);
     AnyTable(pairs).erase(gone);
-    for (Column<Vec3>* column : {&pairs.self.origin, &pairs.self.origin_step})
-        if (!column->empty()) column->erase(moves.gone.nodes);
+    pairs.self.origin.erase(moves.gone.nodes);
     search.body_valid_until.erase(moves.gone.bodies);
     search.memory.rebase.erase(moves.gone.bodies);
     search.collider_valid_until.erase(moves.colliders_gone);

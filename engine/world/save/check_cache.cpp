@@ -67,7 +67,6 @@ void check_cache(const SavedFile& file, const Model& model, ContactCache& cache)
     const std::size_t origins = pairs.self.origin.size();
     const bool self_contact = std::ranges::find(pairs.kind, PairKind::self) != pairs.kind.end();
     if (origins != 0 || self_contact) expect_size(file, "pairs/self_origin", origins, model.nodes.position.size());
-    expect_size(file, "pairs/self_origin_step", pairs.self.origin_step.size(), origins);
 
     // A column of the contact search has either one row per object or no rows. If it has no rows, the next step
     // searches all pairs.
@@ -99,6 +98,24 @@ bool is_of_collider(const Candidate& candidate, const BodyTable& bodies, Index a
     return inside(candidate.first, bodies.vertices[a]) && second < parts;
 }
 
+/// Complains about leaves that are not in the tree of the body. The first row is the root of the tree.
+void check_leaf_pairs(const SavedFile& file, const Model& model, const PairTable& pairs, std::size_t p) {
+    const Range tree = model.bodies.bvh_nodes[pairs.first[p]];
+    const auto is_leaf = [&](Index row) {
+        return row >= 0 && row < tree.size() && model.bvh.node[tree.begin + row].count > 0;
+    };
+    const auto& listed = pairs.leaf_pairs[p].listed;
+    if (!listed.empty() && pairs.kind[p] != PairKind::self)
+        file.complain("pairs/leaf_pairs", std::to_string(listed.size()) + " rows for pair " + std::to_string(p),
+                      "no rows, because the pair is not a self-contact");
+    for (std::size_t i = 0; i < listed.size(); ++i) {
+        const auto& [first, second, spare] = listed[i];
+        if (i == 0 ? first != 0 || second != 0 : !is_leaf(first) || !is_leaf(second))
+            file.complain("pairs/leaf_pairs", "rows " + std::to_string(first) + " and " + std::to_string(second),
+                          "leaves in the tree of the body; in the first row the root 0");
+    }
+}
+
 void check_candidates(const SavedFile& file, const Model& model, const PairTable& pairs) {
     const BodyTable& bodies = model.bodies;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -120,6 +137,7 @@ void check_candidates(const SavedFile& file, const Model& model, const PairTable
                                   std::to_string(candidate.second) + " of pair " + std::to_string(p),
                               "features of the two surfaces of this pair");
         }
+        check_leaf_pairs(file, model, pairs, p);
     }
 }
 

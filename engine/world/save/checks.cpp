@@ -15,7 +15,7 @@ namespace {
 /// True for columns that may contain infinity. It stands for a bound that does not exist, or is the value in an unused
 /// lane.
 bool may_be_infinite(std::string_view path) {
-    constexpr std::array<std::string_view, 21> paths{"watch/step",
+    constexpr std::array<std::string_view, 22> paths{"watch/step",
                                                      "watch/look/in_frame",
                                                      "watch/look/highest",
                                                      "tetrahedra/altitude",
@@ -28,6 +28,7 @@ bool may_be_infinite(std::string_view path) {
                                                      "colliders/travel",
                                                      "pairs/valid_until",
                                                      "pairs/candidates/asleep_until",
+                                                     "pairs/leaf_pairs/spare",
                                                      "search/body_valid_until",
                                                      "search/collider_valid_until",
                                                      "joints/lower",

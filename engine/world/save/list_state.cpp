@@ -115,7 +115,7 @@ void list_cache(ContactCache& cache, SavedRows& saved, Archive& archive) {
     archive.column("pairs/candidates", saved.candidates.item);
     archive.column("pairs/candidates/asleep_until", saved.asleep_until);
     archive.column("pairs/self_origin", cache.pairs.self.origin);
-    archive.column("pairs/self_origin_step", cache.pairs.self.origin_step);
+    list_ragged("pairs/leaf_pairs", saved.leaf_pairs, archive);
     SearchState& search = cache.search;
     archive.column("search/body_valid_until", search.body_valid_until);
     archive.column("search/collider_valid_until", search.collider_valid_until);

@@ -256,6 +256,7 @@ SavedRows rows_to_save(WorldState& world) {
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         append(pairs.candidates[p].span(), saved.candidates);
         for (const Real until : pairs.asleep_until[p]) saved.asleep_until.push_back(until);
+        append(pairs.leaf_pairs[p].listed.span(), saved.leaf_pairs);
     }
     for (const StepLimitReport& entry : world.record.limits.entries()) {
         saved.limit.push_back(entry.limit);
@@ -390,8 +391,10 @@ void put_candidates(const SavedRows& saved, const SavedFile& file, const Model& 
     expect_ragged(file, "pairs/candidates", saved.candidates, pairs.size(), "pairs");
     expect_rows(file, "pairs/candidates/asleep_until", saved.asleep_until.size(), saved.candidates.item.size(),
                 "candidates");
+    expect_ragged(file, "pairs/leaf_pairs", saved.leaf_pairs, pairs.size(), "pairs");
     pairs.candidates.resize(pairs.size());
     pairs.asleep_until.resize(pairs.size());
+    pairs.leaf_pairs.resize(pairs.size());
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         const Index begin = saved.candidates.offset[p];
         for (const Candidate& candidate : saved.candidates[p]) {
@@ -399,6 +402,7 @@ void put_candidates(const SavedRows& saved, const SavedFile& file, const Model& 
             pairs.candidates[p].push_back(candidate);
             pairs.asleep_until[p].push_back(saved.asleep_until[static_cast<std::size_t>(begin) + row]);
         }
+        for (const LeafPair& pair : saved.leaf_pairs[p]) pairs.leaf_pairs[p].listed.push_back(pair);
     }
     check_candidates(file, model, pairs);
 }

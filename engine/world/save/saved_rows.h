@@ -67,6 +67,7 @@ struct SavedRows {
     Column<std::array<Real, 6>> shape_size;
     Ragged<Candidate> candidates;  // contact candidates of each pair
     Column<Real> asleep_until;     // by candidate [m]
+    Ragged<LeafPair> leaf_pairs;   // LeafPairTable::listed of each pair
     Column<StepLimit> limit;
     Column<std::uint32_t> limit_slot, limit_generation;
     Ragged<std::uint8_t> limit_name;

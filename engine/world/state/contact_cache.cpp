@@ -22,8 +22,7 @@ void ContactCache::extend(const Model& model) {
     search.body_valid_until.resize(model.bodies.slot.size(), SearchState::forgotten);
     search.collider_valid_until.resize(model.colliders.slot.size(), SearchState::forgotten);
     search.memory.rebase.resize(model.bodies.slot.size());
-    for (Column<Vec3>* column : {&pairs.self.origin, &pairs.self.origin_step})
-        if (!column->empty()) column->resize(model.nodes.position.size(), Vec3::Zero());
+    if (!pairs.self.origin.empty()) pairs.self.origin.resize(model.nodes.position.size(), Vec3::Zero());
     search.memory.collider_extent.resize(model.colliders.slot.size());
 }
 

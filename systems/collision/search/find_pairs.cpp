@@ -266,8 +266,10 @@ void move_lists(Executor& executor, SearchMemory& memory, PairTable& pairs) {
     const std::size_t lists = std::max({count, pairs.candidates.size(), memory.candidates.size()});
     pairs.candidates.resize(lists);
     pairs.asleep_until.resize(lists);
+    pairs.leaf_pairs.resize(lists);
     memory.candidates.resize(lists);
     memory.asleep_until.resize(lists);
+    memory.leaf_pairs.resize(lists);
     memory.given_away.assign(lists, 0);
     for (const Index old : memory.old_row)
         if (old != no_index) memory.given_away[old] = 1;
@@ -285,13 +287,16 @@ void move_lists(Executor& executor, SearchMemory& memory, PairTable& pairs) {
             const std::size_t old = static_cast<std::size_t>(memory.old_list[row]);
             memory.candidates[row].swap(pairs.candidates[old]);
             memory.asleep_until[row].swap(pairs.asleep_until[old]);
+            std::swap(memory.leaf_pairs[row], pairs.leaf_pairs[old]);
             if (row < count && memory.old_row[row] != no_index) continue;
             memory.candidates[row].clear();
             memory.asleep_until[row].clear();
+            memory.leaf_pairs[row].listed.clear();
         }
     });
     pairs.candidates.swap(memory.candidates);
     pairs.asleep_until.swap(memory.asleep_until);
+    pairs.leaf_pairs.swap(memory.leaf_pairs);
 }
 
 void write_rows(Executor& executor, const SearchMemory& memory, PairTable& pairs) {

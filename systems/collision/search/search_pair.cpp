@@ -50,33 +50,33 @@ public:
     }
 
     void run() {
-        any_leaf_pair(
-            inputs_.bvh_node, inputs_.body.bvh_nodes[pair_.first].begin, inputs_.body.bvh_nodes[pair_.second].begin,
-            self_,
-            [&](Index a, Index b) {
-                const Real squared = distance_squared(box_[a], box_[b]);
-                if (squared == 0) return true;
-                const Real radius = pair_.scale.zone + margin_of(a, b);
-                return squared < radius * radius;
-            },
-            [&](Index a, Index b) {
-                add_near(a, b);
-                return false;
-            });
+        const Index root = inputs_.body.bvh_nodes[pair_.first].begin;
+        for (const LeafPair& leaves : pair_.leaf_pairs)
+            add_near({root + leaves.first, root + leaves.second, leaves.spare});
+        if (!self_) find_near_leaves();
         compare_near();
         empty_queue(FeaturePair::point_triangle);
         empty_queue(FeaturePair::edge_edge);
     }
 
 private:
-    static bool is_point(Index core_nodes) { return core_nodes == 1 || core_nodes == cylinder_core_nodes; }
+    /// Two leaves whose features are to be compared, with the margin of the list [m].
+    struct NearLeaves {
+        Index first, second;
+        Real margin;
+    };
 
-    /// Margin of the list for features below two nodes of the trees [m].
-    Real margin_of(Index a, Index b) const {
-        if (pair_.self_motion == nullptr) return pair_.margin;
-        return std::max({pair_.margin + pair_.longer_motion, pair_.self_motion->margin_of(*pair_.self, a, b),
-                         pair_.self_motion->reach_of(*pair_.self, a, b)});
+    void find_near_leaves() {
+        any_leaf_pair(
+            inputs_.bvh_node, inputs_.body.bvh_nodes[pair_.first].begin, inputs_.body.bvh_nodes[pair_.second].begin,
+            false, [&](Index a, Index b) { return distance_squared(box_[a], box_[b]) < radius_squared_; },
+            [&](Index a, Index b) {
+                add_near({a, b, margin_});
+                return false;
+            });
     }
+
+    static bool is_point(Index core_nodes) { return core_nodes == 1 || core_nodes == cylinder_core_nodes; }
 
     void set_margin(Real margin) {
         margin_ = margin;
@@ -101,17 +101,17 @@ private:
 
     const LeafTriangles& leaf_triangle(Index a) const { return inputs_.leaf_triangle[node(a).leaf]; }
 
-    void add_near(Index a, Index b) {
+    void add_near(const NearLeaves& leaves) {
         if (near_count_ == most_near) compare_near();
-        near_[near_count_++] = {a, b};
-        prefetch_leaf(a);
-        prefetch_leaf(b);
+        near_[near_count_++] = leaves;
+        prefetch_leaf(leaves.first);
+        prefetch_leaf(leaves.second);
     }
 
     void compare_near() {
         for (std::size_t i = 0; i < near_count_; ++i) {
-            const auto [a, b] = near_[i];
-            if (self_) set_margin(margin_of(a, b));
+            const auto [a, b, margin] = near_[i];
+            if (self_) set_margin(margin);
             if (a == b)
                 compare_within(a);
             else
@@ -288,7 +288,7 @@ private:
     std::array<KeptLeaves<LeafEdges>, 2> edges_;
     std::array<KeptLeaves<LeafTriangleBoxes>, 2> boxes_;
     // Collected pairs of leaves whose features are not compared yet.
-    std::array<std::array<Index, 2>, most_near> near_;
+    std::array<NearLeaves, most_near> near_;
     std::size_t near_count_ = 0;
     std::array<Queue, 2> queue_;  // by FeaturePair
 };
@@ -302,7 +302,7 @@ Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, std:
     if (apart >= pair.margin) return pair.travel_base + apart;
     BodySearch(inputs, pair, box, found).run();
     sort_by_feature(found);
-    return pair.travel_base + pair.margin + pair.longer_motion;
+    return pair.travel_base + pair.margin;
 }
 
 }  // namespace

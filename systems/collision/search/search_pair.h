@@ -4,7 +4,6 @@
 #include "components/pair_table.h"
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/collision/inputs/contact_reach.h"
-#include "systems/collision/search/self_motion.h"
 
 namespace skerry {
 
@@ -16,18 +15,16 @@ struct PairToSearch {
     Real travel_base;  // travel of the pair from which bounds are counted (pair_travel_base) [m]
     Real margin;       // features with a distance below scale.zone + margin are listed [m]
     Real apart;        // lower bound of the distance between the two bodies [m]
-    // For a body paired with itself: the margin for two of its parts is at least their margin and reach in SelfMotion,
-    // and `margin` plus longer_motion [m].
-    const SelfMotion* self_motion = nullptr;
-    const SelfSearch* self = nullptr;
-    Real longer_motion = 0;
+    // For a body paired with itself: the pairs of leaves to compare, with their margins in place of `margin`.
+    std::span<const LeafPair> leaf_pairs{};
 };
 
 /// Lists the close features of a pair in feature order, each combination of two features once. For two bodies, these
 /// are points of either body with triangles of the other body, and edges with edges. They are found with two trees,
 /// whose boxes must be computed from the present positions. A body and a collider are searched by search_collider. If a
 /// body is paired with itself, features are left out that share a node or whose distance in the rest shape is below the
-/// contact distance. Returns the travel_bound up to which the list is complete [m].
+/// contact distance, and only the features of leaf_pairs are compared. Returns the travel_bound up to which the list is
+/// complete [m].
 Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                  Column<FoundCandidate>& found);
 

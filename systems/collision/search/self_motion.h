@@ -1,28 +1,25 @@
-// Bounds on the relative motion of the parts of one body. They decide how long the candidate list of a body with itself
-// is valid.
+// Candidate list of a body with itself: the close pairs of leaves in the tree of the body, and bounds on the motion
+// after which the features of a pair must be compared again.
 //
 // The travel of the body (contact_reach.h) bounds the motion of its fastest node. Features of one body that are close
 // to each other mostly move together, so the travel overestimates the change of their distance. A sharper bound uses
-// two nodes a, b of the tree of the body. Let X_i be the position of mesh node i at the last search at time s, and
-// u_i = x_i - Q X_i its displacement since then, without a rotation Q of the whole body. Any rotation is permitted;
-// motion_since_search computes one that fits. Let U(a, b) be the largest |u_i - u_j| for mesh nodes i below a and j
-// below b. Features f below a and g below b satisfy
+// two leaves a, b of the tree. Let X_i be the position of mesh node i at an earlier time s, and u_i = x_i - Q X_i its
+// displacement since then, without a rotation Q of the whole body. Any rotation is permitted; rigid_displacement
+// computes one that fits. Let U(a, b) be the largest |u_i - u_j| for mesh nodes i of a and j of b. Features f of a and
+// g of b satisfy
 //
 //     D(t) >= D(s) - U(a, b),
 //
 // because the nearest points at time t have the same weights of mesh nodes at time s. The velocities give the bound
-// R(a, b) >= reach (contact_reach.h) in the same way, and the displacements of one step at time s give the bound
-// S(a, b) of the relative motion in that step. The margin of a list differs between parts: it is
+// R(a, b) >= reach (contact_reach.h) in the same way. Each pair of leaves has a spare distance M(a, b): features of the
+// pair that are not in the list satisfy D(s) >= zone + M(a, b).
 //
-//     M(a, b) = max(m, steps_ahead S(a, b)).
-//
-// So fast parts have a larger margin than slow parts. A search lists all features with D(s) < zone + max(M, R).
-//
-// 1. The list is complete for a step if U(a, b) + R(a, b) < M(a, b) for all a and b that could be near, which are those
-//    with D(s) < zone + U(a, b) + R(a, b).
-// 2. The spare margin is the smallest value of max(M(a, b), D(s) - zone) - U(a, b) for all a and b. The list stays
-//    complete while travel_bound is below T0 plus the spare margin, without another comparison of parts
-//    (contact_reach.h, 5).
+// 1. An update for the time t subtracts U(a, b) from M(a, b). The next update counts from t.
+// 2. The list is complete for a step if M(a, b) > R(a, b) for all pairs of leaves. The features of other pairs are
+//    compared again, and those with D(t) < zone + max(m, k S, R) are listed. S(a, b) bounds the relative motion in one
+//    step, so fast pairs are not compared in every step. The new spare distance is this maximum.
+// 3. Only pairs of leaves that are close to each other have a row. The row of the root with itself stands for all other
+//    pairs. If it expires, the close pairs are listed again.
 //
 // All bounds and D(s) are computed from boxes.
 #pragma once
@@ -37,9 +34,15 @@
 
 namespace skerry {
 
-// Number of steps for which the margin of a list allows, if the parts of the body keep their velocities. With a larger
-// number there are fewer searches, but each search finds more candidates.
+// Number k of steps for which a spare distance allows, if the parts of the body keep their velocities. With a larger
+// number there are fewer comparisons, but each comparison finds more candidates.
 inline constexpr Real steps_ahead = 4;
+// Pairs of leaves are listed up to this distance, as a multiple of the mean edge length. With a larger number the list
+// of pairs is longer, but valid for more steps.
+inline constexpr Real listed_edges = 1;
+// When some pairs are compared, all pairs are compared that have at most this part of the smallest spare distance left,
+// because a search has a fixed cost.
+inline constexpr Real renewed_part = 0.5;
 
 /// Largest distance between a point in one box and a point in another box.
 inline Real farthest(const Aabb& a, const Aabb& b) {
@@ -53,44 +56,49 @@ struct SelfMotion {
     PairScale scale;
     Real gravity;  // [m/s^2]
     Real h;        // [s]
-    Real skin;     // smallest margin m of the list [m]
+    Real skin;     // smallest spare distance m of a comparison [m]
 
-    /// Bound R(a, b): distance that features of two parts may close in this step and still become a contact [m].
+    /// Row of BvhTable of the root of the body's tree.
+    Index root() const { return inputs.body.bvh_nodes[body].begin; }
+    /// Bound R(a, b): distance that features of two leaves may close in this step and still become a contact [m].
     Real reach_of(const SelfSearch& self, Index a, Index b) const {
         return reach(h, farthest(self.speed_box[a], self.speed_box[b]), gravity, scale.contact_distance);
     }
-    /// Margin M(a, b) of the list for features of two parts [m].
+    /// Spare distance max(m, k S, R) of a new comparison of two leaves [m].
     Real margin_of(const SelfSearch& self, Index a, Index b) const {
-        return std::max(skin, steps_ahead * farthest(self.origin_step_box[a], self.origin_step_box[b]));
+        const Real speed = farthest(self.speed_box[a], self.speed_box[b]);
+        return std::max({skin, steps_ahead * h * speed, reach(h, speed, gravity, scale.contact_distance)});
     }
 };
 
-/// `state`: state of the pair of the body with itself.
+/// `state`: state of the pair of the body with itself. `longer_motion`: distance by which the smallest spare distance
+/// is increased [m].
 inline SelfMotion self_motion_of(const CollisionInputs& inputs, const CollisionSettings& settings, PairState state,
-                                 Index body, Real h) {
+                                 Index body, Real h, Real longer_motion = 0) {
     const PairScale scale = pair_scale(inputs, PairKind::self, body, body);
     return {inputs,           body, pair_scale_as_known(settings, state, scale),
-            settings.gravity, h,    settings.pair_skin * scale.edge};
+            settings.gravity, h,    settings.pair_skin * scale.edge + longer_motion};
 }
 
-/// Makes room for all nodes and trees.
+/// Makes room for all nodes, features and trees.
 void resize(const CollisionInputs& inputs, SelfSearch& self);
 
-/// Stores the present positions and velocities of a body, from which its candidate list is made, and computes the boxes
-/// that SelfMotion::reach_of and SelfMotion::margin_of need.
-void store_origin(const SelfMotion& motion, SelfSearch& self);
+/// Subtracts the motion of the body since the last update from all spare distances, and stores the present positions
+/// and velocities. Returns true if the candidate list is complete for the step that begins.
+bool update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearch& self);
 
-/// Returns the spare margin of the candidate list for the present positions if it exceeds `least`, and otherwise any
-/// value up to `least` [m].
-Real spare_margin_of(const SelfMotion& motion, Real least, SelfSearch& self);
+/// Lists the pairs of leaves whose features are compared in this step (LeafPairTable::searched), and sets their new
+/// spare distances. If `anew` is true, all close pairs of leaves are compared. Otherwise update_spare must have been
+/// called in this step. The boxes of the tree must be computed from the present positions. Removes the candidates of
+/// the listed pairs, and those of pairs that are no longer close.
+void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool anew, Index p, PairTable& pairs);
 
-/// True if the candidate list of the body with itself is complete for the step that begins. spare_margin_of must have
-/// been called in this step.
-bool holds_for_step(const SelfMotion& motion, SelfSearch& self);
+/// Smallest spare distance [m].
+Real least_spare(std::span<const LeafPair> pairs);
 
 /// True if features that are not in the candidate list of the body with itself cannot meet during the motion of the
-/// step. `fresh`: the list was made for this step, and is complete up to the distance zone + max(M, R), with the boxes
-/// of velocities that the search used.
-bool holds_for_motion(const SelfMotion& motion, const StepMotion& step, bool fresh, SelfSearch& self);
+/// step.
+bool holds_for_motion(const SelfMotion& motion, const StepMotion& step, std::span<const LeafPair> pairs,
+                      SelfSearch& self);
 
 }  // namespace skerry

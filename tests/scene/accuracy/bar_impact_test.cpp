@@ -1,4 +1,4 @@
-// Impacts of a point with restitution, an elastic bar on a wall, and two bars on each other (docs/methods/accuracy.md 9
+// Impacts of a point with restitution, an elastic bar on a wall, and two bars on each other (docs/accuracy.md, items 9
 // to 11).
 #include <algorithm>
 #include <catch2/catch.hpp>

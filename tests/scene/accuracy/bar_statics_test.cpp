@@ -1,4 +1,4 @@
-// Bars at rest under their weight and in rotation, their vibrations, and a bar that yields (docs/methods/accuracy.md
+// Bars at rest under their weight and in rotation, their vibrations, and a bar that yields (docs/accuracy.md, items
 // 12, 13, 16, 20, 65, and the orders in h of 31).
 #include <catch2/catch.hpp>
 #include <optional>

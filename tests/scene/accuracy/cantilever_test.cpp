@@ -1,4 +1,4 @@
-// Bending (docs/methods/accuracy.md 14 and 15). Linear tetrahedra are too stiff in bending, with an error of second
+// Bending (docs/accuracy.md, items 14 and 15). Linear tetrahedra are too stiff in bending, with an error of second
 // order in their size. Three meshes and Richardson's extrapolation give the limit.
 #include <catch2/catch.hpp>
 

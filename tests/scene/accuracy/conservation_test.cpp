@@ -1,4 +1,4 @@
-// Conservation of momentum, angular momentum and energy in every step (docs/methods/accuracy.md 2, 3 and 32).
+// Conservation of momentum, angular momentum and energy in every step (docs/accuracy.md, items 2, 3 and 32).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cstdio>

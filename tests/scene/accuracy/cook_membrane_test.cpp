@@ -1,4 +1,4 @@
-// Cook's membrane with each kind of element (docs/methods/accuracy.md 35).
+// Cook's membrane with each kind of element (docs/accuracy.md, item 35).
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"

@@ -1,4 +1,4 @@
-// Motion of bodies without contact: free fall, momentum, spin (docs/methods/accuracy.md 1 to 3 and 20).
+// Motion of bodies without contact: free fall, momentum, spin (docs/accuracy.md, items 1 to 3 and 20).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 

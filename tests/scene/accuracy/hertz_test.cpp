@@ -1,4 +1,4 @@
-// Hertz contact, at rest and in an impact (docs/methods/accuracy.md 21). Linear tetrahedra are too stiff around a
+// Hertz contact, at rest and in an impact (docs/accuracy.md, item 21). Linear tetrahedra are too stiff around a
 // contact, with an error of second order in their size. Two meshes and Richardson's extrapolation give the limit.
 #include <catch2/catch.hpp>
 

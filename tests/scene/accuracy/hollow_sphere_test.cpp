@@ -1,4 +1,4 @@
-// A thick hollow sphere under internal pressure with each kind of element (docs/methods/accuracy.md 37).
+// A thick hollow sphere under internal pressure with each kind of element (docs/accuracy.md, item 37).
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"

@@ -1,4 +1,4 @@
-// Implicit bodies against closed forms (docs/methods/accuracy.md 47 to 49).
+// Implicit bodies against closed forms (docs/accuracy.md, items 47 to 49).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-// A block on an incline against Coulomb's law (docs/methods/accuracy.md 6), at several sizes.
+// A block on an incline against Coulomb's law (docs/accuracy.md, item 6), at several sizes.
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"

@@ -1,4 +1,4 @@
-// Systems held together by friction and weight: stacks, wedges, belts, and Painleve's rod (docs/methods/accuracy.md 22,
+// Systems held together by friction and weight: stacks, wedges, belts, and Painleve's rod (docs/accuracy.md, items 22,
 // 23 and 27).
 #include <algorithm>
 #include <catch2/catch.hpp>

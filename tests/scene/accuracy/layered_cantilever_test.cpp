@@ -1,4 +1,4 @@
-// A cantilever of two layers, one much stiffer than the other (docs/methods/accuracy.md 39).
+// A cantilever of two layers, one much stiffer than the other (docs/accuracy.md, item 39).
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"

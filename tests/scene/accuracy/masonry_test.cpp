@@ -1,4 +1,4 @@
-// Rigid bodies that lean on each other stand as long as a line of thrust fits inside them (docs/methods/accuracy.md 50
+// Rigid bodies that lean on each other stand as long as a line of thrust fits inside them (docs/accuracy.md, items 50
 // and 51).
 #include <algorithm>
 #include <catch2/catch.hpp>

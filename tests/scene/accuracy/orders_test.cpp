@@ -1,4 +1,4 @@
-// Convergence of errors with the step and with the tolerance of the solver (docs/methods/accuracy.md 31).
+// Convergence of errors with the step and with the tolerance of the solver (docs/accuracy.md, item 31).
 #include <catch2/catch.hpp>
 
 #include "skerry/problem.h"

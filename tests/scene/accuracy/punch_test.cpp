@@ -1,4 +1,4 @@
-// A rigid flat punch on a block with each kind of element (docs/methods/accuracy.md 38).
+// A rigid flat punch on a block with each kind of element (docs/accuracy.md, item 38).
 #include <catch2/catch.hpp>
 #include <map>
 

@@ -1,4 +1,4 @@
-// Rigid bodies against closed forms (docs/methods/accuracy.md 41 to 46).
+// Rigid bodies against closed forms (docs/accuracy.md, items 41 to 46).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>

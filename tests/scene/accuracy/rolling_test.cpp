@@ -1,4 +1,4 @@
-// Rigid bodies that roll, rock and jam (docs/methods/accuracy.md 55 to 57, 64).
+// Rigid bodies that roll, rock and jam (docs/accuracy.md, items 55 to 57, 64).
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>

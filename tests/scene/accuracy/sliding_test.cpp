@@ -1,5 +1,5 @@
 // A plate that slides to a stop, that a spring pulls, and that slides under each friction law
-// (docs/methods/accuracy.md 7, 8 and 28).
+// (docs/accuracy.md, items 7, 8 and 28).
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"

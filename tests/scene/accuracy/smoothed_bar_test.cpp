@@ -1,4 +1,4 @@
-// One coarse mesh with each kind of element (docs/methods/accuracy.md 34).
+// One coarse mesh with each kind of element (docs/accuracy.md, item 34).
 #include <catch2/catch.hpp>
 #include <random>
 

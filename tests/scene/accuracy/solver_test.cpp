@@ -1,4 +1,4 @@
-// The way in which the solver divides and distributes its work does not change results (docs/methods/accuracy.md 29 and
+// The way in which the solver divides and distributes its work does not change results (docs/accuracy.md, items 29 and
 // 30).
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// Stiff implicit bodies at rest, in contact, and against rigid bodies (docs/methods/accuracy.md 58 to 63).
+// Stiff implicit bodies at rest, in contact, and against rigid bodies (docs/accuracy.md, items 58 to 63).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Rigid tops, free and on a point (docs/methods/accuracy.md 52 to 54).
+// Rigid tops, free and on a point (docs/accuracy.md, items 52 to 54).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>

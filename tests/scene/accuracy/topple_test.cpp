@@ -1,4 +1,4 @@
-// Blocks that topple, discs that spin down, balls that begin to roll (docs/methods/accuracy.md 24 to 26).
+// Blocks that topple, discs that spin down, balls that begin to roll (docs/accuracy.md, items 24 to 26).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 

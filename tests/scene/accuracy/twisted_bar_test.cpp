@@ -1,4 +1,4 @@
-// A bar twisted by half a turn with each kind of element (docs/methods/accuracy.md 36).
+// A bar twisted by half a turn with each kind of element (docs/accuracy.md, item 36).
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"

@@ -200,7 +200,7 @@ TEST_CASE("the largest length is found among any number of vectors, and values t
 }
 
 TEST_CASE("free fall follows its discrete law", "[unit]") {
-    // docs/methods/accuracy.md 1: v_n = -g n h, x_n = -g h^2 n (n + 1) / 2.
+    // docs/accuracy.md, item 1: v_n = -g n h, x_n = -g h^2 n (n + 1) / 2.
     const Real g = 9.81, h = 1e-3, mass = 0.3;
     Nodes nodes(1);
     nodes.mass[0] = mass;

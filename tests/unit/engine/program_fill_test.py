@@ -60,6 +60,18 @@ class FillTest(ProgramCase):
         for part in ("Netgen", "volume", "the surface is unchanged", "quality", "stable with", "written"):
             self.assertIn(part, said)
 
+    def test_a_surface_in_millimetres_is_scaled(self):
+        self.need_netgen()
+        out, scene = self.folder / "cube.msh", self.folder / "drop.json"
+        said = self.skerry("fill", self.cube, out, "--scene", scene, "--scale", 0.001, "--edge", 0.0011).stdout
+        self.assertIn("the surface is unchanged", said)
+        found = json.loads(self.skerry("inspect", out, "--json").stdout)
+        self.assertAlmostEqual(found["volume"] * 1e9, 1, places=12)
+        visual = json.loads(scene.read_text())["bodies"][0]["visual"]
+        self.assertEqual(visual, {"file": "cube.obj", "scale": 0.001})
+        self.skerry("run", scene, "--seconds", 0.001)
+        self.assert_refused("fill", self.cube, out, "--scale", 0.001, "--edge", 1.1, said=["edge", "after scaling"])
+
     def test_the_example_of_a_filled_surface_runs(self):
         self.need_netgen()
         for name in ("keys/filled.json", "meshes/pebble.obj"):
@@ -111,6 +123,29 @@ class FillTest(ProgramCase):
         found = self.skerry("inspect", self.scene_of(scale=0.001, edge=1.1)).stdout
         self.assertNotIn("another unit", found)
         self.assertEqual(len(list(self.folder.glob("cube.obj.*.msh"))), 1)
+
+    def test_the_meshes_of_files_and_surfaces_are_refined_and_made_coarser(self):
+        self.need_netgen()
+        counts = [json.loads(self.skerry("inspect", self.scene_of(refine=n), "--json").stdout)["body_kinds"][0]["mesh"]
+                  ["tetrahedra"] for n in (0, 1)]
+        self.assertEqual(counts[1], 8 * counts[0])
+        mesh = ROOT / "scenes/meshes/torus.msh"
+        shutil.copy(mesh, self.folder)
+        mean_edge = json.loads(self.skerry("inspect", mesh, "--json").stdout)["edge"]["mean"]
+        given = self.folder / "given"
+        body = {"mesh": {"file": "torus.msh", "refine": -1}, "material": "rubber", "position": [0, 0, 2]}
+        scene = self.write("coarse.json", {**SCENE, "bodies": [body], "probes": []})
+        for size, code in ((0.06, 0), (0.01, 2)):
+            for cached in self.folder.glob("torus.msh.*"):
+                cached.unlink()
+            mesh_text = f"4 1\\n0 0 0\\n{size} 0 0\\n0 {size} 0\\n0 0 {size}\\n0 1 2 3\\n"
+            self.stub(f"head -n 1 > {given}\ncat > /dev/null\nprintf '{mesh_text}' >&3")
+            said = self.skerry("inspect", scene, "--json", code=code)
+            if code == 0:
+                self.assertEqual(json.loads(said.stdout)["body_kinds"][0]["mesh"]["tetrahedra"], 1)
+            else:
+                self.assertIn("refine: found a mesh with a mean edge of 0.0121", said.stderr)
+        self.assertAlmostEqual(float(given.read_text().split()[2]), 2 * mean_edge, places=9)
 
     def test_keys_of_a_surface_need_a_surface(self):
         box = {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}, "edge": 0.1}

@@ -153,6 +153,47 @@ class ProgramRunTest(ProgramCase):
         warnings = json.loads(self.run_with_stats(self.write("order.json", scene)))["trust"]["warnings"]
         self.assertTrue(any(text.startswith("body 'plate': a part 50 mm thick") for text in warnings), warnings)
 
+    def test_a_mesh_is_too_stiff_only_for_a_body_that_deforms(self):
+        def warnings(poisson_ratio, **body):
+            plate = {"name": "plate", "mesh": {"box": {"size": [0.4, 0.2, 0.2], "cells": [4, 2, 2]}},
+                     "material": "soft", "dynamics": "explicit", **body}
+            scene = {"name": "plate", "seconds": 0.05, "bodies": [plate],
+                     "materials": {"soft": {"E": 1e5, "nu": poisson_ratio}}}
+            return json.loads(self.run_with_stats(self.write("plate.json", scene)))["trust"]["warnings"]
+        held = {"pin": {"box": {"lower": [-1, -1, -1], "upper": [-0.19, 1, 1]}}}
+        thin = {"mesh": {"box": {"size": [0.4, 0.2, 0.04], "cells": [8, 4, 1]}}}
+        linear = {"element": "linear"}
+        locks = ["body 'plate': elements of the kind \"linear\" lock at a Poisson ratio of 0.49: in bending they are more "
+                 "than twice as stiff as the material: set \"element\" of the body to \"smoothed\""]
+        self.assertEqual(warnings(0.49, **held, **linear), locks)
+        self.assertEqual(warnings(0.4, **held, **linear), [])
+        self.assertEqual(warnings(0.49, **held), [])
+        self.assertEqual(warnings(0.49, **linear), [])  # it only falls
+        self.assertEqual(warnings(0.4, **thin), [])
+        [text] = warnings(0.49, **held, **linear, **thin)
+        self.assertIn("has 1 layer of cells", text)
+
+    def test_contact_areas_smaller_than_the_cells_are_a_warning_if_a_probe_depends_on_them(self):
+        scene = {"name": "impact", "seconds": 0.02, "frame_step": 0.001, "settings": {"gravity": [0, 0, 0]},
+                 "materials": {"rubber": {"E": 1e6}},
+                 "bodies": [{"name": "ball", "mesh": {"ball": {"radius": 0.05, "resolution": 4}}, "material": "rubber",
+                             "position": [0, 0, 0.0505], "velocity": [0, 0, -0.02], "dynamics": "explicit"}],
+                 "colliders": [{"name": "floor", "shape": {"plane": {"normal": [0, 0, 1]}}}]}
+        def warnings(**changes):
+            found = json.loads(self.run_with_stats(self.write("impact.json", {**scene, **changes})))
+            return found["trust"]["warnings"], found["errors"][0]
+        stress = {"name": "stress", "quantity": "stress", "body": "ball"}
+        force = {"name": "force", "quantity": "force", "body": "ball"}
+        [text], error = warnings(probes=[force])
+        self.assertLess(error["contact_radius"], 0.25 * error["contact_edge"])
+        self.assertRegex(text, "^the contact areas of body 'ball' have a radius of up to .* mm by the theory of Hertz, "
+                               "less than the edges there, .* mm: impacts take about 0.[56]\\d* times as long as they "
+                               "should, and their forces are too large accordingly: make the cells there .* times smaller$")
+        self.assertIn("the stress there is wrong", warnings(probes=[stress])[0][0])
+        self.assertEqual(warnings()[0], [])
+        finer = [{**scene["bodies"][0], "mesh": {"ball": {"radius": 0.05, "resolution": 6}}, "velocity": [0, 0, -0.5]}]
+        self.assertEqual(warnings(bodies=finer, probes=[force])[0], [])
+
     def test_a_position_that_keys_replace_is_a_warning(self):
         def collider(position):
             keys = [{"time": 0, "position": [0, 0, -1]}, {"time": 1, "position": [0, 0, -2]}]

@@ -194,6 +194,10 @@ class ProgramTest(ProgramCase):
                           ["run", self.scene, "--export-problems-of", "body"]):
             done = self.skerry(*arguments, code=2)
             self.assertNotEqual(done.stderr, "")
+        self.assert_refused("view", self.scene, "--rate", "abc",
+                            said=["--rate: found abc, expected a number from 0 to 1000"])
+        self.assert_refused("view", self.scene, "--port", "65536",
+                            said=["--port: found 65536, expected a whole number from 0 to 65535"])
 
     def test_a_mesh_that_is_not_one_is_refused(self):
         self.assert_refused("inspect", self.write("broken.msh", "nonsense"), said=["broken.msh"])

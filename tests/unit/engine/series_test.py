@@ -85,7 +85,7 @@ class SeriesTest(ProgramCase):
         rows = read_csv(series)
         self.assertEqual(len(rows["time [s]"]), 31)
         for i, at in enumerate(rows["time [s]"]):
-            self.assertAlmostEqual(at, 0.01 * i, places=12)
+            self.assertEqual(at, round(0.01 * i, 14))
         mass = 500 * 0.2 ** 3
         mean = sum(rows["weight.force_z [N]"][-10:]) / 10
         self.assertAlmostEqual(mean, mass * GRAVITY, delta=0.02 * mass * GRAVITY)

@@ -5,9 +5,9 @@
 #include <numeric>
 #include <set>
 
-#include "engine/program/sweep/case_hash.h"
 #include "engine/program/sweep/cases/cases.h"
 #include "engine/program/sweep/cases/draw.h"
+#include "engine/scene/case_hash.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skerry::test::sweep_cases_test {

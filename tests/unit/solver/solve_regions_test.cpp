@@ -243,7 +243,7 @@ TEST_CASE("the pyramid brakes more along its diagonal, the cone the same everywh
         SolverSettings settings;
         const Vec3 cone = scene.solve(settings).impulse[0];
         CHECK((cone - Vec3(-0.5 * std::cos(angle), -0.5 * std::sin(angle), 1)).norm() < 1e-14);
-        settings.friction = Friction::pyramid;  // docs/methods/accuracy.md 28: mu N (sgn cos, sgn sin)
+        settings.friction = Friction::pyramid;  // docs/accuracy.md, item 28: mu N (sgn cos, sgn sin)
         const Vec3 pyramid = scene.solve(settings).impulse[0];
         CHECK((pyramid - Vec3(std::copysign(0.5, -std::cos(angle)), std::copysign(0.5, -std::sin(angle)), 1)).norm() <
               1e-14);

@@ -4,6 +4,7 @@
 const initial_state = {
   frame: 0, time: 0, playing: false, rate: 1, color: "speed", contacts: "motion", wire: false, flat: false,
   xray: false, visual: true, colliders: true, lines: true, labels: false, follow: true, light: false, panel: true,
+  legend: true,
   recording: false, fields: field_names,
 };
 
@@ -12,7 +13,8 @@ const initial_state = {
 function make_controls(page, player) {
   const { find, run, state, scales } = page, root = document.documentElement;
   const modes = { color: ["speed", "stress", "strain", "body", "error"], contacts: ["off", "motion", "region"] };
-  const switches = ["wire", "flat", "xray", "visual", "colliders", "lines", "labels", "follow", "light", "panel"];
+  const switches = ["wire", "flat", "xray", "visual", "colliders", "lines", "labels", "follow", "light", "panel",
+    "legend"];
 
   function show_legends() {
     show_color_legend(find("color_legend"), state.color, page.bodies(), scales);
@@ -39,6 +41,7 @@ function make_controls(page, player) {
   function set_switch(name, on) {
     set_pressed(name, on);
     if (name === "panel") root.classList.toggle("bare", !on);
+    if (name === "legend") root.classList.toggle("folded", !on);
     if (name === "light") {
       root.classList.toggle("light", on);
       if (page.scene) page.scene.colliders.set_light(on);
@@ -64,8 +67,8 @@ function make_controls(page, player) {
     });
   }
 
-  // #color=stress&contacts=region&wire=1&flat=1&xray=1&visual=0&colliders=0&lines=0&labels=1&light=1&panel=0&rate=0.5
-  // &view=turn,lift,distance; more: see the players. Returns whether it names a time of a recorded run.
+  // #color=stress&contacts=region&wire=1&flat=1&xray=1&visual=0&colliders=0&lines=0&labels=1&light=1&panel=0&legend=0
+  // &rate=0.5&view=turn,lift,distance; more: see the players. Returns whether it names a time of a recorded run.
   function read_hash() {
     const asked = new URLSearchParams(location.hash.slice(1));
     for (const name in modes) if (asked.has(name)) set_mode(name, asked.get(name));
@@ -98,6 +101,7 @@ function make_controls(page, player) {
     [["[", "]"], "turn the view; with Shift: up and down", (shift, key) =>
       move((to) => (/[[\]]/.test(key) ? to.turn(key === "[" ? 20 : -20, 0) : to.turn(0, key === "{" ? 20 : -20)))()],
     [["+", "-"], "zoom in or out", (shift, key) => move((to) => to.zoom(key === "+" || key === "=" ? 0.85 : 1.18))()],
+    [["e"], "show or hide the legends", flip("legend")],
     [["h"], "show or hide the panel and the controls", flip("panel")],
     [["l"], "light or dark colours", flip("light")],
     [["p"], "save a picture (PNG)", save_picture],

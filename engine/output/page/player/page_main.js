@@ -46,7 +46,7 @@ function is_without_gpu(gl) {
   } else {
     notice("Unpacking \u2026");
     const library = document.createElement("script");
-    library.textContent = new TextDecoder().decode(await decode.inflate(packed.three));
+    library.textContent = new TextDecoder().decode(await decode.inflate(packed.three, "gzip"));
     document.head.append(library);
     notice("");
   }

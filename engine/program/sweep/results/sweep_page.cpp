@@ -1,19 +1,9 @@
-#include "engine/program/sweep/results/sweep_page.h"
-
-#include "engine/output/escape_markup.h"
+#include "engine/output/table/table_page.h"
 #include "engine/program/sweep/results/sweep_table.h"
 
 namespace skerry {
 
 namespace {
-
-/// Returns JSON text for use inside a script element. The text "</" would end the element and is escaped.
-std::string script_text(const Json& json) {
-    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at))
-        text.replace(at, 2, "<\\/");
-    return text;
-}
 
 Json rows_json(const SweepTable& table) {
     Json rows = Json::array();
@@ -35,12 +25,6 @@ Json rows_json(const SweepTable& table) {
     return rows;
 }
 
-/// Replaces the first occurrence of `mark` in `text` by `part`.
-void put_in(const std::string& mark, const std::string& part, std::string& text) {
-    const std::size_t at = text.find(mark);
-    if (at != std::string::npos) text.replace(at, mark.size(), part);
-}
-
 }  // namespace
 
 std::string table_page(const SweepTable& table) {
@@ -52,12 +36,7 @@ std::string table_page(const SweepTable& table) {
                        {"parameters", parameters},
                        {"figures", figure_names(table)},
                        {"rows", rows_json(table)}};
-    std::string page(sweep_page_html);
-    // @DATA@ is replaced first because @TITLE@ comes before it in the page. The search for @TITLE@ then cannot find a
-    // text in the data.
-    put_in("@DATA@", script_text(data), page);
-    put_in("@TITLE@", escape_markup(table.sweep.name), page);
-    return page;
+    return table_page(table.sweep.name, data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace skerry

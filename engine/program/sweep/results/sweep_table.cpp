@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/program/csv_text.h"
 #include "engine/program/number_text.h"
 
 namespace skerry {
@@ -127,26 +128,6 @@ std::string sameness_text(const SweepTable& table) {
                     : "";
 }
 
-std::string csv_cell(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-    return quoted + "\"";
-}
-
-/// Formats a number for CSV with all digits. Whole numbers below 1e15 have no decimal point.
-std::string csv_number(double value) {
-    if (!std::isfinite(value)) return {};
-    constexpr double exact = 1e15;
-    return value == std::floor(value) && std::abs(value) < exact ? std::to_string(static_cast<long long>(value))
-                                                                 : Json(value).dump();
-}
-
-void add_line(const Cells& cells, std::string& csv) {
-    for (std::size_t i = 0; i < cells.size(); ++i) csv += (i == 0 ? "" : ",") + csv_cell(cells[i]);
-    csv += "\r\n";
-}
-
 std::string joined(const std::vector<std::string>& sentences) {
     std::string text;
     for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
@@ -186,7 +167,7 @@ std::string table_csv(const SweepTable& table) {
     head.insert(head.end(), figures.begin(), figures.end());
     for (const std::string_view name : {hash_column, message_column, warnings_column}) head.emplace_back(name);
     std::string csv;
-    add_line(head, csv);
+    add_csv_line(head, csv);
     for (std::size_t i = 0; i < table.files.size(); ++i) {
         const CaseFile& file = table.files[i];
         Cells cells{std::to_string(i)};
@@ -198,7 +179,7 @@ std::string table_csv(const SweepTable& table) {
         cells.emplace_back(file.state == CaseFileState::whole ? name_of(file.result.status) : "not run");
         for (const std::string& name : figures) cells.push_back(csv_number(figure_of(file.result, name)));
         cells.insert(cells.end(), {file.result.state_hash, file.result.message, joined(file.result.warnings)});
-        add_line(cells, csv);
+        add_csv_line(cells, csv);
     }
     return csv;
 }

@@ -13,9 +13,9 @@ const decode = (() => {
   const words = (base64) => new Uint32Array(bytes(base64).buffer);
   const floats = (base64) => new Float32Array(bytes(base64).buffer);
 
-  async function inflate(base64) {
+  async function inflate(base64, format = "deflate") {
     const packed = new Blob([bytes(base64)]).stream();
-    return new Uint8Array(await new Response(packed.pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+    return new Uint8Array(await new Response(packed.pipeThrough(new DecompressionStream(format))).arrayBuffer());
   }
 
   // Takes numbers off the front.

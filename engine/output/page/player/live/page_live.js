@@ -223,12 +223,21 @@ function make_live(page, has_view) {
 
   const order = (name) => () => link.send({ do: name });
   const toggle = () => link.send({ do: state.playing ? "pause" : "play" });
+  const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+  function toggle_pull() {
+    if (pull.is_held()) return pull.drop();
+    if (!page.scene || !pull.grab_middle()) show_problem({ text: "No body is near the middle of the view." });
+  }
   const set_gravity = (on) => link.send({ do: "gravity", on });
   find("step").addEventListener("click", order("step"));
   find("reset").addEventListener("click", order("reset"));
   find("gravity").addEventListener("change", () => set_gravity(find("gravity").checked));
   const keys = [
     [["ArrowRight"], "one time step", order("step")],
+    [["q"], "pull the body in the middle of the view, or let it go", toggle_pull],
+    [["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], "while pulling: move the target; with Shift: further",
+      (shift, key) => pull.shift(...arrows[key].map((way) => way * (shift ? 0.1 : 0.02)))
+        || (key === "ArrowRight" && order("step")())],
     [["Home"], "back to the start", order("reset")],
     [["g"], "switch gravity on or off", () => set_gravity(!find("gravity").checked)],
   ];

@@ -1,4 +1,4 @@
-// Pulls bodies with the pointer.
+// Pulls bodies with the pointer or with keys.
 "use strict";
 
 // link: page_link.js. The target of the pull moves in the plane that faces the camera and contains the grabbed point.
@@ -6,6 +6,7 @@ function make_pull(page, link) {
   let held = null;  // the grabbed point: {body, weights, vertices, plane, to, moved, force}
 
   function grab(x, y) {
+    drop();
     const { view, bodies } = page.scene, { origin, direction } = view.ray(x, y);
     const hit = link.is_open() ? pick_body(bodies.list, origin, direction) : null;
     if (!hit) return false;
@@ -18,6 +19,25 @@ function make_pull(page, link) {
   }
   function drag(x, y) {
     if (held && page.scene.view.ray(x, y).intersectPlane(held.plane, held.to)) held.moved = true;
+  }
+  // Grabs the body in the middle of the view, or the one whose middle is drawn nearest to it. Returns false if none is
+  // hit.
+  function grab_middle() {
+    const { canvas } = page.scene.view, x = canvas.clientWidth / 2, y = canvas.clientHeight / 2;
+    const places = page.scene.bodies.list.filter((body) => body.group.visible)
+      .map((body) => on_screen(box_of_body(body).getCenter(new THREE.Vector3())))
+      .sort((a, b) => Math.hypot(a.x - x, a.y - y) - Math.hypot(b.x - x, b.y - y));
+    return [{ x, y }, ...places].some((place) => grab(place.x, place.y));
+  }
+  // Moves the target in the plane of the pull, by shares of the height of the view. Returns false if nothing is pulled.
+  function shift(right, up) {
+    if (!held) return false;
+    const { camera } = page.scene.view, depth = -held.to.clone().applyMatrix4(camera.matrixWorldInverse).z;
+    const height = 2 * depth * Math.tan(THREE.Math.degToRad(camera.fov / 2));
+    [right, up].forEach((share, axis) =>
+      held.to.addScaledVector(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, axis), share * height));
+    held.moved = true;
+    return true;
   }
   function forget() {
     if (held) page.scene.set_over(null);
@@ -39,17 +59,19 @@ function make_pull(page, link) {
     page.scene.set_over(draw);
   }
 
-  // A line from the point of the body to the pointer, with the force.
+  // Place in the picture [pixels].
+  function on_screen(point) {
+    const { camera, canvas } = page.scene.view, { x, y } = point.clone().project(camera);
+    return { x: (x + 1) / 2 * canvas.clientWidth, y: (1 - y) / 2 * canvas.clientHeight };
+  }
+  // A line from the point of the body to the target, with the force.
   function draw(pen, ratio, { text: color, halo }) {
-    const { view, bodies } = page.scene, body = bodies.list[held.body], { width, height } = pen.canvas;
+    const body = page.scene.bodies.list[held.body];
     if (!body) return;
     const from = new THREE.Vector3();
     held.vertices.forEach((vertex, k) =>
       from.addScaledVector(new THREE.Vector3().fromArray(body.points, 3 * vertex), held.weights[k]));
-    const [a, b] = [from, held.to.clone()].map((point) => {
-      point.project(view.camera);
-      return { x: (point.x + 1) / 2 * width / ratio, y: (1 - point.y) / 2 * height / ratio };
-    });
+    const [a, b] = [from, held.to].map(on_screen);
     pen.save();
     pen.scale(ratio, ratio);
     pen.lineJoin = "round";
@@ -68,5 +90,5 @@ function make_pull(page, link) {
     }
     pen.restore();
   }
-  return { grab, drag, drop, forget, measured, tick };
+  return { grab, grab_middle, drag, shift, drop, forget, measured, tick, is_held: () => held !== null };
 }

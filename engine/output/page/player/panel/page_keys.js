@@ -1,10 +1,11 @@
 // The keyboard, and the card that explains the keys.
 "use strict";
 
-// keys: rows of [keys, description, action(shift, key)]. `?` shows the rows; it and Escape hide them again.
+// keys: rows of [keys, description, action(shift, key)]. The browser keeps a key whose action returns false. `?` shows
+// the rows; it and Escape hide them again.
 function listen_to_keys(find, keys) {
   const help = find("help"), list = help.querySelector("dl"), spoken = { " ": "Space", ArrowLeft: "\u2190",
-    ArrowRight: "\u2192" };
+    ArrowRight: "\u2192", ArrowUp: "\u2191", ArrowDown: "\u2193" };
   const show_help = (on) => {
     help.hidden = !on;
     find("help_button").setAttribute("aria-pressed", on);
@@ -36,9 +37,7 @@ function listen_to_keys(find, keys) {
     if (needs(target, event.key)) return;
     if (target.tagName === "BUTTON" && (event.key === " " || event.key === "Enter")) return;  // presses the button
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key, action = bound.get(key);
-    if (!action) return;
-    event.preventDefault();
-    action(event.shiftKey, key);
+    if (action && action(event.shiftKey, key) !== false) event.preventDefault();
   });
   find("help_button").addEventListener("click", () => show_help(help.hidden));
   help.querySelector("button").addEventListener("click", () => show_help(false));

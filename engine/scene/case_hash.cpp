@@ -1,4 +1,4 @@
-#include "engine/program/sweep/case_hash.h"
+#include "engine/scene/case_hash.h"
 
 #include <algorithm>
 #include <fstream>

@@ -1,0 +1,196 @@
+// Studies: a scene is run with finer and coarser meshes, steps and tolerances, and each result gets an error bar
+// (docs/study.md).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/options.h"
+#include "skerry/recorder.h"
+#include "skerry/settings.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+/// Difference of a run to the scene as it is.
+struct StudyVariant {
+    int refine = 0;      // level of the meshes: each level halves the edges, negative levels double them
+    Real step = 1;       // ratio of the step length to the mean step of the unchanged scene; 1: the scene's own steps
+    Real tolerance = 1;  // ratio of the solver's tolerance to that of the scene
+    std::optional<ElementKind> element{};  // element kind of all bodies; empty: the kinds of the scene
+    int draw = 0;                          // number of the perturbation of the start, from 1; 0: none
+
+    /// True for the scene as it is.
+    bool is_scene() const { return refine == 0 && step == 1 && tolerance == 1 && !element && draw == 0; }
+    bool operator==(const StudyVariant&) const = default;
+};
+
+/// End of a run of a study.
+/// - ok: the run reached its end.
+/// - failed: a step was refused.
+/// - refused: the scene cannot be built with these settings.
+/// - left_out: the run was not made, because it did not fit into the budget or the scene cannot be changed so.
+enum class StudyRunStatus { ok, failed, refused, left_out };
+template <>
+struct EnumNames<StudyRunStatus> {
+    static constexpr std::array<std::pair<StudyRunStatus, std::string_view>, 4> table{{
+        {StudyRunStatus::ok, "ok"},
+        {StudyRunStatus::failed, "failed"},
+        {StudyRunStatus::refused, "refused"},
+        {StudyRunStatus::left_out, "left_out"},
+    }};
+};
+
+/// A time series of a run.
+struct StudyColumn {
+    SeriesColumn what;
+    Real size = 0;  // diagonal of the bounding box of the body at the start, or of all bodies for other columns [m]
+    // False for a column that gets no error bar of its own, such as the place of one of many bodies.
+    bool reported = true;
+    std::vector<Real> values{};  // one per time; NaN if unknown
+    // For a column of a largest stress: number within the body, and position at the start [m], of the node that had the
+    // largest value of the run. Else no_index.
+    Index node = no_index;
+    Vec3 place = Vec3::Zero();
+};
+
+/// A run of a study. `skerry run SCENE` with the assignments as --set repeats the run, except for its perturbation.
+struct StudyRun {
+    StudyVariant variant;
+    std::vector<std::string> assignments;
+    StudyRunStatus status = StudyRunStatus::ok;
+    std::string message{};                // reason, unless the status is ok
+    std::vector<std::string> warnings{};  // reasons not to rely on the run
+    double cpu_seconds = 0;               // CPU time of the steps; predicted if the run was left out [s]
+    std::uint64_t steps = 0;
+    Integrator integrator = Integrator::symplectic_euler;
+    std::uint64_t state_hash = 0;  // hash of the state at the end
+    std::size_t tetrahedra = 0, max_contacts = 0;
+    std::vector<Real> time{};  // simulated time of each row [s]
+    std::vector<StudyColumn> columns{};
+};
+
+/// Reliability of a quantity.
+/// - known: the error bar follows from runs whose differences behave as the theory says.
+/// - irregular: the differences do not; the error bar is a multiple of the largest difference.
+/// - singular: the largest stress grows without limit as the mesh is refined; `error` is infinite.
+/// - chaotic: the value depends on differences of the start that nobody can measure; see StudyResult::agree_until.
+/// - not_measured: the runs that could show the error are missing.
+enum class StudyVerdict { known, irregular, singular, chaotic, not_measured };
+template <>
+struct EnumNames<StudyVerdict> {
+    static constexpr std::array<std::pair<StudyVerdict, std::string_view>, 5> table{{
+        {StudyVerdict::known, "known"},
+        {StudyVerdict::irregular, "irregular"},
+        {StudyVerdict::singular, "singular"},
+        {StudyVerdict::chaotic, "chaotic"},
+        {StudyVerdict::not_measured, "not_measured"},
+    }};
+};
+
+/// A number with its error bar. Values that were not measured are NaN.
+struct StudyQuantity {
+    std::string name;  // name as in the table of a sweep, for example tip.displacement_z_end
+    std::string unit;  // SI unit; 1 for counts and ratios
+    Real value = std::numeric_limits<Real>::quiet_NaN();  // value of the scene as it is
+    // Value extrapolated to vanishing edges, steps and tolerance, and its error.
+    Real best = std::numeric_limits<Real>::quiet_NaN(), best_error = std::numeric_limits<Real>::quiet_NaN();
+    Real error = std::numeric_limits<Real>::quiet_NaN();  // half width of the error bar of `value`
+    // Parts of `error` from the mesh, the step length and the contact solver, and from differences of 1e-12 m at the
+    // start. A part is 0 if the study has no runs for it.
+    Real mesh = std::numeric_limits<Real>::quiet_NaN(), step = std::numeric_limits<Real>::quiet_NaN(),
+         contact = std::numeric_limits<Real>::quiet_NaN(), noise = std::numeric_limits<Real>::quiet_NaN();
+    // Scale to which relative errors refer, for example the largest absolute value over the run.
+    Real scale = std::numeric_limits<Real>::quiet_NaN();
+    // Observed orders of convergence and those of the theory.
+    Real mesh_order = std::numeric_limits<Real>::quiet_NaN(), step_order = std::numeric_limits<Real>::quiet_NaN(),
+         expected_mesh_order = std::numeric_limits<Real>::quiet_NaN(),
+         expected_step_order = std::numeric_limits<Real>::quiet_NaN();
+    StudyVerdict verdict = StudyVerdict::not_measured;
+    std::string sentence{};       // verdict in words
+    Real agree_until = infinity;  // time until which perturbed runs agree on the column of the quantity [s]
+    // Value of each run and half width of its error bar, in the order of StudyResult::runs; NaN if unknown.
+    std::vector<Real> run_values{}, run_errors{};
+};
+
+/// The cheapest settings whose predicted errors are at most the wanted error.
+struct CheapestSettings {
+    StudyVariant variant;
+    bool reaches = false;    // false: no settings reach the wanted error, and these come nearest
+    double error = 0;        // predicted largest relative error of all quantities with a known error
+    double cpu_seconds = 0;  // predicted CPU time [s]
+    std::string sentence{};
+    std::vector<std::string> assignments{};  // for `skerry run --set`; filled in by study()
+};
+
+struct StudyResult {
+    std::string scene;           // name of the scene
+    std::vector<StudyRun> runs;  // the first is the scene as it is
+    std::vector<StudyQuantity> quantities;
+    double wanted_error = 0;  // StudySettings::error
+    // Half width of the error bar of each value of each column of the first run; empty for columns that are not
+    // reported.
+    std::vector<std::vector<Real>> bands;
+    std::optional<CheapestSettings> cheapest;
+    Real agree_until = infinity;         // time until which perturbed runs agree on all columns [s]
+    Real growth_rate = 0;                // rate at which small differences of the start grow; 0 if they do not [1/s]
+    std::vector<std::string> sentences;  // remarks on the study as a whole
+    bool stopped = false;                // true if go_on ended the study; quantities are then empty
+};
+
+/// Progress of a study, for StudySettings::go_on.
+struct StudyProgress {
+    int runs_done = 0, runs_running = 0, runs = 0;
+    double share = 0;  // share of the predicted CPU time that is done, from 0 to 1
+};
+
+struct StudySettings {
+    double error = 0.01;                // wanted relative error, for the choice of the cheapest settings, > 0
+    std::vector<std::string> probes{};  // names NAME or NAME.QUANTITY of the probes; empty: all and the default ones
+    std::optional<Real> seconds{};      // duration of the runs; empty: that of the scene [s]
+    std::vector<std::string> assignments{};  // changes of the scene, as SceneOverrides::assignments
+    int threads = 0;                         // number of threads of the study; 0: the number of cores
+    // Largest wall time of the study, divided by that of one run of the scene with one thread, > 0. Less important runs
+    // that do not fit are left out. Empty: 15, or more as long as the study takes less than 5 s.
+    std::optional<double> budget{};
+    // Folder that keeps the results of the runs. A later study of the same scene continues with them. Empty: none.
+    std::filesystem::path folder{};
+    bool redo = false;  // true: results in the folder that belong to another scene or other settings are replaced
+    std::string fill_python{};  // see SceneOverrides::fill_python
+    // If given, called about every 20 ms on the thread that called study(). If it returns false or throws, all runs
+    // stop before their next step. An exception is rethrown.
+    std::function<bool(const StudyProgress&)> go_on{};
+};
+
+/// Runs a scene with several meshes, steps, tolerances and element kinds, and determines the error of each probe. The
+/// runs and their order of importance are listed in docs/study.md. The numbers do not depend on the number of threads,
+/// except through the budget, which decides which runs fit. A run that fails is a result, and the study goes on.
+///
+/// Throws SceneError if the scene cannot be run as it is, a setting or the name of a probe is invalid, or the folder
+/// holds runs of another scene.
+StudyResult study(const std::filesystem::path& scene, const StudySettings& settings = {});
+
+/// Returns one line per quantity with its error bar, the verdicts, the runs that are missing, and the cheapest
+/// settings. Long lists are cut; the page has them all.
+std::string study_text(const StudyResult& result);
+
+/// Returns a web page with a plot of error against CPU time, the time series with their error bars, and tables of all
+/// quantities and runs. The page is one file that needs no other files.
+std::string study_page(const StudyResult& result);
+
+/// Returns a JSON document with all numbers except the time series of the runs. A number that is not finite becomes
+/// null.
+std::string study_json(const StudyResult& result);
+
+/// Writes the scene with the cheapest settings, which `result` must have. Paths in the new file lead to the files of
+/// the scene. Throws SceneError.
+void write_cheapest_scene(const std::filesystem::path& scene, const StudyResult& result,
+                          const std::filesystem::path& file);
+
+}  // namespace skerry
+#pragma GCC visibility pop

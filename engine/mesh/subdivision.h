@@ -1,0 +1,27 @@
+// Parts of a mesh before and after its uniform subdivision.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "skerry/mesh.h"
+
+namespace skerry::mesh {
+
+/// The nodes and elements of a mesh before a subdivision, and the nodes that were added at the midpoints of edges.
+struct Subdivision {
+    std::size_t node_count = 0;  // number of nodes before the subdivision
+    std::vector<std::array<Index, 4>> tetrahedra{};
+    std::vector<std::array<Index, 6>> middle{};  // midpoints of each tetrahedron, see RawMesh::middle
+    std::vector<std::array<Index, 3>> triangles{};
+    std::vector<std::array<Index, 3>> triangle_middle{};
+};
+
+/// Divides a mesh as `refine` does, and returns the record of it.
+Subdivision subdivide(Mesh& mesh);
+
+/// Adds the midpoints of edges that a set of nodes gets by the rule of `refine`, in ascending order.
+void add_midpoints(const Subdivision& subdivision, std::vector<Index>& nodes);
+
+}  // namespace skerry::mesh

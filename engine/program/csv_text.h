@@ -1,0 +1,16 @@
+// Tables in CSV (RFC 4180).
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace skerry {
+
+/// Formats a number for CSV with all digits. Whole numbers below 1e15 have no decimal point. Empty if the number is not
+/// finite.
+std::string csv_number(double value);
+
+/// Adds a line to a table. Cells with special characters are put in quotes.
+void add_csv_line(const std::vector<std::string>& cells, std::string& csv);
+
+}  // namespace skerry

@@ -1,0 +1,53 @@
+#include "engine/scene/write_scene.h"
+
+#include "engine/output/write_file.h"
+#include "engine/scene/assign.h"
+#include "engine/scene/parse_json.h"
+#include "engine/scene/scene_file.h"
+
+namespace skerry {
+
+namespace {
+
+/// Calls use(place, path) for each path of a file in a scene.
+void for_each_path(const SceneFile& scene, auto use) {
+    const auto use_mesh = [&](const MeshEntry& mesh) {
+        if (mesh.file) use(mesh.place.key("file"), mesh.file->path);
+        if (mesh.surface) use(mesh.place.key("surface"), mesh.surface->path);
+    };
+    for (const BodyEntry& body : scene.bodies) {
+        if (body.mesh) use_mesh(*body.mesh);
+        // A visual surface and an included scene without other keys can be written as a path alone.
+        if (body.visual)
+            use(body.visual->scale ? body.visual->place.key("file") : body.visual->place, body.visual->file.path);
+    }
+    for (const ColliderEntry& collider : scene.colliders)
+        if (collider.shape.mesh) use_mesh(*collider.shape.mesh);
+    for (const IncludeEntry& include : scene.include.items)
+        use(include.name.empty() ? include.place : include.place.key("scene"), include.scene.path);
+}
+
+}  // namespace
+
+std::string path_in_scene(const std::filesystem::path& file, const std::filesystem::path& scene) {
+    const auto normal = [](const std::filesystem::path& path) {
+        return std::filesystem::absolute(path).lexically_normal();
+    };
+    return normal(file).lexically_relative(normal(scene).parent_path()).string();
+}
+
+void write_scene(const std::filesystem::path& to, const std::filesystem::path& from,
+                 std::span<const std::string> assignments) {
+    Json json = read_json(from);
+    for (const std::string& assignment : assignments) assign(assignment, from, json);
+    for_each_path(read_scene_file(from, assignments), [&](const Place& place, const std::filesystem::path& path) {
+        if (place.file() == from) assign(place.path() + "=" + Json(path_in_scene(path, to)).dump(), from, json);
+    });
+    if (const auto schema = json.find("$schema"); schema != json.end()) {
+        const auto text = schema->get<std::string>();
+        if (text.find("://") == std::string::npos) *schema = path_in_scene(from.parent_path() / text, to);
+    }
+    write_file(to, [&](std::ostream& out) { out << json.dump(4) << "\n"; });
+}
+
+}  // namespace skerry

@@ -1,0 +1,28 @@
+// Agreement of runs whose starts differ by a tiny perturbation (docs/methods/study.md 3).
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "skerry/study.h"
+
+namespace skerry {
+
+/// Two runs agree while their difference is at most this share of the scale of the column.
+inline constexpr Real agreement_share = 1e-4;
+
+/// A run and the runs whose starts differ from its start by a perturbation. All have the same columns and times.
+struct PerturbedRuns {
+    const StudyRun* run = nullptr;
+    std::vector<const StudyRun*> perturbed{};
+};
+
+/// Returns the last time at which all runs agree on a column, infinity if they agree to the end [s].
+Real agree_until(const PerturbedRuns& runs, std::size_t column, Real scale);
+
+/// Returns the rate at which the largest difference of all columns of lengths grows, relative to their scales. Fitted
+/// while the difference grows from rounding to a hundredth. 0 if it grows less than a hundredfold [1/s].
+Real growth_rate(const PerturbedRuns& runs, std::span<const Real> scales);
+
+}  // namespace skerry

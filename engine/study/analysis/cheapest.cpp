@@ -1,0 +1,116 @@
+#include "engine/study/analysis/cheapest.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/program/number_text.h"
+
+namespace skerry {
+
+namespace {
+
+/// A choice of one setting, and the ratio of its CPU time to that of the scene as it is.
+struct Option {
+    StudyVariant variant;
+    double cost;
+    bool predicted = false;  // true for a mesh that was not run
+};
+
+/// Levels of the mesh that were run, and finer ones whose error and cost are predicted.
+constexpr int finer_levels = 2;
+constexpr double cost_of_level = 16;  // eight times the elements, twice the steps; used if no finer mesh was run
+
+std::vector<Option> mesh_options(const StudyFamily& family) {
+    std::vector<Option> options;
+    for (const StudyRun* run : family.comparable) {
+        const StudyVariant& v = run->variant;
+        if (v.draw == 0 && v.step == 1 && v.tolerance == 1)
+            options.push_back({v, run->cpu_seconds / family.scene->cpu_seconds});
+    }
+    const auto plain = [](const Option& option) { return option.variant.element ? -1000 : option.variant.refine; };
+    const Option finest = *std::ranges::max_element(options, {}, plain);
+    const auto before = std::ranges::find(options, finest.variant.refine - 1, plain);
+    if (options.size() == 1) return options;  // the meshes of the scene have no levels
+    const double growth = before == options.end() ? cost_of_level : std::max(1.0, finest.cost / before->cost);
+    for (int level = 1; level <= finer_levels; ++level)
+        options.push_back({{.refine = finest.variant.refine + level}, finest.cost * std::pow(growth, level), true});
+    return options;
+}
+
+/// Options of the steps, with `member` StudyVariant::step, or of the tolerances.
+std::vector<Option> factor_options(const StudyFamily& family, Real StudyVariant::*member) {
+    std::vector<Option> options;
+    for (const StudyRun* run : family.comparable) {
+        StudyVariant rest = run->variant;
+        rest.*member = 1;
+        if (rest.is_scene()) options.push_back({run->variant, run->cpu_seconds / family.scene->cpu_seconds});
+    }
+    return options;
+}
+
+bool counts(const MeasuredQuantity& quantity) {
+    const StudyQuantity& r = quantity.result;
+    return (r.verdict == StudyVerdict::known || r.verdict == StudyVerdict::irregular) && std::isfinite(r.error) &&
+           r.scale > 0;
+}
+
+/// Settings with their predicted error, and the quantity that has it.
+struct Candidate {
+    CheapestSettings settings;
+    std::string worst{};
+};
+
+Candidate predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,
+                  const Option& step, const Option& tolerance) {
+    Candidate found;
+    CheapestSettings& settings = found.settings;
+    settings.variant = mesh.variant;
+    settings.variant.step = step.variant.step;
+    settings.variant.tolerance = tolerance.variant.tolerance;
+    settings.cpu_seconds = family.scene->cpu_seconds * mesh.cost * step.cost * tolerance.cost;
+    for (const MeasuredQuantity& quantity : quantities) {
+        if (!counts(quantity)) continue;
+        Real error = error_with(quantity, settings.variant) / quantity.result.scale;
+        if (std::isnan(error)) error = infinity;
+        if (!found.worst.empty() && error <= settings.error) continue;
+        settings.error = error;
+        found.worst = quantity.result.name;
+    }
+    return found;
+}
+
+}  // namespace
+
+std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
+                                                  std::span<const MeasuredQuantity> quantities, double wanted) {
+    if (std::ranges::none_of(quantities, counts)) return {};
+    const std::vector<Option> meshes = mesh_options(family), steps = factor_options(family, &StudyVariant::step),
+                              tolerances = factor_options(family, &StudyVariant::tolerance);
+    std::vector<Candidate> candidates;
+    double least_error = infinity, least_measured = infinity;
+    for (const Option& mesh : meshes)
+        for (const Option& step : steps)
+            for (const Option& tolerance : tolerances) {
+                candidates.push_back(predict(family, quantities, mesh, step, tolerance));
+                const double error = candidates.back().settings.error;
+                least_error = std::min(least_error, error);
+                if (!mesh.predicted) least_measured = std::min(least_measured, error);
+            }
+    // If no settings reach the wanted error, those of the runs with nearly the smallest error come nearest.
+    constexpr double nearly = 1.1;
+    const bool reaches = least_error <= wanted;
+    const double target = reaches ? wanted : nearly * least_measured;
+    const Candidate* best = nullptr;
+    for (const Candidate& candidate : candidates)
+        if (candidate.settings.error <= target &&
+            (!best || candidate.settings.cpu_seconds < best->settings.cpu_seconds))
+            best = &candidate;
+    CheapestSettings result = best->settings;
+    result.reaches = reaches;
+    result.sentence = reaches ? "the largest error is that of " + best->worst
+                              : "no settings reach " + percent(wanted) + ", because " + best->worst +
+                                    " still has an error of " + percent(result.error);
+    return result;
+}
+
+}  // namespace skerry

@@ -1,0 +1,17 @@
+// The cheapest settings for a wanted error (docs/methods/study.md 4).
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "engine/study/analysis/measure.h"
+
+namespace skerry {
+
+/// Returns the cheapest settings whose predicted relative errors of all known quantities are at most `wanted`, or the
+/// settings with the smallest error if there are none. Empty if no quantity has a known error. Candidates are all
+/// combinations of the meshes, kinds of elements, steps and tolerances that were run, and up to two finer meshes.
+std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
+                                                  std::span<const MeasuredQuantity> quantities, double wanted);
+
+}  // namespace skerry

@@ -1,0 +1,101 @@
+#include "engine/study/analysis/convergence.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skerry {
+
+namespace {
+
+constexpr Real unknown = std::numeric_limits<Real>::quiet_NaN();
+// Factor by which error bounds exceed estimated errors. With order 1, which is assumed of two levels, the bound is
+// three times the difference of the levels (Roache 1994).
+constexpr Real safety = 1.5;
+// Largest estimated error of the finest level of three, relative to the difference of the coarsest and the finest one.
+constexpr Real most_remainder = 2;
+constexpr Real assumed_order = 1;  // order of two levels
+// An observed order is near the theory between these shares of the least and the largest order of the theory.
+constexpr Real near_least = 0.5, near_most = 1.5;
+
+}  // namespace
+
+Convergence::Convergence(std::vector<ConvergenceLevel> levels, TheoryOrder theory, Real noise)
+    : levels_(std::move(levels)) {
+    std::erase_if(levels_, [](const ConvergenceLevel& level) { return !std::isfinite(level.value); });
+    std::ranges::sort(levels_, std::ranges::greater(), &ConvergenceLevel::h);
+    const bool has_scene = std::ranges::any_of(levels_, [](const ConvergenceLevel& level) { return level.h == 1; });
+    if (has_scene && levels_.size() > 1) find_order(theory, noise);
+}
+
+void Convergence::find_order(TheoryOrder theory, Real noise) {
+    const std::size_t n = levels_.size();
+    const ConvergenceLevel &fine = levels_[n - 1], &middle = levels_[n - 2];
+    const Real ratio = middle.h / fine.h, difference = middle.value - fine.value;
+    const auto remainder = [&](Real order) { return std::abs(difference) / (std::pow(ratio, order) - 1); };
+    used_order_ = assumed_order;
+    remainder_ = remainder(used_order_);
+    if (std::abs(difference) <= noise) {
+        shape_ = ConvergenceShape::equal;
+        return;
+    }
+    constexpr Real same_ratio = 1e-6;
+    if (n == 2 || std::abs(levels_[n - 3].h / middle.h - ratio) > same_ratio * ratio) {
+        shape_ = ConvergenceShape::two_levels;
+        return;
+    }
+    const Real coarse_difference = levels_[n - 3].value - middle.value;
+    const Real largest = std::max(std::abs(coarse_difference), std::abs(difference));
+    order_ = std::log(std::abs(coarse_difference / difference)) / std::log(ratio);
+    const bool fast = order_ > near_most * theory.most;
+    if (coarse_difference * difference < 0 && !fast) {
+        shape_ = ConvergenceShape::oscillating;
+        used_order_ = 0;
+        remainder_ = order_ > 0 ? largest - std::abs(difference) : largest;
+    } else if (order_ < near_least * theory.least) {
+        shape_ = ConvergenceShape::slow;
+        used_order_ = 0;
+        remainder_ = most_remainder * std::abs(coarse_difference + difference);
+        if (order_ > 0) remainder_ = std::min(remainder_, remainder(order_));
+    } else {
+        shape_ = fast ? ConvergenceShape::fast : ConvergenceShape::regular;
+        used_order_ = std::min(order_, theory.most);
+        // Half the error that the coarser difference predicts: equal values of two levels may be an accident.
+        const Real power = std::pow(ratio, theory.most);
+        remainder_ = std::max(remainder(used_order_), std::abs(coarse_difference) / (2 * power * (power - 1)));
+    }
+}
+
+bool Convergence::irregular() const {
+    return shape_ == ConvergenceShape::slow || shape_ == ConvergenceShape::fast ||
+           shape_ == ConvergenceShape::oscillating;
+}
+
+Real Convergence::error_of(Real value) const {
+    if (shape_ == ConvergenceShape::unmeasured) return unknown;
+    return safety * (std::abs(value - levels_.back().value) + remainder_);
+}
+
+Real Convergence::error_at(Real h) const {
+    if (shape_ == ConvergenceShape::unmeasured) return unknown;
+    const Real finest = levels_.back().h;
+    if (h < finest) return safety * remainder_ * std::pow(h / finest, used_order_);
+    // A coarse level that is near the limit by accident has at least the error of the finer levels.
+    Real error = 0;
+    for (const ConvergenceLevel& level : levels_)
+        if (level.h <= h) error = std::max(error, error_of(level.value));
+    const bool is_level = std::ranges::any_of(levels_, [h](const ConvergenceLevel& level) { return level.h == h; });
+    return is_level ? error : unknown;
+}
+
+Real Convergence::limit() const {
+    if (shape_ == ConvergenceShape::unmeasured || irregular()) return unknown;
+    const ConvergenceLevel& fine = levels_.back();
+    if (shape_ != ConvergenceShape::regular) return fine.value;
+    return fine.value + std::copysign(remainder_, fine.value - levels_[levels_.size() - 2].value);
+}
+
+Real Convergence::limit_error() const {
+    return shape_ == ConvergenceShape::unmeasured || irregular() ? unknown : safety * remainder_;
+}
+
+}  // namespace skerry

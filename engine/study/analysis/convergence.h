@@ -1,0 +1,68 @@
+// Error of a value from the same value at several edge lengths, step lengths or tolerances (docs/methods/study.md 1).
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// A value computed with one edge length, step length or tolerance.
+struct ConvergenceLevel {
+    Real h;  // edge length, step length or tolerance, relative to that of the scene as it is
+    Real value;
+};
+
+/// Orders of convergence that the theory predicts: the lowest, for results of poor smoothness, and the highest.
+struct TheoryOrder {
+    Real least = 2, most = 2;
+};
+
+/// Behaviour of the differences between successive levels.
+/// - unmeasured: there is one level only.
+/// - two_levels: two levels give a difference and no order.
+/// - regular: the observed order is near that of the theory.
+/// - equal: the differences are not above the noise.
+/// - slow: the observed order is far below that of the theory, or the differences grow.
+/// - fast: the observed order is far above that of the theory, so the coarse levels do not follow it yet.
+/// - oscillating: successive differences have opposite signs.
+enum class ConvergenceShape { unmeasured, two_levels, regular, equal, slow, fast, oscillating };
+
+/// Error of a value, and its limit for vanishing h.
+class Convergence {
+public:
+    Convergence() = default;
+    /// Needs one level with h = 1. Levels with values that are not finite are omitted. `noise` is the size of
+    /// differences without meaning, for example that of rounding errors.
+    Convergence(std::vector<ConvergenceLevel> levels, TheoryOrder theory, Real noise);
+
+    ConvergenceShape shape() const { return shape_; }
+    /// Observed order; NaN unless three levels with a constant ratio of h differ by more than the noise.
+    Real order() const { return order_; }
+    /// True if the error does not follow from an order that the theory predicts.
+    bool irregular() const;
+    /// Error bound of the value at h = 1, with a safety factor; NaN if unmeasured.
+    Real error() const { return error_at(1); }
+    /// Error bound of the value at `h`. For h below the finest level it is predicted; without a regular order it
+    /// stays that of the finest level. NaN if h lies between the levels, above them, or if the error is unmeasured.
+    Real error_at(Real h) const;
+    /// Error bound of any other approximation of the same limit; NaN if unmeasured.
+    Real error_of(Real value) const;
+    /// Value extrapolated to vanishing h, and its error bound. Without an order: the value of the finest level. NaN if
+    /// unmeasured or irregular.
+    Real limit() const;
+    Real limit_error() const;
+
+private:
+    void find_order(TheoryOrder theory, Real noise);
+
+    std::vector<ConvergenceLevel> levels_{};  // from coarse to fine
+    ConvergenceShape shape_ = ConvergenceShape::unmeasured;
+    Real order_ = std::numeric_limits<Real>::quiet_NaN();
+    Real used_order_ = 1;  // order with which errors are predicted
+    Real remainder_ = 0;   // estimated error of the finest level
+};
+
+}  // namespace skerry

@@ -1,0 +1,350 @@
+#include "engine/study/analysis/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "engine/program/number_text.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
+
+const char* ending_of(StudyFigure figure) {
+    switch (figure) {
+        case StudyFigure::end:
+            return "_end";
+        case StudyFigure::largest:
+            return "_max";
+        case StudyFigure::smallest:
+            return "_min";
+        case StudyFigure::mean:
+            return "_mean";
+        case StudyFigure::agreed:
+            return "_agreed";
+    }
+    return "";
+}
+
+/// Row of the first, or with `last` of the last, value that is known.
+std::size_t known_row(const std::vector<Real>& values, bool last) {
+    const auto known = [](Real value) { return std::isfinite(value); };
+    return last ? static_cast<std::size_t>(std::ranges::find_if(values.rbegin(), values.rend(), known).base() -
+                                           values.begin()) -
+                      1
+                : static_cast<std::size_t>(std::ranges::find_if(values, known) - values.begin());
+}
+
+std::size_t row_of_time(const StudyRun& run, Real time) {
+    return static_cast<std::size_t>(std::ranges::upper_bound(run.time, time) - run.time.begin()) - 1;
+}
+
+Real figure_value(const StudyRun& run, std::size_t column, StudyFigure figure, Real agree_until) {
+    const std::vector<Real>& values = run.columns[column].values;
+    if (std::ranges::none_of(values, [](Real value) { return std::isfinite(value); })) return no_value;
+    if (figure == StudyFigure::end) return values[known_row(values, true)];
+    if (figure == StudyFigure::agreed) return values[row_of_time(run, agree_until)];
+    Real least = infinity, most = -infinity, sum = 0, seconds = 0;
+    for (std::size_t row = 0; row < values.size(); ++row) {
+        if (!std::isfinite(values[row])) continue;
+        least = std::min(least, values[row]);
+        most = std::max(most, values[row]);
+        const Real since = row > 0 ? run.time[row] - run.time[row - 1] : 0;
+        sum += since * values[row];
+        seconds += since;
+    }
+    if (figure == StudyFigure::mean) return sum / seconds;
+    return figure == StudyFigure::largest ? most : least;
+}
+
+/// Group of columns with a common scale.
+std::string group_of(const SeriesColumn& column) {
+    if (column.unit == "J") return column.probe + " [J]";
+    const std::string& name = column.quantity;
+    const bool component = name.size() > 2 && name[name.size() - 2] == '_' && name.back() >= 'x' && name.back() <= 'z';
+    return column.probe + "." + (component ? name.substr(0, name.size() - 2) : name);
+}
+
+TheoryOrder mesh_theory(const SeriesColumn& column) {
+    // Stresses of linear elements have order 1; recovered at nodes, up to 2.
+    return column.unit == "Pa" ? TheoryOrder{1, 2} : TheoryOrder{2, 2};
+}
+
+TheoryOrder step_theory(const StudyRun& scene) {
+    // docs/methods/time_stepping.md 1.4
+    return scene.integrator == Integrator::leapfrog && scene.max_contacts == 0 ? TheoryOrder{2, 2} : TheoryOrder{1, 2};
+}
+
+/// The reasons why the runs that `belongs` selects are missing, each once.
+template <class Belongs>
+std::string reasons_of(const StudyFamily& family, const Belongs& belongs) {
+    std::string text;
+    for (const StudyRun& run : *family.all)
+        if (belongs(run.variant) && !run.message.empty() && text.find(run.message) == std::string::npos)
+            text += (text.empty() ? "" : "; ") + run.message;
+    return text.empty() ? "the runs for it are missing" : text;
+}
+
+bool is_mesh(const StudyVariant& v) {
+    return v.step == 1 && v.tolerance == 1 && !v.element && v.draw == 0;
+}
+bool is_step(const StudyVariant& v) {
+    return v.refine == 0 && v.tolerance == 1 && !v.element && v.draw == 0;
+}
+bool is_contact(const StudyVariant& v) {
+    return v.refine == 0 && v.step == 1 && !v.element && v.draw == 0;
+}
+
+/// Verdict on a stress that grows without limit, empty if it has a limit. A stress that follows h^-a grows by the same
+/// factor in each level. The factor of a stress that converges falls towards 1.
+std::string singular_text(const StudyFamily& family, std::size_t column, StudyFigure figure) {
+    const StudyColumn& scene = family.scene->columns[column];
+    if (scene.what.unit != "Pa" || scene.node == no_index) return {};
+    std::vector<const StudyRun*> levels;
+    for (const StudyRun* run : family.comparable)
+        if (is_mesh(run->variant)) levels.push_back(run);
+    if (levels.size() < 3) return {};
+    std::ranges::sort(levels, {}, [](const StudyRun* run) { return run->variant.refine; });
+    Real rate[2];  // growth exponents of the two finest levels
+    for (std::size_t i = 0; i < 2; ++i) {
+        const StudyRun &coarse = *levels[levels.size() - 3 + i], &fine = *levels[levels.size() - 2 + i];
+        const Real growth = figure_value(fine, column, figure, 0) / figure_value(coarse, column, figure, 0);
+        rate[i] = growth > 0 ? std::log2(growth) / (fine.variant.refine - coarse.variant.refine) : 0;
+    }
+    // An exponent falls to a half per level if the error has order 1, to 0.7 if it has order 1/2.
+    constexpr Real least_rate = 0.1, least_steadiness = 0.75, same_place = 0.25;
+    const StudyColumn& fine = levels.back()->columns[column];
+    const StudyColumn& before = levels[levels.size() - 2]->columns[column];
+    if (!(rate[1] > least_rate) || !(rate[1] > least_steadiness * rate[0])) return {};
+    if ((fine.place - before.place).norm() > same_place * scene.size) return {};
+    const Vec3& at = scene.place;
+    return "grows " + short_number(std::exp2(rate[1])) + " times with each halving of the edges, at node " +
+           std::to_string(scene.node) + " (" + short_number(at.x()) + ", " + short_number(at.y()) + ", " +
+           short_number(at.z()) +
+           ") m. Sharp inner corners, edges of clamps and point loads have no finite stress: round the corner, spread "
+           "the load, or measure the stress elsewhere";
+}
+
+std::string irregular_text(const char* part, ConvergenceShape shape) {
+    const char* behaviour = shape == ConvergenceShape::oscillating ? "oscillates"
+                            : shape == ConvergenceShape::fast      ? "falls faster than the theory says"
+                                                                   : "does not fall as it should";
+    return std::string("the ") + part + " error " + behaviour + ", so the value is not extrapolated";
+}
+
+/// Sets the errors and the extrapolated value of a quantity from its families of runs.
+void combine(MeasuredQuantity& quantity) {
+    StudyQuantity& r = quantity.result;
+    r.error = r.mesh + r.step + r.contact + r.noise;
+    r.mesh_order = quantity.mesh.order();
+    r.step_order = quantity.step.order();
+    r.best = r.value;
+    r.best_error = r.noise;
+    const std::pair<const Convergence*, Real> parts[] = {
+        {&quantity.mesh, r.mesh}, {&quantity.step, r.step}, {&quantity.contact, r.contact}};
+    for (const auto& [convergence, error] : parts) {
+        if (convergence->shape() == ConvergenceShape::unmeasured && error == 0) continue;  // there is no such error
+        r.best += convergence->limit() - r.value;
+        r.best_error += convergence->limit_error();
+    }
+}
+
+void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Real agree_until, Real wanted,
+           MeasuredQuantity& quantity) {
+    StudyQuantity& r = quantity.result;
+    const auto decide = [&r](StudyVerdict verdict, const std::string& sentence) {
+        r.verdict = verdict;
+        r.sentence = sentence;
+    };
+    const StudyColumn& scene = family.scene->columns[column];
+    if (figure != StudyFigure::agreed && !is_statistic(scene) && quantity.noise > agreement_share * r.scale) {
+        r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
+        return decide(StudyVerdict::chaotic, "runs begun 1e-12 m apart agree until " +
+                                                 short_number(std::min(agree_until, family.scene->time.back())) +
+                                                 " s; the value of this one run says nothing about others");
+    }
+    if (const std::string text = singular_text(family, column, figure); !text.empty()) {
+        r.error = r.mesh = infinity;
+        r.best = r.best_error = no_value;
+        return decide(StudyVerdict::singular, text);
+    }
+    if (!std::isfinite(r.value)) return decide(StudyVerdict::not_measured, "the run has no value");
+    if (std::isnan(r.mesh)) {
+        const std::string reason =
+            reasons_of(family, [](const StudyVariant& v) { return is_mesh(v) && v.refine != 0; });
+        if (quantity.elements.empty())
+            return decide(StudyVerdict::not_measured, "the mesh error is unknown: " + reason);
+        r.mesh = 0;
+        for (const auto& [variant, value] : quantity.elements) r.mesh = std::max(r.mesh, std::abs(value - r.value));
+        r.error = r.mesh + r.step + r.contact + r.noise;
+        return decide(StudyVerdict::not_measured,
+                      "the mesh error is only guessed from other elements on the same mesh: " + reason);
+    }
+    if (std::isnan(r.step))
+        return decide(StudyVerdict::not_measured, "the step error is unknown: " + reasons_of(family, is_step));
+    if (std::isnan(r.contact))
+        return decide(StudyVerdict::not_measured, "the contact error is unknown: " + reasons_of(family, is_contact));
+    // An irregular part matters if it is a fifth of the error bar and a tenth of the wanted error.
+    constexpr Real share_of_error = 0.2, share_of_wanted = 0.1;
+    decide(StudyVerdict::known, "");
+    const auto check = [&](const char* name, const Convergence& part, Real error) {
+        if (part.irregular() && error > share_of_error * r.error && error > share_of_wanted * wanted * r.scale)
+            decide(StudyVerdict::irregular,
+                   (r.sentence.empty() ? "" : r.sentence + "; ") + irregular_text(name, part.shape()));
+    };
+    check("mesh", quantity.mesh, r.mesh);
+    check("step", quantity.step, r.step);
+    for (const auto& [variant, value] : quantity.elements)
+        if (std::abs(value - r.value) > std::max(r.error, wanted * r.scale) && r.sentence.empty())
+            r.sentence = "with " + std::string(name_of(*variant.element)) + " elements the value is " +
+                         short_number(value, 4) + " " + r.unit + ", outside the error bar";
+}
+
+/// Measures the error of a number of each run.
+template <class ValueOf>
+MeasuredQuantity measure_values(const StudyFamily& family, const SeriesColumn& what, Real scale,
+                                const ValueOf& value_of) {
+    MeasuredQuantity quantity;
+    StudyQuantity& r = quantity.result;
+    r.unit = what.unit;
+    r.scale = scale;
+    r.value = value_of(*family.scene);
+    std::vector<ConvergenceLevel> mesh, step, contact;
+    for (const StudyRun* run : family.comparable) {
+        const StudyVariant& v = run->variant;
+        const Real value = value_of(*run);
+        if (is_mesh(v)) mesh.push_back({std::exp2(Real{-1} * v.refine), value});
+        if (is_step(v)) step.push_back({v.step, value});
+        if (is_contact(v)) contact.push_back({v.tolerance, value});
+        if (v.draw != 0 && std::isfinite(value)) quantity.noise = std::max(quantity.noise, std::abs(value - r.value));
+        if (v.element) quantity.elements.emplace_back(v, value);
+    }
+    constexpr Real rounding = 1e-9;  // also holds the sums of rounding errors over a run
+    Real noise = std::max(rounding * r.scale, quantity.noise);
+    quantity.contact = Convergence(contact, {1, 1}, noise);
+    if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());  // the solver's error is noise, too
+    quantity.mesh = Convergence(mesh, mesh_theory(what), noise);
+    quantity.step = Convergence(step, step_theory(*family.scene), noise);
+    r.expected_mesh_order = mesh_theory(what).least;
+    r.expected_step_order = step_theory(*family.scene).least;
+    // A part that the study has no runs for is zero: rigid bodies have no mesh error, scenes without contacts no
+    // contact error.
+    const auto error = [&](const Convergence& convergence, auto belongs) {
+        const bool planned = std::ranges::any_of(
+            *family.all, [&](const StudyRun& run) { return belongs(run.variant) && !run.variant.is_scene(); });
+        return planned ? convergence.error() : 0;
+    };
+    r.mesh = error(quantity.mesh, is_mesh);
+    r.step = error(quantity.step, is_step);
+    r.contact = error(quantity.contact, is_contact);
+    r.noise = quantity.noise;
+    combine(quantity);
+    return quantity;
+}
+
+}  // namespace
+
+StudyFamily::StudyFamily(const std::vector<StudyRun>& runs) : all(&runs), scene(&runs.front()) {
+    for (const StudyRun& run : runs)
+        if (run.status == StudyRunStatus::ok && run.time.size() == scene->time.size() &&
+            run.columns.size() == scene->columns.size())
+            comparable.push_back(&run);
+}
+
+PerturbedRuns StudyFamily::perturbed() const {
+    PerturbedRuns runs{scene, {}};
+    for (const StudyRun* run : comparable)
+        if (run->variant.draw != 0) runs.perturbed.push_back(run);
+    return runs;
+}
+
+bool is_statistic(const StudyColumn& column) {
+    return column.what.probe == "bodies";
+}
+
+std::vector<Real> column_scales(const StudyRun& run) {
+    std::map<std::string, Real> largest;
+    for (const StudyColumn& column : run.columns) {
+        if (column.values.empty()) continue;
+        const bool relative = column.what.unit == "m" || column.what.unit == "J";
+        const std::size_t first = known_row(column.values, false);
+        Real& scale = largest[group_of(column.what)];
+        for (std::size_t row = first; row < column.values.size(); ++row) {
+            const Real value = std::abs(column.values[row] - (relative ? column.values[first] : 0));
+            if (value > scale) scale = value;  // unknown values do not count
+        }
+    }
+    constexpr Real least_share_of_size = 1e-3;
+    std::vector<Real> scales;
+    for (const StudyColumn& column : run.columns) {
+        const Real scale = largest[group_of(column.what)];
+        scales.push_back(column.what.unit == "m" ? std::max(scale, least_share_of_size * column.size) : scale);
+    }
+    return scales;
+}
+
+std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t column, Real agree_until, Real scale) {
+    const StudyColumn& scene = family.scene->columns[column];
+    std::vector<StudyFigure> figures;
+    if (agree_until < family.scene->time.back() && !is_statistic(scene)) figures.push_back(StudyFigure::agreed);
+    figures.push_back(StudyFigure::end);
+    const auto value = [&](StudyFigure figure) { return figure_value(*family.scene, column, figure, 0); };
+    const bool relative = scene.what.unit == "m" || scene.what.unit == "J";
+    const Real start = relative && !scene.values.empty() ? scene.values[0] : 0;
+    const StudyFigure extreme = value(StudyFigure::largest) - start >= start - value(StudyFigure::smallest)
+                                    ? StudyFigure::largest
+                                    : StudyFigure::smallest;
+    // Mostly the end is the extreme; then one of the two says all.
+    constexpr Real different = 1e-3;
+    if (std::abs(value(extreme) - value(StudyFigure::end)) > different * scale) figures.push_back(extreme);
+    if (scene.what.unit == "N" && figures.size() > 1) figures.push_back(StudyFigure::mean);
+    return figures;
+}
+
+MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFigure figure, Real scale,
+                         Real agree_until, Real wanted) {
+    const SeriesColumn& what = family.scene->columns[column].what;
+    const auto value_of = [&](const StudyRun& run) { return figure_value(run, column, figure, agree_until); };
+    MeasuredQuantity quantity = measure_values(family, what, scale, value_of);
+    StudyQuantity& r = quantity.result;
+    r.name = what.probe + "." + what.quantity + ending_of(figure);
+    r.agree_until = agree_until;
+    judge(family, column, figure, agree_until, wanted, quantity);
+    for (const StudyRun& run : *family.all) {
+        const bool comparable = std::ranges::find(family.comparable, &run) != family.comparable.end();
+        r.run_values.push_back(comparable ? value_of(run) : no_value);
+        r.run_errors.push_back(comparable ? error_with(quantity, run.variant) : no_value);
+    }
+    return quantity;
+}
+
+Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant) {
+    const StudyQuantity& r = quantity.result;
+    if (std::isnan(r.error) || r.verdict == StudyVerdict::singular) return r.error;
+    const auto at = [](const Convergence& convergence, Real h, Real otherwise) {
+        return convergence.shape() == ConvergenceShape::unmeasured ? otherwise : convergence.error_at(h);
+    };
+    Real mesh = at(quantity.mesh, std::exp2(Real{-1} * variant.refine), r.mesh);
+    if (variant.element && quantity.mesh.shape() != ConvergenceShape::unmeasured) {
+        mesh = no_value;
+        for (const auto& [run, value] : quantity.elements)
+            if (run.element == variant.element && run.refine == variant.refine) mesh = quantity.mesh.error_of(value);
+    }
+    return mesh + at(quantity.step, variant.step, r.step) + at(quantity.contact, variant.tolerance, r.contact) +
+           quantity.noise;
+}
+
+std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real scale, Real agree_until) {
+    const StudyColumn& scene = family.scene->columns[column];
+    std::vector<Real> band;
+    for (std::size_t row = 0; row < scene.values.size(); ++row) {
+        const bool agreed = family.scene->time[row] <= agree_until || is_statistic(scene);
+        const auto value_of = [&](const StudyRun& run) { return run.columns[column].values[row]; };
+        band.push_back(agreed ? measure_values(family, scene.what, scale, value_of).result.error : no_value);
+    }
+    return band;
+}
+
+}  // namespace skerry

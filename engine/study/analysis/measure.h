@@ -1,0 +1,62 @@
+// One quantity of a study: its value in every run, and its error (docs/methods/study.md 2).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/study/analysis/agreement.h"
+#include "engine/study/analysis/convergence.h"
+#include "skerry/study.h"
+
+namespace skerry {
+
+/// Number that a column is reduced to.
+/// - end: value in the last row.
+/// - largest, smallest: extreme value of all rows.
+/// - mean: mean over time.
+/// - agreed: value in the last row in which perturbed runs agree.
+enum class StudyFigure { end, largest, smallest, mean, agreed };
+
+/// Runs of a study that can be compared.
+struct StudyFamily {
+    const std::vector<StudyRun>* all = nullptr;
+    const StudyRun* scene = nullptr;            // the scene as it is
+    std::vector<const StudyRun*> comparable{};  // runs that ended well, with the times of `scene`; includes `scene`
+
+    explicit StudyFamily(const std::vector<StudyRun>& runs);
+    PerturbedRuns perturbed() const;
+};
+
+/// A quantity, and the behaviour of its value in each family of runs.
+struct MeasuredQuantity {
+    StudyQuantity result;
+    Convergence mesh{}, step{}, contact{};
+    Real noise = 0;                                         // largest difference of the perturbed runs
+    std::vector<std::pair<StudyVariant, Real>> elements{};  // value of each run with another kind of element
+};
+
+/// Returns the scale of each column, to which its errors are relative: the largest absolute value of the run, for
+/// lengths and energies the largest change since the start. The components of a vector have the same scale, and so have
+/// the energies of a probe. Lengths have at least the scale of a thousandth of the body.
+std::vector<Real> column_scales(const StudyRun& run);
+
+/// Returns the figures of a column that get an error bar.
+std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t column, Real agree_until, Real scale);
+
+/// Measures a figure of a column. `scale` and `agree_until` belong to the column, `wanted` is the wanted relative
+/// error.
+MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFigure figure, Real scale,
+                         Real agree_until, Real wanted);
+
+/// Half width of the error bar of the value that a run with these settings has. Finer meshes than those of the runs are
+/// predicted. NaN if unknown.
+Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant);
+
+/// Half width of the error bar of each row of a column.
+std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real scale, Real agree_until);
+
+/// True for a column that summarises all bodies. Its values remain meaningful in chaotic scenes.
+bool is_statistic(const StudyColumn& column);
+
+}  // namespace skerry

@@ -1,0 +1,138 @@
+#include "engine/study/plan_study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <utility>
+
+#include "engine/scene/run_plan.h"
+#include "engine/study/study_columns.h"
+
+namespace skerry {
+
+namespace {
+
+/// Returns a number as JSON with all digits.
+std::string number_json(double value) {
+    return Json(value).dump();
+}
+
+std::vector<ElementKind> elements_of(const SceneFile& file) {
+    std::vector<ElementKind> kinds;
+    for (const BodyEntry& body : file.bodies) kinds.push_back(body.element);
+    return kinds;
+}
+
+/// Adds the runs in which all bodies have linear, or all have smoothed elements, unless they have them anyway.
+void add_element_runs(const StudiedScene& scene, std::vector<PlannedRun>& plan) {
+    for (const ElementKind kind : {ElementKind::linear, ElementKind::smoothed}) {
+        std::vector<std::string> changed = scene.assignments;
+        for (std::string& assignment : element_assignments(scene.file, scene.path, kind))
+            changed.push_back(std::move(assignment));
+        if (elements_of(read_scene_file(scene.path, changed)) != elements_of(scene.file))
+            plan.push_back({{.element = kind}, kind == ElementKind::linear ? 1.0 : 2.0, {}});
+    }
+}
+
+/// Adds the run with the meshes at a level, or the reason why the scene does not have it.
+void add_level_run(const StudiedScene& scene, int level, std::vector<PlannedRun>& plan) {
+    if (scene.levels.meshes.empty()) return;
+    // A level has eight times the tetrahedra of the next coarser one, and explicit bodies take steps half as long.
+    const double factor = scene.has_explicit ? 16 : 8;
+    plan.push_back({{.refine = level}, std::pow(factor, level), {}});
+    if (level < scene.levels.coarsest) plan.back().reason = "no coarser meshes: " + scene.levels.why_not_coarser;
+    if (level > scene.levels.finest) plan.back().reason = "no finer meshes: " + scene.levels.why_not_finer;
+}
+
+}  // namespace
+
+StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySettings& settings) {
+    StudiedScene studied{.path = path,
+                         .file = read_scene_file(path, settings.assignments),
+                         .assignments = settings.assignments,
+                         .levels = {},
+                         .settings = {}};
+    studied.levels = levels_of(studied.file, path);
+    SceneOverrides overrides{.threads = 1};
+    overrides.assignments = settings.assignments;
+    overrides.fill_python = settings.fill_python;
+    Scene scene = load_scene(path, overrides);
+    studied.settings = scene.world.settings();
+    studied.longest_call = plan_run(scene, path, settings.seconds).longest_call();
+    for (const BodyHandle body : scene.world.bodies()) {
+        studied.has_explicit |= scene.world.dynamics(body) == BodyDynamics::explicit_elastic;
+        studied.has_implicit |= scene.world.dynamics(body) == BodyDynamics::implicit_elastic;
+    }
+    std::vector<StudyColumn> columns = StudyRecorder(scene).columns();
+    choose_columns_by_name(settings.probes, path, columns);
+    return studied;
+}
+
+std::vector<PlannedRun> plan_study(const StudiedScene& scene) {
+    std::vector<PlannedRun> plan{{{}, 1, {}}, {{.draw = 1}, 1, {}}, {{.draw = 2}, 1, {}}};
+    add_element_runs(scene, plan);
+    plan.push_back({{.step = 0.5}, 2, {}});
+    constexpr double solving = 1.5;  // a contact solver needs about twice the sweeps, which take half of the time
+    plan.push_back({{.tolerance = 0.01}, solving, {}});
+    add_level_run(scene, -1, plan);
+    if (scene.levels.coarsest <= -2) add_level_run(scene, -2, plan);
+    add_level_run(scene, 1, plan);
+    if (!scene.has_explicit) plan.push_back({{.step = 2}, 0.5, {}});
+    plan.push_back({{.step = 0.25}, 4, {}});
+    if (scene.levels.finest >= 2) add_level_run(scene, 2, plan);
+    return plan;
+}
+
+bool gets_all_threads(double cost, double total, int threads) {
+    return threads > 1 && cost > total / threads;
+}
+
+double wall_time(std::vector<double> costs, int threads) {
+    constexpr double efficiency = 0.7;  // gain of each further thread of a run
+    std::ranges::sort(costs, std::greater());
+    double total = 0, wall = 0;
+    for (const double cost : costs) total += cost;
+    for (const double cost : costs) {
+        if (!gets_all_threads(cost, total, threads)) break;
+        wall += cost / (1 + efficiency * (threads - 1));
+        total -= cost;
+    }
+    return wall + total / threads;
+}
+
+void keep_to_budget(double budget, int threads, std::vector<PlannedRun>& plan) {
+    std::vector<double> first, second;
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+        std::vector<double>& phase = i < independent_runs ? first : second;
+        phase.push_back(plan[i].cost);
+        const double wall = wall_time(first, threads) + wall_time(second, threads);
+        if (i < independent_runs || wall <= budget) continue;
+        phase.pop_back();
+        plan[i].reason = "with it the study would take about " + short_text(wall) +
+                         " times as long as one run, more than the budget of " + short_text(budget);
+    }
+}
+
+std::vector<std::string> variant_assignments(const StudiedScene& scene, const StudyVariant& variant, Real mean_step) {
+    std::vector<std::string> assignments = scene.assignments;
+    if (variant.step != 1) {
+        constexpr double slack = 1 + 1e-9;  // a call of advance that is a whole number of steps must stay one
+        assignments.push_back("settings.step_size=" + number_json(mean_step * variant.step * slack));
+        if (scene.settings.implicit_step > 0)
+            assignments.push_back("settings.implicit_step=" +
+                                  number_json(scene.settings.implicit_step * variant.step * slack));
+    }
+    if (variant.tolerance != 1) {
+        assignments.push_back("settings.tolerance=" + number_json(scene.settings.tolerance * variant.tolerance));
+        constexpr int more = 10;
+        if (variant.tolerance < 1)
+            assignments.push_back("settings.max_iterations=" + std::to_string(scene.settings.max_iterations * more));
+    }
+    const auto add = [&](std::vector<std::string> more) { std::ranges::move(more, std::back_inserter(assignments)); };
+    if (variant.refine != 0) add(scene.levels.assignments(variant.refine));
+    if (variant.element) add(element_assignments(scene.file, scene.path, *variant.element));
+    return assignments;
+}
+
+}  // namespace skerry

@@ -1,0 +1,52 @@
+// Plan of a study: its runs, how each of them changes the scene, and which of them fit into the budget.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/scene/mesh_levels.h"
+#include "engine/scene/scene_file.h"
+#include "skerry/scene.h"
+#include "skerry/study.h"
+
+namespace skerry {
+
+/// Scene of a study as it is.
+struct StudiedScene {
+    std::filesystem::path path;
+    SceneFile file;
+    std::vector<std::string> assignments;  // changes that all runs share
+    SceneLevels levels;
+    Settings settings;
+    bool has_explicit = false, has_implicit = false;  // kinds of deformable bodies
+    double longest_call = 0;                          // longest simulated time of a call of advance [s]
+};
+
+/// Reads and builds the scene, and checks the names of the probes. Throws SceneError.
+StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySettings& settings);
+
+struct PlannedRun {
+    StudyVariant variant;
+    double cost = 1;     // predicted CPU time, divided by that of the scene as it is
+    std::string reason;  // reason why the run is left out; empty: it is made
+};
+
+/// Runs that a study of the scene needs, the most important first. The first is the scene as it is, the next two begin
+/// 1e-12 m apart from it.
+std::vector<PlannedRun> plan_study(const StudiedScene& scene);
+/// Number of runs at the beginning of the plan that need no result of another run.
+inline constexpr std::size_t independent_runs = 3;
+
+/// Predicted wall time of runs with these costs, in units of the cost.
+double wall_time(std::vector<double> costs, int threads);
+/// True if a run takes so long that it gets all threads, one run after the other.
+bool gets_all_threads(double cost, double total, int threads);
+/// Leaves out each run with which the study would take longer than `budget` times the first run, together with the more
+/// important runs that fit. The first three runs are always made.
+void keep_to_budget(double budget, int threads, std::vector<PlannedRun>& plan);
+
+/// Assignments with which `skerry run --set` runs a variant. `mean_step`: mean step of the unchanged scene [s].
+std::vector<std::string> variant_assignments(const StudiedScene& scene, const StudyVariant& variant, Real mean_step);
+
+}  // namespace skerry

@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/output/table/table_page.h"
+#include "engine/program/number_text.h"
+#include "engine/study/report/wording.h"
+#include "skerry/study.h"
+
+namespace skerry {
+
+namespace {
+
+using PageJson = nlohmann::ordered_json;  // numbers that are not finite become null
+
+constexpr const char* cpu_time = "CPU time [s]";
+constexpr std::size_t most_rows = 400;  // largest number of rows of a time series in the page
+
+std::string heading(const StudyQuantity& q) {
+    return q.name + " [" + q.unit + "]";
+}
+std::string error_heading(const StudyQuantity& q) {
+    return "error of " + heading(q);
+}
+
+PageJson run_rows(const StudyResult& result) {
+    PageJson rows = PageJson::array();
+    for (std::size_t i = 0; i < result.runs.size(); ++i) {
+        const StudyRun& run = result.runs[i];
+        PageJson figures = {{cpu_time, run.cpu_seconds}, {"steps", run.steps}, {"tetrahedra", run.tetrahedra}};
+        for (const StudyQuantity& q : result.quantities) {
+            if (i >= q.run_values.size()) continue;
+            figures[heading(q)] = q.run_values[i];
+            figures[error_heading(q)] = q.run_errors[i];
+        }
+        std::string changes;
+        for (const std::string& assignment : run.assignments) changes += (changes.empty() ? "" : " ") + assignment;
+        rows.push_back({{"case", i},
+                        {"status", run.status == StudyRunStatus::left_out ? "left out" : name_of(run.status)},
+                        {"message", run.message},
+                        {"warnings", run.warnings},
+                        {"values",
+                         {{"settings", variant_text(run.variant)},
+                          {"mesh level", run.variant.refine},
+                          {"step", run.variant.step},
+                          {"tolerance", run.variant.tolerance},
+                          {"assignments", changes}}},
+                        {"figures", figures}});
+    }
+    return rows;
+}
+
+PageJson summary_table(const StudyResult& result) {
+    PageJson rows = {{"quantity", "value", "error bar", "relative", "verdict", "mesh", "step", "contacts", "start",
+                      "best value", "orders", "remark"}};
+    for (const StudyQuantity& q : result.quantities) {
+        const QuantityText text = quantity_text(q);
+        const auto bar = [](const std::string& error) { return error.empty() ? error : "\u00b1 " + error; };
+        rows.push_back({q.name, text.value + " " + text.unit, bar(text.error), text.share, name_of(q.verdict),
+                        text.mesh, text.step, text.contact, text.noise,
+                        text.best.empty() ? "" : text.best + " " + bar(text.best_error), text.orders, q.sentence});
+    }
+    return rows;
+}
+
+PageJson time_series(const StudyResult& result) {
+    const StudyRun& scene = result.runs.front();
+    const std::size_t stride = (scene.time.size() + most_rows - 1) / most_rows;
+    const auto thinned = [stride](const std::vector<Real>& values) {
+        PageJson list = PageJson::array();
+        for (std::size_t row = 0; row < values.size(); row += std::max<std::size_t>(stride, 1)) {
+            constexpr int digits = 7;
+            list.push_back(std::isfinite(values[row]) ? PageJson(std::stod(short_number(values[row], digits)))
+                                                      : PageJson());
+        }
+        return list;
+    };
+    PageJson columns = PageJson::array();
+    for (std::size_t column = 0; column < result.bands.size(); ++column) {
+        if (result.bands[column].empty()) continue;
+        PageJson runs = PageJson::array();
+        for (const StudyRun& run : result.runs)
+            runs.push_back(run.time == scene.time && column < run.columns.size() ? thinned(run.columns[column].values)
+                                                                                 : PageJson());
+        columns.push_back(
+            {{"name", scene.columns[column].what.heading()}, {"runs", runs}, {"band", thinned(result.bands[column])}});
+    }
+    return {{"time", thinned(scene.time)}, {"columns", columns}};
+}
+
+}  // namespace
+
+std::string study_page(const StudyResult& result) {
+    PageJson figures = {cpu_time, "steps", "tetrahedra"};
+    std::string first_error;
+    for (const StudyQuantity& q : result.quantities) {
+        figures.push_back(heading(q));
+        figures.push_back(error_heading(q));
+        if (first_error.empty() && q.error > 0 && std::isfinite(q.error)) first_error = error_heading(q);
+    }
+    std::vector<std::string> notes = result.sentences;
+    if (result.cheapest) {
+        const CheapestSettings& cheapest = *result.cheapest;
+        notes.push_back((cheapest.reaches ? "Cheapest settings for an error of " : "Nearest to an error of ") +
+                        percent(result.wanted_error) + ": " + variant_text(cheapest.variant) + "; predicted error " +
+                        percent(cheapest.error) + ", CPU time " + duration_text(cheapest.cpu_seconds) + "; " +
+                        cheapest.sentence + ".");
+    }
+    const PageJson data = {
+        {"name", "Study of " + result.scene},
+        {"description", "Error bars of each quantity, from runs with other meshes, steps, tolerances and elements."},
+        {"noun", "run"},
+        {"scene", result.scene},
+        {"parameters", {"settings", "mesh level", "step", "tolerance", "assignments"}},
+        {"figures", figures},
+        {"rows", run_rows(result)},
+        {"start",
+         {{"x", cpu_time},
+          {"y", first_error.empty() ? "steps" : first_error},
+          {"color", "settings"},
+          {"logX", true},
+          {"logY", true},
+          {"lines", false}}},
+        {"notes", notes},
+        {"summary", summary_table(result)},
+        {"series", time_series(result)}};
+    return table_page("Study of " + result.scene, data.dump(-1, ' ', false, PageJson::error_handler_t::replace));
+}
+
+}  // namespace skerry

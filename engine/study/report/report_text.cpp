@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <cmath>
+
+#include "engine/program/number_text.h"
+#include "engine/study/report/wording.h"
+#include "skerry/study.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t most_quantities = 14;  // largest number of lines with quantities
+constexpr std::size_t most_remarks = 4;      // largest number of lines of each kind of remark
+
+std::string quantity_line(const StudyQuantity& q, std::size_t width) {
+    const QuantityText text = quantity_text(q);
+    const auto with_space = [](const std::string& unit) { return unit.empty() ? unit : " " + unit; };
+    std::string line =
+        "  " + q.name + std::string(width - q.name.size(), ' ') + " = " + text.value + with_space(text.unit);
+    if (text.error.empty()) return line + ", " + std::string(name_of(q.verdict)) + "\n";
+    line += " +- " + text.error;
+    std::string parts;
+    struct BarPart {
+        const char* name;
+        Real error;
+        const std::string& text;
+    };
+    constexpr double shown_share = 0.01;  // smaller parts of an error bar are not shown
+    for (const auto& [name, error, part] :
+         {BarPart{"mesh", q.mesh, text.mesh}, BarPart{"step", q.step, text.step},
+          BarPart{"contacts", q.contact, text.contact}, BarPart{"start", q.noise, text.noise}})
+        if (error > shown_share * q.error) parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
+    if (!parts.empty()) line += " (" + (text.share.empty() ? "" : text.share + ": ") + parts + ")";
+    if (!text.orders.empty()) line += ", " + text.orders;
+    if (q.verdict != StudyVerdict::known) line += ", " + std::string(name_of(q.verdict));
+    return line + "\n";
+}
+
+/// True for a component of a vector that is smaller than the wanted error of the vector.
+bool is_negligible(const StudyQuantity& q, double wanted) {
+    return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error <= wanted * q.scale;
+}
+
+std::string quantities_text(const StudyResult& result) {
+    std::vector<const StudyQuantity*> shown;
+    std::size_t negligible = 0, width = 0;
+    for (const StudyQuantity& q : result.quantities) {
+        if (is_negligible(q, result.wanted_error))
+            ++negligible;
+        else
+            shown.push_back(&q);
+    }
+    const std::size_t left = shown.size() > most_quantities ? shown.size() - most_quantities : 0;
+    shown.resize(shown.size() - left);
+    for (const StudyQuantity* q : shown) width = std::max(width, q->name.size());
+    std::string text;
+    for (const StudyQuantity* q : shown) text += quantity_line(*q, width);
+    if (left > 0) text += "  ... and " + std::to_string(left) + " more, in the page\n";
+    if (negligible > 0)
+        text += "  ... and " + std::to_string(negligible) + (negligible > 1 ? " components" : " component") +
+                " smaller than the wanted error\n";
+    return text;
+}
+
+/// One line for all quantities with the same verdict and sentence.
+std::string verdicts_text(const StudyResult& result) {
+    struct Remark {
+        const StudyQuantity* first;
+        std::size_t count;
+    };
+    std::vector<Remark> remarks;
+    for (const StudyQuantity& q : result.quantities) {
+        if (q.verdict == StudyVerdict::known) continue;
+        const auto same = std::ranges::find_if(remarks, [&q](const Remark& remark) {
+            return remark.first->verdict == q.verdict && remark.first->sentence == q.sentence;
+        });
+        if (same == remarks.end())
+            remarks.push_back({&q, 1});
+        else
+            ++same->count;
+    }
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most_remarks, remarks.size()); ++i) {
+        const StudyQuantity& q = *remarks[i].first;
+        text += "  " + std::string(name_of(q.verdict)) + ": " + q.name +
+                (remarks[i].count > 1 ? " and " + std::to_string(remarks[i].count - 1) + " more" : "") + ": " +
+                q.sentence + "\n";
+    }
+    if (remarks.size() > most_remarks)
+        text += "  ... and " + std::to_string(remarks.size() - most_remarks) + " more remarks, in the page\n";
+    return text;
+}
+
+/// One line for all runs that have no result for the same reason.
+std::string missing_text(const StudyResult& result) {
+    std::vector<std::pair<std::string, std::string>> lines;  // status and settings, reason
+    for (const StudyRun& run : result.runs) {
+        if (run.status == StudyRunStatus::ok) continue;
+        const auto same = std::ranges::find(lines, run.message, &std::pair<std::string, std::string>::second);
+        if (same != lines.end())
+            same->first += "; " + variant_text(run.variant);
+        else
+            lines.emplace_back(
+                (run.status == StudyRunStatus::left_out ? "left out" : std::string(name_of(run.status))) + ": " +
+                    variant_text(run.variant),
+                run.message);
+    }
+    std::string text;
+    for (const auto& [runs, reason] : lines) text += runs + ": " + reason + "\n";
+    return text;
+}
+
+std::string cheapest_text(const StudyResult& result) {
+    const CheapestSettings& cheapest = *result.cheapest;
+    std::string text = "cheapest settings for an error of " + percent(result.wanted_error) + ": " +
+                       variant_text(cheapest.variant) + "\n";
+    text += "  predicted error " + percent(cheapest.error) + ", CPU time " + duration_text(cheapest.cpu_seconds) +
+            " (the scene as it is: " + duration_text(result.runs.front().cpu_seconds) + "); " + cheapest.sentence +
+            "\n";
+    if (!cheapest.reaches)
+        text.replace(0, text.find('\n'),
+                     "nearest to an error of " + percent(result.wanted_error) + ": " + variant_text(cheapest.variant));
+    return text;
+}
+
+}  // namespace
+
+std::string study_text(const StudyResult& result) {
+    double cpu = 0;
+    std::size_t left_out = 0, failed = 0;
+    for (const StudyRun& run : result.runs) {
+        if (run.status == StudyRunStatus::left_out) {
+            ++left_out;
+            continue;
+        }
+        cpu += run.cpu_seconds;
+        if (run.status != StudyRunStatus::ok) ++failed;
+    }
+    std::string text = "study of " + result.scene + ": " + std::to_string(result.runs.size() - left_out) + " runs, " +
+                       duration_text(cpu) + " of CPU time";
+    if (failed > 0) text += ", " + std::to_string(failed) + " without a result";
+    if (left_out > 0) text += ", " + std::to_string(left_out) + " left out";
+    text += "\n" + quantities_text(result) + verdicts_text(result);
+    text += missing_text(result);
+    for (std::size_t i = 0; i < std::min(most_remarks, result.sentences.size()); ++i)
+        text += result.sentences[i] + "\n";
+    if (result.sentences.size() > most_remarks)
+        text += "... and " + std::to_string(result.sentences.size() - most_remarks) + " more remarks, in the page\n";
+    return result.cheapest ? text + cheapest_text(result) : text;
+}
+
+}  // namespace skerry

@@ -1,0 +1,23 @@
+// Wording of variants and error bars in the reports of a study.
+#pragma once
+
+#include <string>
+
+#include "skerry/study.h"
+
+namespace skerry {
+
+/// Describes a variant, for example "1 level finer, steps x 0.5".
+std::string variant_text(const StudyVariant& variant);
+
+/// Numbers of a quantity as text. All have the same SI prefix, so that they can be compared.
+struct QuantityText {
+    std::string value, error, unit;          // error: empty if unknown
+    std::string mesh, step, contact, noise;  // parts of the error; empty if zero or unknown
+    std::string best, best_error;            // empty if unknown
+    std::string share;                       // error relative to the scale [%]
+    std::string orders;                      // for example "order 1.9 (2 expected)"; empty if unknown
+};
+QuantityText quantity_text(const StudyQuantity& quantity);
+
+}  // namespace skerry

@@ -1,0 +1,31 @@
+// Files with the results of the runs of a study.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "engine/scene/place.h"
+#include "skerry/study.h"
+
+namespace skerry {
+
+/// Short name of a variant, for messages and files: scene, refine_1, step_0.5, tolerance_0.01, element_linear, draw_1.
+std::string variant_name(const StudyVariant& variant);
+
+/// Writes the result of a run, completely or not at all. `inputs`: text that identifies all inputs of the run. Throws
+/// SceneError.
+void write_run(const std::filesystem::path& folder, const std::string& inputs, const StudyRun& run);
+
+/// Result of a run in a folder.
+struct StoredRun {
+    std::optional<StudyRun> run;  // the run, if the file has the given inputs
+    std::string found;            // content of the file, if it exists but has other inputs; else empty
+};
+StoredRun read_run(const std::filesystem::path& folder, const std::string& inputs, const StudyVariant& variant);
+
+Json variant_json(const StudyVariant& variant);
+/// JSON document of a run without its time series.
+Json run_json(const StudyRun& run);
+
+}  // namespace skerry

@@ -1,0 +1,29 @@
+// Runs one variant of a scene.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+
+#include "skerry/scene.h"
+#include "skerry/study.h"
+
+namespace skerry {
+
+/// A run that is to be made.
+struct VariantJob {
+    std::filesystem::path scene;
+    std::optional<Real> seconds;  // duration; empty: that of the scene [s]
+    SceneOverrides overrides;     // assignments of the variant, and the number of threads
+    StudyVariant variant;
+};
+
+/// Simulates a variant with the calls of advance of `skerry run`, and stores everything except the assignments in
+/// `run`. An invalid scene and a refused step are results, too. `share`: is set to the simulated share of the duration,
+/// from 0 to 1. Returns false if `stop` ended the run between two steps.
+bool run_variant(const VariantJob& job, const std::atomic<bool>& stop, std::atomic<double>& share, StudyRun& run);
+
+/// Moves the nodes that no attachment holds by at most 1e-12 m. Equal draws give equal movements; draw 0 moves nothing.
+/// A rigid body moves as a whole.
+void perturb_start(int draw, World& world);
+
+}  // namespace skerry

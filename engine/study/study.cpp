@@ -1,0 +1,271 @@
+#include "skerry/study.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+#include "engine/scene/case_hash.h"
+#include "engine/scene/write_scene.h"
+#include "engine/study/analysis/analyse.h"
+#include "engine/study/plan_study.h"
+#include "engine/study/run_file.h"
+#include "engine/study/run_variant.h"
+#include "engine/study/study_columns.h"
+#include "jobs/run_tasks.h"
+
+namespace skerry {
+
+namespace {
+
+// Time between two calls of StudySettings::go_on. A program must react to Ctrl-C within 50 ms.
+constexpr std::chrono::milliseconds watch_period{20};
+
+constexpr double usual_budget = 15;  // StudySettings::budget, unless a study is short
+
+void require_positive(const char* field, double value, const char* expected) {
+    if (value > 0 && std::isfinite(value)) return;
+    Complaint{
+        .file = {}, .object = "study", .field = field, .found = short_text(value), .expected = expected, .hint = {}}
+        .raise();
+}
+
+void check_settings(const StudySettings& settings) {
+    require_positive("error", settings.error, "a relative error > 0, for example 0.01");
+    if (settings.budget) require_positive("budget", *settings.budget, "a number > 0");
+    if (settings.seconds) require_positive("seconds", *settings.seconds, "a time > 0 (s)");
+    if (settings.threads < 0)
+        Complaint{.file = {},
+                  .object = "study",
+                  .field = "threads",
+                  .found = std::to_string(settings.threads),
+                  .expected = "a number of threads >= 0 (0: the number of cores)",
+                  .hint = {}}
+            .raise();
+}
+
+/// A study that is running.
+class RunningStudy {
+public:
+    RunningStudy(const std::filesystem::path& path, const StudySettings& settings)
+        : settings_(settings),
+          threads_(settings.threads > 0 ? settings.threads : core_count()),
+          budget_(settings.budget.value_or(usual_budget)),
+          scene_(read_studied_scene(path, settings)),
+          plan_(plan_study(scene_)),
+          hasher_(path) {
+        runs_.resize(plan_.size());
+        inputs_.resize(plan_.size());
+        shares_ = std::vector<std::atomic<double>>(plan_.size());
+    }
+
+    StudyResult run() {
+        std::vector<std::size_t> numbers(plan_.size());
+        std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+        const auto later = numbers.begin() + independent_runs;
+        make_runs({numbers.begin(), later});
+        if (!stop_ && runs_[0].status == StudyRunStatus::ok) {
+            drop_pointless();
+            make_runs({later, numbers.end()});
+        }
+        StudyResult result;
+        result.stopped = stop_;
+        if (!stop_ && runs_[0].status == StudyRunStatus::ok) {
+            result = analysed();
+        } else if (!stop_) {
+            result.sentences.push_back("The scene itself could not be run to its end: " + runs_[0].message +
+                                       ". Correct it first; no errors were determined.");
+            result.runs.assign(runs_.begin(), runs_.begin() + independent_runs);
+        }
+        result.scene = scene_.file.name;
+        return result;
+    }
+
+private:
+    /// Removes runs from the plan that the first run has shown to be pointless: other tolerances without contacts, and
+    /// steps longer than a call of advance.
+    void drop_pointless() {
+        mean_step_ = runs_[0].time.back() / static_cast<Real>(std::max<std::uint64_t>(runs_[0].steps, 1));
+        std::erase_if(plan_, [&](const PlannedRun& planned) {
+            const StudyVariant& variant = planned.variant;
+            return (variant.tolerance != 1 && runs_[0].max_contacts == 0) ||
+                   (variant.step > 1 && variant.step * mean_step_ > scene_.longest_call * (1 + 1e-6));
+        });
+        constexpr double short_study = 5;  // [s]
+        if (!settings_.budget) budget_ = std::max(budget_, short_study / runs_[0].cpu_seconds);
+        keep_to_budget(budget_, threads_, plan_);
+    }
+
+    /// Result of the runs, of which at least the first was made.
+    StudyResult analysed() {
+        runs_.resize(plan_.size());
+        for (std::size_t i = 0; i < plan_.size(); ++i)
+            if (!plan_[i].reason.empty())
+                runs_[i] = {.variant = plan_[i].variant,
+                            .assignments = variant_assignments(scene_, plan_[i].variant, mean_step_),
+                            .status = StudyRunStatus::left_out,
+                            .message = plan_[i].reason,
+                            .cpu_seconds = plan_[i].cost * runs_[0].cpu_seconds};
+        choose_columns();
+        StudyResult result = analyse(std::move(runs_), settings_);
+        if (result.cheapest)
+            result.cheapest->assignments = variant_assignments(scene_, result.cheapest->variant, mean_step_);
+        return result;
+    }
+
+    /// Selects the reported columns. Without names of probes, columns that are zero throughout are left out, such as
+    /// contact forces of bodies that touch nothing.
+    void choose_columns() {
+        for (StudyRun& run : runs_) {
+            if (run.columns.empty()) continue;  // the run is left out or was refused
+            choose_columns_by_name(settings_.probes, scene_.path, run.columns);
+            for (std::size_t c = 0; c < run.columns.size() && settings_.probes.empty(); ++c)
+                run.columns[c].reported &= std::ranges::any_of(
+                    runs_[0].columns[c].values, [](Real value) { return std::isfinite(value) && value != 0; });
+        }
+    }
+
+    std::string inputs_of(std::size_t i) {
+        std::string inputs = hasher_.hash(runs_[i].assignments);
+        if (settings_.seconds) inputs += " seconds " + Json(*settings_.seconds).dump();
+        if (plan_[i].variant.draw != 0) inputs += " draw " + std::to_string(plan_[i].variant.draw);
+        return inputs;
+    }
+
+    /// Reads the run from the folder. Returns true if the folder has it. Throws SceneError if the file has another run,
+    /// unless it may be replaced.
+    bool read_stored(std::size_t i) {
+        if (settings_.folder.empty()) return false;
+        StoredRun stored = read_run(settings_.folder, inputs_[i], plan_[i].variant);
+        if (!stored.found.empty() && !settings_.redo)
+            Complaint{.file = settings_.folder.string(),
+                      .object = "study",
+                      .field = "folder",
+                      .found = stored.found,
+                      .expected = "runs of " + scene_.path.string() + " in its present version, with these settings",
+                      .hint = "add --redo to replace these runs, or choose another folder with --out"}
+                .raise();
+        if (!stored.run) return false;
+        runs_[i] = std::move(*stored.run);
+        return true;
+    }
+
+    /// Makes the runs with these numbers that are neither left out nor in the folder.
+    void make_runs(const std::vector<std::size_t>& numbers) {
+        std::vector<std::size_t> left;
+        for (const std::size_t i : numbers) {
+            if (!plan_[i].reason.empty()) continue;
+            runs_[i].assignments = variant_assignments(scene_, plan_[i].variant, mean_step_);
+            inputs_[i] = inputs_of(i);
+            if (read_stored(i))
+                finish(i);
+            else
+                left.push_back(i);
+        }
+        std::ranges::stable_sort(left, std::greater(), [&](std::size_t i) { return plan_[i].cost; });
+        double total = 0;
+        for (const std::size_t i : left) total += plan_[i].cost;
+        auto begin = left.begin();
+        for (; begin != left.end() && gets_all_threads(plan_[*begin].cost, total, threads_) && !stop_; ++begin) {
+            total -= plan_[*begin].cost;
+            run_together({begin, begin + 1}, threads_);
+        }
+        if (begin != left.end() && !stop_) run_together({begin, left.end()}, 1);
+    }
+
+    /// Makes runs at the same time, each with this number of threads.
+    void run_together(std::span<const std::size_t> numbers, int threads_of_run) {
+        run_tasks(
+            static_cast<Index>(numbers.size()), threads_ / threads_of_run,
+            [&](Index task) {
+                try {
+                    make_run(numbers[static_cast<std::size_t>(task)], threads_of_run);
+                } catch (...) {
+                    stop_ = true;
+                    throw;
+                }
+            },
+            watch_period, [&] { watch(); });
+    }
+
+    void make_run(std::size_t i, int threads_of_run) {
+        if (stop_) return;
+        ++running_;
+        VariantJob job{.scene = scene_.path,
+                       .seconds = settings_.seconds,
+                       .overrides = {.threads = threads_of_run},
+                       .variant = plan_[i].variant};
+        if (threads_of_run == 1) job.overrides.backend = Backend::serial;
+        job.overrides.assignments = runs_[i].assignments;
+        job.overrides.fill_python = settings_.fill_python;
+        const bool whole = run_variant(job, stop_, shares_[i], runs_[i]);
+        --running_;
+        if (!whole) return;
+        if (!settings_.folder.empty()) write_run(settings_.folder, inputs_[i], runs_[i]);
+        finish(i);
+    }
+
+    void finish(std::size_t i) {
+        shares_[i] = 1;
+        ++done_;
+    }
+
+    void watch() {
+        if (!settings_.go_on || stop_) return;
+        StudyProgress progress{.runs_done = done_, .runs_running = running_};
+        double cost = 0, done = 0;
+        for (std::size_t i = 0; i < plan_.size(); ++i) {
+            if (!plan_[i].reason.empty()) continue;
+            ++progress.runs;
+            cost += plan_[i].cost;
+            done += plan_[i].cost * shares_[i];
+        }
+        // Before the first run has ended, the plan has runs that will not fit into the budget.
+        progress.share = std::min(1.0, done / std::min(cost, budget_ * threads_));
+        try {
+            if (!settings_.go_on(progress)) stop_ = true;
+        } catch (...) {
+            stop_ = true;
+            throw;
+        }
+    }
+
+    const StudySettings& settings_;
+    const int threads_;
+    double budget_;
+    const StudiedScene scene_;
+    std::vector<PlannedRun> plan_;
+    CaseHasher hasher_;
+    Real mean_step_ = 0;  // of the scene as it is [s]
+    // The following are indexed as the plan.
+    std::vector<StudyRun> runs_;
+    std::vector<std::string> inputs_;          // texts that identify all inputs of a run
+    std::vector<std::atomic<double>> shares_;  // simulated shares of the durations
+    std::atomic<int> done_{0}, running_{0};
+    std::atomic<bool> stop_{false};
+};
+
+}  // namespace
+
+StudyResult study(const std::filesystem::path& scene, const StudySettings& settings) {
+    check_settings(settings);
+    return RunningStudy(scene, settings).run();
+}
+
+void write_cheapest_scene(const std::filesystem::path& scene, const StudyResult& result,
+                          const std::filesystem::path& file) {
+    if (!result.cheapest)
+        Complaint{.file = scene.string(),
+                  .object = "study",
+                  .field = {},
+                  .found = "a result without cheapest settings",
+                  .expected = "at least one quantity with a known error",
+                  .hint = {}}
+            .raise();
+    write_scene(file, scene, result.cheapest->assignments);
+}
+
+}  // namespace skerry

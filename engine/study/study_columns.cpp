@@ -1,0 +1,238 @@
+#include "engine/study/study_columns.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "engine/scene/scene_plan.h"
+#include "systems/dynamics/elements/element_energy.h"
+
+namespace skerry {
+
+namespace {
+
+// largest number of bodies with columns of their own in the report
+constexpr std::size_t most_reported = 20;
+// Largest number of bodies whose places are recorded. Of larger scenes only mean, least and largest values are kept.
+constexpr std::size_t most_recorded = 1000;
+
+bool starts_with_any(std::string_view text, std::span<const std::string_view> starts) {
+    return std::ranges::any_of(starts, [&](std::string_view start) { return text.starts_with(start); });
+}
+
+/// True for the quantities of the default probes that a study keeps.
+bool is_default(std::string_view quantity) {
+    static constexpr std::array<std::string_view, 3> kept{"displacement_", "force_", "largest_von_mises"};
+    return starts_with_any(quantity, kept);
+}
+
+/// False for quantities that repeat others: a position is a displacement with an offset, an impulse is a force times a
+/// duration.
+bool is_main(std::string_view quantity) {
+    static constexpr std::array<std::string_view, 5> left_out{"position_", "velocity_", "impulse_", "moment_",
+                                                              "contacts"};
+    return !starts_with_any(quantity, left_out);
+}
+
+Real diagonal(const World& world, std::span<const BodyHandle> bodies) {
+    Vec3 lower = Vec3::Constant(infinity), upper = Vec3::Constant(-infinity);
+    for (const BodyHandle body : bodies)
+        for (const Vec3& node : world.positions(body)) {
+            lower = lower.cwiseMin(node);
+            upper = upper.cwiseMax(node);
+        }
+    return bodies.empty() ? 0 : (upper - lower).norm();
+}
+
+/// Body of a probe, if it has one.
+std::optional<BodyHandle> body_of(const RecordedProbe& probe) {
+    return std::visit(
+        [](const auto& what) -> std::optional<BodyHandle> {
+            if constexpr (requires { what.body; })
+                return what.body;
+            else
+                return {};
+        },
+        probe.what);
+}
+
+/// True if the scene has a probe of the given kind for which `same` holds.
+template <class Kind>
+bool has(const Scene& scene, auto same) {
+    return std::ranges::any_of(scene.recorded, [&](const RecordedProbe& probe) {
+        const Kind* const what = std::get_if<Kind>(&probe.what);
+        return what && same(*what);
+    });
+}
+
+std::vector<RecordedProbe> joined(std::vector<RecordedProbe> probes, const auto& defaults) {
+    for (const auto& added : defaults) probes.push_back(added.probe);
+    return probes;
+}
+
+}  // namespace
+
+std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Scene& scene) {
+    const World& world = scene.world;
+    std::vector<DefaultProbe> probes;
+    std::vector<BodyHandle> attached;
+    for (const AttachmentHandle attachment : world.attachments()) attached.push_back(world.body(attachment));
+    for (const BodyHandle body : bodies_in_order(world)) {
+        const bool taken =
+            std::ranges::find(scene.recorded, world.name(body), &RecordedProbe::name) != scene.recorded.end();
+        const auto add = [&](decltype(RecordedProbe::what) what) {
+            probes.push_back({{"default probe " + std::to_string(probes.size()), std::move(what)},
+                              (taken ? "body " : "") + world.name(body),
+                              body,
+                              std::ranges::find(attached, body) == attached.end()});
+        };
+        if (!has<BodyProbe>(scene, [&](const BodyProbe& p) { return p.body == body; })) add(BodyProbe{body});
+        if (!has<BodyForceProbe>(scene, [&](const BodyForceProbe& p) { return p.body == body && !p.by; }))
+            add(BodyForceProbe{body});
+        if (world.dynamics(body) != BodyDynamics::rigid &&
+            !has<StressProbe>(scene, [&](const StressProbe& p) { return p.body == body && p.nodes.empty(); }))
+            add(StressProbe{body});
+    }
+    if (!has<EnergyProbe>(scene, [](const EnergyProbe&) { return true; }))
+        probes.push_back({{"default probe " + std::to_string(probes.size()), EnergyProbe{}}, "energy"});
+    return probes;
+}
+
+StudyRecorder::StudyRecorder(Scene& scene)
+    : world_(scene.world),
+      defaults_(default_probes(scene)),
+      recorder_(scene.world, joined(scene.recorded, defaults_), scene.frame_step) {
+    const std::vector<BodyHandle> bodies = world_.bodies();
+    size_ = diagonal(world_, bodies);
+    many_bodies_ = bodies.size() > most_reported;
+    add_sources(scene.recorded);
+}
+
+void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
+    // columns of the recorder with the same quantity of free bodies
+    std::vector<std::pair<SeriesColumn, std::vector<std::size_t>>> of_bodies;
+    const bool keep_bodies = defaults_.size() <= 3 * most_recorded;
+    std::size_t c = 1;  // column 0 is the time
+    const auto add_stress = [&](const RecordedProbe& probe) {
+        const StressProbe* const stress = std::get_if<StressProbe>(&probe.what);
+        if (!stress || recorder_.columns()[c].quantity != "largest_von_mises") return;
+        const std::span<const Vec3> start = world_.positions(stress->body);
+        stresses_.push_back({c, *stress, {start.begin(), start.end()}});
+    };
+    const auto add = [&](const RecordedProbe& probe, const std::string& shown, bool reported) {
+        const std::optional<BodyHandle> body = body_of(probe);
+        StudyColumn column{
+            .what = recorder_.columns()[c], .size = body ? diagonal(world_, {&*body, 1}) : size_, .reported = reported};
+        column.what.probe = shown;
+        add_stress(probe);
+        sources_.push_back({std::move(column), Part::mean, {c}});
+    };
+    for (const RecordedProbe& probe : of_scene)
+        for (; c < recorder_.columns().size() && recorder_.columns()[c].probe == probe.name; ++c)
+            add(probe, probe.name, is_main(recorder_.columns()[c].quantity));
+    for (const DefaultProbe& added : defaults_)
+        for (; c < recorder_.columns().size() && recorder_.columns()[c].probe == added.probe.name; ++c) {
+            const SeriesColumn& what = recorder_.columns()[c];
+            if (added.body == BodyHandle{}) {
+                add(added.probe, added.shown, true);
+                continue;
+            }
+            if (!is_default(what.quantity)) continue;
+            if (!many_bodies_ || (keep_bodies && what.quantity.starts_with("displacement_")))
+                add(added.probe, added.shown, !many_bodies_);
+            if (!added.free) continue;
+            auto same = std::ranges::find(of_bodies, what.quantity, [](const auto& e) { return e.first.quantity; });
+            if (same == of_bodies.end()) same = of_bodies.insert(same, {{"bodies", what.quantity, what.unit}, {}});
+            same->second.push_back(c);
+        }
+    for (const auto& [what, from] : of_bodies)
+        for (const auto& [part, name] :
+             {std::pair{Part::mean, "mean_"}, std::pair{Part::least, "least_"}, std::pair{Part::largest, "largest_"}}) {
+            if (from.size() < 2) continue;
+            const bool doubled = what.quantity.starts_with(name);
+            sources_.push_back(
+                {{.what = {what.probe, doubled ? what.quantity : name + what.quantity, what.unit}, .size = size_},
+                 part,
+                 from});
+        }
+}
+
+void StudyRecorder::sample() {
+    recorder_.sample(world_);
+    if (rows_ == recorder_.row_count()) return;
+    const std::span<const Real> row = recorder_.row(rows_++);
+    for (Stress& stress : stresses_) {
+        if (!(row[stress.column] > stress.largest)) continue;
+        stress.largest = row[stress.column];
+        const std::vector<Index>& nodes = stress.probe.nodes;
+        const std::vector<Mat3> values =
+            nodes.empty() ? world_.node_stress(stress.probe.body) : world_.node_stress(stress.probe.body, nodes);
+        const auto most = std::ranges::max_element(values, {}, von_mises);
+        const auto number = static_cast<std::size_t>(most - values.begin());
+        stress.node = nodes.empty() ? static_cast<Index>(number) : nodes[number];
+    }
+}
+
+std::vector<Real> StudyRecorder::time() const {
+    std::vector<Real> times;
+    for (std::size_t r = 0; r < recorder_.row_count(); ++r) times.push_back(recorder_.row(r)[0]);
+    return times;
+}
+
+std::vector<StudyColumn> StudyRecorder::columns() const {
+    std::vector<StudyColumn> columns;
+    for (const Source& source : sources_) {
+        StudyColumn& column = columns.emplace_back(source.column);
+        for (std::size_t r = 0; r < recorder_.row_count(); ++r) {
+            const std::span<const Real> row = recorder_.row(r);
+            Real sum = 0, least = infinity, largest = -infinity;
+            for (const std::size_t c : source.from) {
+                sum += row[c];
+                least = std::min(least, row[c]);
+                largest = std::max(largest, row[c]);
+            }
+            const Real mean = sum / static_cast<Real>(source.from.size());
+            column.values.push_back(source.part == Part::mean || std::isnan(mean) ? mean
+                                    : source.part == Part::least                  ? least
+                                                                                  : largest);
+        }
+        const auto stress = std::ranges::find(stresses_, source.from.front(), &Stress::column);
+        if (source.from.size() > 1 || stress == stresses_.end() || stress->node == no_index) continue;
+        column.node = stress->node;
+        column.place = stress->start[static_cast<std::size_t>(stress->node)];
+    }
+    return columns;
+}
+
+void choose_columns_by_name(const std::vector<std::string>& names, const std::filesystem::path& file,
+                            std::vector<StudyColumn>& columns) {
+    if (names.empty()) return;
+    for (StudyColumn& column : columns) column.reported = false;
+    for (const std::string& name : names) {
+        bool found = false;
+        for (StudyColumn& column : columns) {
+            const std::string full = column.what.probe + "." + column.what.quantity;
+            const bool chosen = column.what.probe == name || full == name ||
+                                (name.find('.') != std::string::npos && full.starts_with(name + "_"));
+            column.reported |= chosen;
+            found |= chosen;
+        }
+        if (found) continue;
+        std::vector<std::string> known;
+        for (const StudyColumn& column : columns)
+            if (known.empty() || known.back() != column.what.probe) known.push_back(column.what.probe);
+        Complaint{.file = file.string(),
+                  .object = "study",
+                  .field = "probe",
+                  .found = in_quotes(name),
+                  .expected = "NAME or NAME.QUANTITY, where NAME is one of " + listed(known),
+                  .hint = nearest_hint(name, known)}
+            .raise();
+    }
+}
+
+}  // namespace skerry

@@ -1,0 +1,69 @@
+// Columns that a study records in each of its runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "skerry/scene.h"
+#include "skerry/study.h"
+
+namespace skerry {
+
+/// Records the probes of a scene and the default quantities: displacement, contact force and largest stress of each
+/// body, and the energies. A row is recorded at each frame.
+class StudyRecorder {
+public:
+    /// `scene` must be as it was read, and must outlive the object.
+    explicit StudyRecorder(Scene& scene);
+    StudyRecorder(const StudyRecorder&) = delete;
+    StudyRecorder& operator=(const StudyRecorder&) = delete;
+
+    /// Must be called before the first step and after every call of World::advance.
+    void sample();
+    /// Times of the rows [s].
+    std::vector<Real> time() const;
+    std::vector<StudyColumn> columns() const;
+
+private:
+    /// How the value of a column follows from the values of some columns of the recorder.
+    enum class Part { mean, least, largest };
+    struct Source {
+        StudyColumn column;
+        Part part = Part::mean;
+        std::vector<std::size_t> from;  // columns of the recorder
+    };
+    /// A column of a largest stress.
+    struct Stress {
+        std::size_t column = 0;  // column of the recorder
+        StressProbe probe;
+        std::vector<Vec3> start;  // positions of all nodes of the body at the start [m]
+        Real largest = 0;         // largest value so far [Pa]
+        Index node = no_index;    // node with this value
+    };
+    /// A probe that the scene does not have, and the name that its columns get.
+    struct DefaultProbe {
+        RecordedProbe probe;
+        std::string shown;
+        BodyHandle body{};
+        bool free = false;  // true for a body without attachments
+    };
+
+    static std::vector<DefaultProbe> default_probes(const Scene& scene);
+    void add_sources(const std::vector<RecordedProbe>& of_scene);
+
+    World& world_;
+    std::vector<DefaultProbe> defaults_;
+    Recorder recorder_;
+    bool many_bodies_ = false;
+    Real size_ = 0;  // diagonal of the bounding box of all bodies at the start [m]
+    std::vector<Source> sources_;
+    std::vector<Stress> stresses_;
+    std::size_t rows_ = 0;  // number of rows that `stresses_` covers
+};
+
+/// Sets StudyColumn::reported: true for the columns that one of the names NAME or NAME.QUANTITY selects. Without names
+/// nothing is changed. Throws SceneError for a name that selects no column. `file`: scene file, for the message.
+void choose_columns_by_name(const std::vector<std::string>& names, const std::filesystem::path& file,
+                            std::vector<StudyColumn>& columns);
+
+}  // namespace skerry

@@ -1,0 +1,46 @@
+#include "engine/study/run_file.h"
+#include "skerry/study.h"
+
+namespace skerry {
+
+namespace {
+
+// A number that is not finite becomes null.
+Json quantity_json(const StudyQuantity& q) {
+    return {{"name", q.name},
+            {"unit", q.unit},
+            {"value", q.value},
+            {"error", q.error},
+            {"mesh", q.mesh},
+            {"step", q.step},
+            {"contact", q.contact},
+            {"noise", q.noise},
+            {"best", q.best},
+            {"best_error", q.best_error},
+            {"scale", q.scale},
+            {"mesh_order", q.mesh_order},
+            {"expected_mesh_order", q.expected_mesh_order},
+            {"step_order", q.step_order},
+            {"expected_step_order", q.expected_step_order},
+            {"agree_until", q.agree_until},
+            {"verdict", name_of(q.verdict)},
+            {"sentence", q.sentence}};
+}
+
+}  // namespace
+
+std::string study_json(const StudyResult& result) {
+    Json json = {{"schema", "skerry.study/1"},        {"scene", result.scene},
+                 {"quantities", Json::array()},       {"cheapest", nullptr},
+                 {"agree_until", result.agree_until}, {"growth_rate", result.growth_rate},
+                 {"sentences", result.sentences},     {"runs", Json::array()}};
+    for (const StudyQuantity& quantity : result.quantities) json["quantities"].push_back(quantity_json(quantity));
+    if (const std::optional<CheapestSettings>& cheapest = result.cheapest)
+        json["cheapest"] = {{"set", cheapest->assignments},         {"variant", variant_json(cheapest->variant)},
+                            {"reaches", cheapest->reaches},         {"error", cheapest->error},
+                            {"cpu_seconds", cheapest->cpu_seconds}, {"sentence", cheapest->sentence}};
+    for (const StudyRun& run : result.runs) json["runs"].push_back(run_json(run));
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace skerry

@@ -1,0 +1,81 @@
+"""Studies: error bars of the results of a scene."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import skerry as sk
+from scenes import SCENE, changed
+
+SMALL = {"box": {"size": [0.1, 0.1, 0.1], "cells": [2, 2, 2]}}
+BODY = {**SCENE["bodies"][0], "mesh": SMALL, "element": "linear"}
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    file = tmp_path / "drop.json"
+    file.write_text(json.dumps(changed(bodies=[BODY])))
+    return file
+
+
+def test_a_study_has_error_bars_runs_and_a_cheapest_scene(scene: Path, tmp_path: Path) -> None:
+    found = sk.study(scene, error=0.5, threads=1, budget=60, overrides={"seconds": 0.04})
+    height = found.quantities["ball.displacement_z_end"]
+    assert height.unit == "m" and height.error > 0 and height.mesh >= 0 and height.verdict == "known"
+    assert [run.name for run in found.runs[:4]] == ["scene", "draw_1", "draw_2", "element_smoothed"]
+    first = found.runs[0]
+    assert first.time.tolist() == [0, 0.02, 0.04] and first.overrides == ("seconds=0.04",)
+    assert first.columns["ball.displacement_z"][-1] == height.value
+    single = sk.load_scene(scene, overrides={"seconds": 0.04})
+    single.run()
+    assert single.world.state_hash == first.state_hash
+    left_out = [run for run in found.runs if run.status == "left_out"]
+    assert left_out and all("budget" in run.message for run in left_out)
+    assert found.cheapest is not None and found.cheapest.cpu_seconds > 0
+    found.write_cheapest_scene(tmp_path / "cheapest.json")
+    sk.load_scene(tmp_path / "cheapest.json").run()
+    found.to_html(tmp_path / "study.html")
+    assert (tmp_path / "study.html").read_text().lstrip().lower().startswith("<!doctype html>")
+    assert "ball.displacement_z_end" in str(found) and math.isinf(found.agree_until)
+
+
+def test_probes_choose_quantities(scene: Path) -> None:
+    found = sk.study(scene, probes=["ball.displacement_z"], threads=1, budget=4, seconds=0.02)
+    assert {name.rpartition("_")[0] for name in found.quantities} == {"ball.displacement_z"}
+    with pytest.raises(sk.SceneError, match='"bll".*"ball"'):
+        sk.study(scene, probes=["bll"])
+    with pytest.raises(TypeError, match="probes: found 'ball', expected a list of names"):
+        sk.study(scene, probes="ball")
+
+
+def test_an_interrupted_study_continues(scene: Path, tmp_path: Path) -> None:
+    def stop(share: float, done: int, total: int) -> None:
+        if done > 2:
+            raise KeyboardInterrupt
+
+    folder = tmp_path / "runs"
+    with pytest.raises(KeyboardInterrupt):
+        sk.study(scene, threads=1, budget=20, folder=folder, progress=stop)
+    kept = {file.name: file.stat().st_mtime_ns for file in folder.iterdir()}
+    assert "run_scene.json" in kept
+    found = sk.study(scene, threads=1, budget=20, folder=folder)
+    assert {name: (folder / name).stat().st_mtime_ns for name in kept} == kept
+    whole = sk.study(scene, threads=1, budget=20)
+    for name, quantity in whole.quantities.items():
+        np.testing.assert_equal(found.quantities[name].error, quantity.error)
+    with pytest.raises(sk.SceneError, match="another scene"):
+        sk.study(scene, threads=1, budget=20, folder=folder, seconds=0.05)
+
+
+def test_wrong_settings_are_refused(scene: Path) -> None:
+    with pytest.raises(sk.SceneError, match="error"):
+        sk.study(scene, error=0)
+    with pytest.raises(sk.SceneError, match="budget"):
+        sk.study(scene, budget=0)
+    with pytest.raises(TypeError, match="progress"):
+        sk.study(scene, progress=1)  # type: ignore[arg-type]
+    with pytest.raises(sk.SceneError, match="missing.json"):
+        sk.study("missing.json")

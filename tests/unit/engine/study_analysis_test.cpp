@@ -1,0 +1,294 @@
+// Error bars, orders, verdicts and cheapest settings of studies with known limits.
+#include "engine/study/analysis/analyse.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "engine/study/analysis/convergence.h"
+
+namespace skerry::test::study_analysis_test {
+
+namespace {
+
+/// Values of the columns of a manufactured run at a time.
+using Model = std::function<std::vector<Real>(const StudyVariant&, Real time)>;
+
+constexpr Real limit = -0.1;  // limit of the values of made_of [m]
+
+Real edge(const StudyVariant& variant) {
+    return std::exp2(Real{-1} * variant.refine);
+}
+
+std::vector<StudyRun> runs_of(const std::vector<StudyColumn>& columns, const std::vector<StudyVariant>& variants,
+                              const Model& model, int rows = 11) {
+    std::vector<StudyRun> runs;
+    for (const StudyVariant& variant : variants) {
+        StudyRun run;
+        run.variant = variant;
+        run.columns = columns;
+        run.cpu_seconds = std::pow(edge(variant), -4) / variant.step;
+        for (int row = 0; row < rows; ++row) {
+            run.time.push_back(0.1 * row);
+            const std::vector<Real> values = model(variant, run.time.back());
+            for (std::size_t c = 0; c < columns.size(); ++c) run.columns[c].values.push_back(values[c]);
+        }
+        runs.push_back(run);
+    }
+    return runs;
+}
+
+StudyColumn column(const char* quantity, const char* unit, const char* probe = "tip") {
+    return {.what = {probe, quantity, unit}, .size = 1};
+}
+
+const std::vector<StudyVariant> all_variants{
+    {}, {.refine = 1}, {.refine = -1}, {.step = 0.5}, {.step = 0.25}, {.tolerance = 0.01}, {.draw = 1}, {.draw = 2}};
+
+/// A displacement that grows linearly in time, with errors `mesh` h^p, `step` s^q and `contact` tolerance.
+std::vector<StudyRun> displacement_runs(Real mesh, Real p, Real step, Real q, Real contact) {
+    return runs_of({column("displacement_z", "m")}, all_variants, [=](const StudyVariant& v, Real t) {
+        return std::vector<Real>{
+            limit * t * (1 + mesh * std::pow(edge(v), p) + step * std::pow(v.step, q) + contact * v.tolerance)};
+    });
+}
+
+StudyQuantity only_quantity(const StudyResult& result) {
+    REQUIRE(result.quantities.size() == 1);
+    return result.quantities[0];
+}
+
+}  // namespace
+
+TEST_CASE("an error bar has the parts and orders of its runs", "[unit][study]") {
+    const StudyQuantity q = only_quantity(analyse(displacement_runs(-0.2, 2, 0.05, 1, 0.001), {}));
+    CHECK(q.name == "tip.displacement_z_end");
+    CHECK(q.verdict == StudyVerdict::known);
+    CHECK(q.mesh_order == Approx(2));
+    CHECK(q.step_order == Approx(1));
+    const Real safety = 1.5;
+    CHECK(q.mesh == Approx(safety * 0.2 * 0.1));
+    CHECK(q.step == Approx(safety * 0.05 * 0.1));
+    CHECK(q.contact == Approx(safety * 0.001 * 0.1));
+    CHECK(q.error == Approx(q.mesh + q.step + q.contact));
+    CHECK(std::abs(q.best - limit) < 1e-4 * q.error);
+    CHECK(q.best_error < 0.5 * q.error);
+}
+
+TEST_CASE("error bars hold the true error and are not much longer", "[unit][study]") {
+    // Errors have two terms and noise. The second term is up to 60 % of the first one on the coarsest level.
+    std::mt19937 random(7);
+    const auto between = [&random](Real low, Real high) {
+        return std::uniform_real_distribution<Real>(low, high)(random);
+    };
+    struct Case {
+        std::vector<Real> family;
+        Real least_close;  // least share of error bars of at most three true errors
+    };
+    for (const auto& [family, least_close] :
+         {Case{{2, 1, 0.5}, 0.9}, Case{{1, 0.5}, 0.9}, Case{{1, 0.5, 0.25}, 0.9}, Case{{4, 2, 1}, 0.7}}) {
+        int held = 0, close = 0;
+        constexpr int count = 2000;
+        for (int i = 0; i < count; ++i) {
+            const Real p = between(1, 2), next = between(-0.6, 0.6) / family[0];
+            std::vector<ConvergenceLevel> levels;
+            Real error = 0;
+            for (const Real h : family) {
+                const Real value = std::pow(h, p) * (1 + between(-0.05, 0.05)) + next * std::pow(h, p + 1);
+                levels.push_back({h, value});
+                if (h == 1) error = std::abs(value);
+            }
+            const Convergence convergence(levels, {2, 2}, 0);
+            if (convergence.error() >= error) ++held;
+            if (convergence.error() <= 3 * error) ++close;
+        }
+        CAPTURE(family, held, close);
+        CHECK(held >= 0.95 * count);
+        CHECK(close >= least_close * count);
+    }
+}
+
+TEST_CASE("differences that do not fall as the theory says give a long bar and no extrapolation", "[unit][study]") {
+    struct Case {
+        std::vector<Real> values;  // with edges 2, 1 and 1/2
+        ConvergenceShape shape;
+        Real least_error;
+    };
+    for (const auto& [values, shape, least_error] :
+         {Case{{1.0, 0.8, 0.65}, ConvergenceShape::slow, 0.6},        // order 0.4: the limit may be at 0.2
+          Case{{1.0, 0.9, 0.7}, ConvergenceShape::slow, 0.9},         // differences that grow
+          Case{{1.0, 0.8, 0.9}, ConvergenceShape::oscillating, 0.2},  // opposite signs
+          Case{{1.0, 0.2, 0.199}, ConvergenceShape::fast, 0.05}}) {   // order 9.6: an accident
+        CAPTURE(values);
+        const Convergence convergence({{2, values[0]}, {1, values[1]}, {0.5, values[2]}}, {2, 2}, 0);
+        CHECK(convergence.shape() == shape);
+        CHECK(convergence.irregular());
+        CHECK(convergence.error() >= least_error);
+        CHECK(std::isnan(convergence.limit()));
+    }
+    const StudyQuantity q = only_quantity(analyse(displacement_runs(-0.2, 0.4, 0, 1, 0), {}));
+    CHECK(q.verdict == StudyVerdict::irregular);
+    CHECK(q.sentence == "the mesh error does not fall as it should, so the value is not extrapolated");
+    CHECK(q.mesh_order == Approx(0.4));
+    CHECK(q.expected_mesh_order == 2);
+    CHECK(q.error > 0.2 * 0.1);
+    CHECK(std::isnan(q.best));
+}
+
+TEST_CASE("an irregular order of a negligible part does not matter", "[unit][study]") {
+    CHECK(only_quantity(analyse(displacement_runs(-0.2, 2, 1e-5, 0.1, 0), {})).verdict == StudyVerdict::known);
+}
+
+TEST_CASE("differences of rounding size have no order", "[unit][study]") {
+    const StudyQuantity q = only_quantity(analyse(displacement_runs(1e-15, 0.1, -1e-15, 0.2, 1e-16), {}));
+    CHECK(q.verdict == StudyVerdict::known);
+    CHECK(std::isnan(q.mesh_order));
+    CHECK(q.error < 1e-13);
+}
+
+TEST_CASE("errors of a small component are relative to its vector", "[unit][study]") {
+    const StudyResult result = analyse(
+        runs_of({column("displacement_x", "m"), column("displacement_z", "m"), column("force_x", "N", "floor")},
+                all_variants,
+                [](const StudyVariant& v, Real t) {
+                    return std::vector<Real>{1e-6 * edge(v) * t, limit * t * (1 + 0.001 * edge(v) * edge(v)), 0};
+                }),
+        {});
+    REQUIRE(result.quantities.size() == 3);
+    CHECK(result.quantities[0].scale == Approx(0.1).epsilon(0.01));
+    CHECK(result.quantities[0].verdict == StudyVerdict::known);
+    CHECK(result.quantities[2].error == 0);
+    REQUIRE(result.cheapest);
+    CHECK(result.cheapest->variant.refine == -1);  // the error of half of x would need finer meshes
+}
+
+TEST_CASE("a quantity that swings has its largest value beside that at the end", "[unit][study]") {
+    const StudyResult result =
+        analyse(runs_of(
+                    {column("displacement_x", "m")}, all_variants,
+                    [](const StudyVariant& v, Real t) {
+                        return std::vector<Real>{std::sin(4 * t * (1 + 0.1 * edge(v) * edge(v))) * 0.1};
+                    },
+                    101),
+                {});
+    REQUIRE(result.quantities.size() == 2);
+    CHECK(result.quantities[0].name == "tip.displacement_x_end");
+    CHECK(result.quantities[1].name == "tip.displacement_x_min");
+    CHECK(result.quantities[1].error < 0.1 * result.quantities[0].error);  // the phase does not matter
+}
+
+TEST_CASE("a stress that grows with every level is singular, one that converges slowly is not", "[unit][study]") {
+    const auto stress = [](const std::function<Real(Real)>& of_edge) {
+        StudyColumn largest = column("largest_von_mises", "Pa");
+        largest.node = 12;
+        largest.place = {0, 0.1, 0};
+        return only_quantity(analyse(
+            runs_of({largest}, all_variants,
+                    [&](const StudyVariant& v, Real t) { return std::vector<Real>{1e6 * t * of_edge(edge(v))}; }),
+            {}));
+    };
+    // The angle of the solid at a re-entrant corner of an L is 270 degrees (Williams 1952).
+    const StudyQuantity corner = stress([](Real h) { return 0.5 + std::pow(h, -0.4555); });
+    CHECK(corner.verdict == StudyVerdict::singular);
+    CHECK(corner.sentence.find("1.2") != std::string::npos);
+    CHECK(corner.sentence.find("node 12 (0, 0.1, 0) m") != std::string::npos);
+    CHECK(corner.error == infinity);
+    CHECK(stress([](Real h) { return 1 / (h * h); }).verdict == StudyVerdict::singular);  // a point load
+    CHECK(stress([](Real h) { return 1 - 0.4 * h; }).verdict == StudyVerdict::known);
+    CHECK(stress([](Real h) { return 1 - 0.6 * std::sqrt(h); }).verdict != StudyVerdict::singular);
+}
+
+TEST_CASE("a chaotic scene has single values until its runs part, and statistics", "[unit][study]") {
+    // The logistic map with the factor 4 doubles differences in each step, in the mean (Ulam and von Neumann 1947).
+    constexpr int bodies = 40, rows = 61;
+    std::vector<StudyColumn> columns;
+    for (int i = 0; i < bodies; ++i) columns.push_back(column("displacement_x", "m", "ball"));
+    columns.push_back(column("displacement_x_mean", "m", "bodies"));
+    for (int i = 2; i < bodies; ++i) columns[static_cast<std::size_t>(i)].reported = false;
+    const auto map = [](const StudyVariant& v, Real t) {
+        std::vector<Real> values;
+        Real sum = 0;
+        for (int i = 0; i < bodies; ++i) {
+            Real x = 0.1 + 0.017 * i + 1e-12 * v.draw + 1e-5 * edge(v) * edge(v) * (v.refine != 0);
+            for (int row = 0; row < std::lround(10 * t); ++row) x = 4 * x * (1 - x);
+            values.push_back(x);
+            sum += x / bodies;
+        }
+        values.push_back(sum);
+        return values;
+    };
+    const StudyResult result = analyse(runs_of(columns, all_variants, map, rows), {});
+    const Real doublings = std::log2(1e-4 / 1e-12) / 10;  // time of growth to the share of agreement [s]
+    CHECK(result.agree_until > 0.7 * doublings);
+    CHECK(result.agree_until < 1.1 * doublings);
+    CHECK(result.growth_rate == Approx(10 * std::log(2)).epsilon(0.15));
+    const auto named = [&result](const char* name) {
+        const auto found = std::ranges::find(result.quantities, std::string(name), &StudyQuantity::name);
+        REQUIRE(found != result.quantities.end());
+        return *found;
+    };
+    CHECK(named("ball.displacement_x_end").verdict == StudyVerdict::chaotic);
+    CHECK(std::isnan(named("ball.displacement_x_end").error));
+    CHECK(named("ball.displacement_x_agreed").verdict != StudyVerdict::chaotic);
+    const StudyQuantity mean = named("bodies.displacement_x_mean_end");
+    CHECK(mean.verdict != StudyVerdict::chaotic);
+    CHECK(std::abs(mean.value - 0.5) < mean.error);  // the map's mean is 1/2
+    CHECK(mean.error < 0.5);
+    CHECK(result.sentences.at(0).find("agree until") != std::string::npos);
+}
+
+TEST_CASE("an error that no run shows is not measured, with the reason", "[unit][study]") {
+    std::vector<StudyRun> runs = displacement_runs(-0.2, 2, 0.05, 1, 0.001);
+    for (StudyRun& run : runs)
+        if (run.variant.refine != 0) {
+            run.status = StudyRunStatus::left_out;
+            run.message = "it would take 3 h";
+        }
+    const StudyQuantity q = only_quantity(analyse(runs, {}));
+    CHECK(q.verdict == StudyVerdict::not_measured);
+    CHECK(q.sentence == "the mesh error is unknown: it would take 3 h");
+    CHECK(std::isnan(q.error));
+    // Another kind of element gives an idea of the error.
+    runs.push_back(runs[0]);
+    runs.back().variant.element = ElementKind::linear;
+    for (Real& value : runs.back().columns[0].values) value *= 1.1;
+    CHECK(only_quantity(analyse(runs, {})).mesh == Approx(0.1 * 0.085).epsilon(0.01));
+}
+
+TEST_CASE("runs that failed or differ in their rows are not evaluated", "[unit][study]") {
+    std::vector<StudyRun> runs = displacement_runs(-0.2, 2, 0.05, 1, 0.001);
+    runs[1].status = StudyRunStatus::failed;
+    runs[1].message = "body 'arm': an element inverted";
+    const StudyQuantity q = only_quantity(analyse(runs, {}));
+    CHECK(std::isnan(q.mesh_order));
+    CHECK(q.mesh > 0);  // the coarser mesh is left
+    runs[2].time.pop_back();
+    const StudyResult result = analyse(runs, {});
+    CHECK(result.sentences.back() == "Run 2 is not used: its rows differ from those of the scene as it is.");
+    CHECK(only_quantity(result).verdict == StudyVerdict::not_measured);
+}
+
+TEST_CASE("the cheapest settings are those that a search over the model finds", "[unit][study]") {
+    // error 0.2 h^2 + 0.02 s, cost h^-4 / s: one finer level reaches 10 %, two finer levels reach 5 %
+    const auto best = [](double wanted) {
+        const auto found = analyse(displacement_runs(-0.2, 2, 0.02, 1, 0), {.error = wanted}).cheapest;
+        REQUIRE(found);
+        return *found;
+    };
+    CHECK(best(0.5).variant == StudyVariant{});
+    CHECK(best(0.5).cpu_seconds == Approx(1));
+    const CheapestSettings ten = best(0.13);
+    CHECK(ten.reaches);
+    CHECK(ten.variant == StudyVariant{.refine = 1});
+    CHECK(ten.cpu_seconds == Approx(16));
+    const CheapestSettings five = best(0.05);  // predicted: 1.5 (0.2/16 + 0.02) = 0.049 of a scale of 0.82
+    CHECK(five.variant == StudyVariant{.refine = 2, .step = 0.5});
+    CHECK(five.cpu_seconds == Approx(512));
+    const CheapestSettings none = best(1e-4);
+    CHECK_FALSE(none.reaches);
+    CHECK(none.variant == StudyVariant{.refine = 1, .step = 0.5});  // a quarter of the step gains less than a tenth
+    CHECK(none.sentence.find("no settings reach 0.01 %") != std::string::npos);
+}
+
+}  // namespace skerry::test::study_analysis_test

@@ -1,0 +1,269 @@
+// Studies: their runs, the budget, stopping and continuing, and the cheapest settings.
+#include <algorithm>
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "engine/scene/scene_plan.h"
+#include "engine/study/plan_study.h"
+#include "engine/study/run_file.h"
+#include "engine/study/run_variant.h"
+#include "skerry/error.h"
+#include "skerry/study.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skerry::test::study_test {
+
+namespace {
+
+/// A bar that is held at one end and falls on a floor with the other.
+const std::string bar = R"({"name": "bar", "seconds": 0.1, "frame_step": 0.01,
+    "materials": {"rubber": {"E": 1e5, "rho": 1000, "nu": 0.3}},
+    "bodies": [{"name": "arm", "mesh": {"box": {"size": [0.2, 0.05, 0.05], "cells": [4, 2, 2]}}, "material": "rubber",
+                "element": "linear", "position": [0, 0, 0.0255],
+                "pin": [{"box": {"lower": [-1, -1, -1], "upper": [-0.099, 1, 1]}}]}],
+    "colliders": [{"name": "floor", "shape": {"plane": {}}}],
+    "probes": [{"name": "tip", "quantity": "motion", "body": "arm", "point": [0.1, 0, 0]}]})";
+
+/// A bar that is held at the upper end and comes to rest under its weight.
+const std::string hanging = R"({"name": "hanging", "seconds": 0.2, "frame_step": 0.02,
+    "materials": {"rubber": {"E": 1e5, "rho": 1000, "nu": 0.3, "damping": 100}},
+    "bodies": [{"name": "arm", "mesh": {"box": {"size": [0.1, 0.1, 0.2], "cells": [2, 2, 4]}}, "material": "rubber",
+                "element": "linear", "pin": [{"box": {"lower": [-1, -1, 0.099], "upper": [1, 1, 1]}}]}]})";
+
+/// Settings for a budget that admits one finer mesh and no more.
+StudySettings small_study(const std::filesystem::path& folder = {}) {
+    return {.threads = 1, .budget = 60, .folder = folder};
+}
+
+std::vector<std::string> names_of_runs(const StudyResult& result, StudyRunStatus status) {
+    std::vector<std::string> names;
+    for (const StudyRun& run : result.runs)
+        if (run.status == status) names.push_back(variant_name(run.variant));
+    return names;
+}
+
+const StudyQuantity& quantity(const StudyResult& result, const std::string& name) {
+    const auto found = std::ranges::find(result.quantities, name, &StudyQuantity::name);
+    REQUIRE(found != result.quantities.end());
+    return *found;
+}
+
+bool same_bits(Real a, Real b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b));
+}
+
+/// Requires that all numbers of two results are the same, except CPU times.
+void require_same(const StudyResult& a, const StudyResult& b) {
+    REQUIRE(a.runs.size() == b.runs.size());
+    for (std::size_t r = 0; r < a.runs.size(); ++r) {
+        REQUIRE(a.runs[r].variant == b.runs[r].variant);
+        REQUIRE(a.runs[r].state_hash == b.runs[r].state_hash);
+        REQUIRE(a.runs[r].columns.size() == b.runs[r].columns.size());
+        for (std::size_t c = 0; c < a.runs[r].columns.size(); ++c)
+            REQUIRE(std::ranges::equal(a.runs[r].columns[c].values, b.runs[r].columns[c].values, same_bits));
+    }
+    REQUIRE(a.quantities.size() == b.quantities.size());
+    for (std::size_t q = 0; q < a.quantities.size(); ++q) {
+        REQUIRE(a.quantities[q].name == b.quantities[q].name);
+        REQUIRE(same_bits(a.quantities[q].value, b.quantities[q].value));
+        REQUIRE(same_bits(a.quantities[q].error, b.quantities[q].error));
+    }
+}
+
+std::string message_of(const std::filesystem::path& scene, const StudySettings& settings) {
+    try {
+        study(scene, settings);
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+/// State of a scene with assignments after the calls of advance of a run without probes.
+std::uint64_t hash_after(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
+    SceneOverrides overrides{.threads = 1};
+    overrides.assignments = assignments;
+    Scene scene = load_scene(file, overrides);
+    for (int frame = 0; frame < std::lround(scene.seconds / scene.probe_step); ++frame)
+        REQUIRE(scene.world.advance(scene.probe_step).ok());
+    return scene.world.state_hash();
+}
+
+}  // namespace
+
+TEST_CASE("a run of a study is the run that its assignments make, and all variants differ") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    const StudyResult result = study(scene, small_study());
+    REQUIRE(names_of_runs(result, StudyRunStatus::ok) ==
+            std::vector<std::string>{"scene", "draw_1", "draw_2", "element_smoothed", "step_0.5", "tolerance_0.01",
+                                     "refine_-1", "refine_1", "step_0.25"});
+    REQUIRE(names_of_runs(result, StudyRunStatus::left_out) == std::vector<std::string>{"refine_2"});
+    CHECK(result.runs.back().message.find("more than the budget of 60") != std::string::npos);
+    std::vector<std::uint64_t> hashes;
+    for (const StudyRun& run : result.runs) {
+        // The few contacts are solved to rounding, whatever the tolerance.
+        if (run.variant.tolerance == 1) hashes.push_back(run.state_hash);
+        if (run.variant.draw == 0 && run.status == StudyRunStatus::ok)
+            CHECK(run.state_hash == hash_after(scene, run.assignments));
+    }
+    std::ranges::sort(hashes);
+    CHECK(std::ranges::adjacent_find(hashes) == hashes.end());
+    const StudyQuantity& tip = quantity(result, "tip.displacement_z_end");
+    CHECK(tip.error > 0);
+    CHECK(tip.error == Approx(tip.mesh + tip.step + tip.contact + tip.noise).epsilon(0.01));
+}
+
+TEST_CASE("a study has the same bits with one and with three threads") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings = small_study();
+    settings.budget = 30;
+    const StudyResult one = study(scene, settings);
+    settings.threads = 3;
+    settings.budget = 22;  // admits the same runs as above
+    require_same(one, study(scene, settings));
+}
+
+TEST_CASE("a stopped study leaves whole files only") {
+    const TemporaryFolder folder;
+    StudySettings settings = small_study(folder.path() / "runs");
+    settings.go_on = [](const StudyProgress&) { return false; };
+    const StudyResult stopped = study(folder.write("bar.json", bar), settings);
+    REQUIRE(stopped.stopped);
+    CHECK(stopped.quantities.empty());
+    if (!std::filesystem::exists(settings.folder)) return;  // no run had ended
+    for (const auto& file : std::filesystem::directory_iterator(settings.folder))
+        CHECK(file.path().extension() == ".json");
+}
+
+TEST_CASE("a study continues with the runs in its folder, and has the numbers of a whole one") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    const StudySettings settings = small_study(folder.path() / "runs");
+    const StudyResult whole = study(scene, settings);
+    const auto file_of = [&](const std::string& run) { return settings.folder / ("run_" + run + ".json"); };
+    for (const char* lost : {"draw_2", "refine_1", "step_0.25"}) std::filesystem::remove(file_of(lost));
+    const auto written = std::filesystem::last_write_time(file_of("scene"));
+    require_same(whole, study(scene, settings));
+    CHECK(std::filesystem::last_write_time(file_of("scene")) == written);
+    CHECK(std::filesystem::exists(file_of("refine_1")));
+}
+
+TEST_CASE("runs of another scene are refused unless they may be replaced") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings = small_study(folder.path() / "runs");
+    settings.budget = 5;
+    settings.seconds = 0.02;
+    study(scene, settings);
+    settings.seconds = 0.03;
+    CHECK(message_of(scene, settings).find("run_scene.json is a run of another scene or with other settings") !=
+          std::string::npos);
+    settings.seconds = 0.02;
+    settings.assignments = {"materials.rubber.E=2e5"};
+    CHECK(message_of(scene, settings).find("--redo") != std::string::npos);
+    settings.redo = true;
+    CHECK(study(scene, settings).runs[0].assignments == settings.assignments);
+}
+
+TEST_CASE("wrong settings of a study are refused by name") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings;
+    settings.error = 0;
+    CHECK(message_of(scene, settings).find("error") != std::string::npos);
+    settings = {.budget = -1};
+    CHECK(message_of(scene, settings).find("budget") != std::string::npos);
+    settings = {.threads = -1};
+    CHECK(message_of(scene, settings).find("threads") != std::string::npos);
+    settings = {};
+    settings.seconds = 0;
+    CHECK(message_of(scene, settings).find("seconds") != std::string::npos);
+    settings = {};
+    settings.probes = {"tpi"};
+    CHECK(message_of(scene, settings) ==
+          scene.string() +
+              ": study: probe: found \"tpi\", expected NAME or NAME.QUANTITY, where NAME is one of \"tip\", \"arm\", "
+              "\"energy\" (did you mean \"tip\"?)");
+    settings.probes = {"tip.displacement_x"};
+    settings.budget = 4;
+    for (const StudyQuantity& found : study(scene, settings).quantities)
+        CHECK(found.name.starts_with("tip.displacement_x"));
+}
+
+TEST_CASE("a scene that fails is reported, and no errors are computed") {
+    const TemporaryFolder folder;
+    std::string fast = bar;
+    fast.insert(fast.find("\"pin\""), "\"velocity\": [0, 0, -1e6], ");
+    const StudyResult result = study(folder.write("bar.json", fast), small_study());
+    CHECK(result.runs[0].status == StudyRunStatus::failed);
+    CHECK(result.quantities.empty());
+    REQUIRE(result.sentences.size() == 1);
+    CHECK(result.sentences[0].find(result.runs[0].message) != std::string::npos);
+}
+
+TEST_CASE("the budget leaves out the costly runs, which are the less important ones") {
+    CHECK(wall_time({4, 1, 1, 2}, 1) == 8);
+    CHECK(wall_time({1, 1, 1, 1}, 2) == 2);
+    CHECK(wall_time({17, 1, 1, 1}, 2) == Approx(17 / 1.7 + 1.5));  // the long run gets both threads
+    std::vector<PlannedRun> plan{{{}, 1, {}},
+                                 {{.draw = 1}, 1, {}},
+                                 {{.draw = 2}, 1, {}},
+                                 {{.step = 0.5}, 2, {}},
+                                 {{.refine = 1}, 16, {}},
+                                 {{.step = 0.25}, 4, {}}};
+    keep_to_budget(10, 1, plan);
+    std::vector<bool> made;
+    for (const PlannedRun& run : plan) made.push_back(run.reason.empty());
+    CHECK(made == std::vector<bool>{true, true, true, true, false, true});
+    CHECK(plan[4].reason ==
+          "with it the study would take about 21 times as long as one run, more than the budget of 10");
+}
+
+TEST_CASE("a perturbation moves free nodes by at most 1e-12 m and leaves held nodes") {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.write("bar.json", bar);
+    const auto moved_by = [&](int draw) {
+        Scene scene = load_scene(file);
+        const BodyHandle body = scene.world.bodies()[0];
+        const std::span<const Vec3> nodes = scene.world.positions(body);
+        std::vector<Vec3> moved(nodes.begin(), nodes.end());
+        perturb_start(draw, scene.world);
+        for (std::size_t n = 0; n < moved.size(); ++n) moved[n] = scene.world.positions(body)[n] - moved[n];
+        return moved;
+    };
+    Scene scene = load_scene(file);
+    const std::vector<Index> held = scene.world.nodes(scene.world.attachments()[0]);
+    const std::vector<Vec3> first = moved_by(1);
+    for (std::size_t n = 0; n < first.size(); ++n) {
+        CHECK(first[n].norm() <= 1e-12);
+        const bool is_held = std::ranges::find(held, static_cast<Index>(n)) != held.end();
+        CHECK((first[n].norm() > 0) != is_held);
+    }
+    CHECK(moved_by(1) == first);
+    CHECK(moved_by(2) != first);
+    CHECK(moved_by(0) == std::vector<Vec3>(first.size(), Vec3::Zero()));
+}
+
+TEST_CASE("the cheapest scene has at most the wanted error against the best value") {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.write("hanging.json", hanging);
+    StudySettings settings = small_study();
+    settings.error = 0.1;
+    settings.probes = {"arm.displacement_z"};
+    const StudyResult result = study(file, settings);
+    REQUIRE(result.cheapest);
+    REQUIRE(result.cheapest->reaches);
+    const std::filesystem::path cheapest = folder.path() / "other" / "cheapest.json";
+    write_cheapest_scene(file, result, cheapest);
+    CHECK(hash_after(cheapest, {}) == hash_after(file, result.cheapest->assignments));
+    const StudyQuantity& sag = quantity(result, "arm.displacement_z_end");
+    settings.budget = 3;
+    const Real value = quantity(study(cheapest, settings), "arm.displacement_z_end").value;
+    CHECK(std::abs(value - sag.best) <= settings.error * sag.scale);
+    CHECK(std::abs(sag.value - sag.best) <= sag.error);
+}
+
+}  // namespace skerry::test::study_test
