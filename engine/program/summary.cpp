@@ -36,8 +36,8 @@ std::string time_text(const RunResult& result) {
 }
 
 std::string start_lines(const RunResult& result) {
-    return summary_line("loading", with_unit(result.seconds_load, "s") + " to read the scene and its meshes") +
-           summary_line("set-up", with_unit(result.seconds_setup, "s") +
+    return summary_line("set-up", with_unit(result.seconds_load, "s") + " to read the scene and its meshes, " +
+                                      with_unit(result.seconds_setup, "s") +
                                       " to add the bodies, find overlaps and choose the step length") +
            (result.report.start_moves.empty() ? "" : summary_line("start", moves_text(result.report)));
 }

@@ -38,6 +38,18 @@ class ProgramRunTest(ProgramCase):
         self.assertRegex(done.stderr, r"NOTE: the run starts from rest, found in \d+ steps")
         self.assertLess(json.loads(stats.read_text())["energy"]["kinetic"], 1e-6)
 
+    def test_the_summary_and_the_statistics_have_estimated_errors(self):
+        # all nodes of one face are held, and the bar bends under its weight
+        bar = {"name": "bar", "seconds": 0.05, "materials": {"m": {"E": 1e5}},
+               "bodies": [{"name": "bar", "mesh": {"box": {"size": [0.4, 0.1, 0.1], "cells": [4, 1, 1]}},
+                           "material": "m", "pin": {"box": {"lower": [-1, -1, -1], "upper": [-0.19, 1, 1]}}}]}
+        stats = self.folder / "bar_stats.json"
+        summary = self.skerry("run", self.write("bar.json", bar), "--stats", stats).stdout
+        self.assertRegex(summary, r"\n  errors +mesh about [0-9.]+ % of .*\(body 'bar'\), steps about [0-9.e-]+ % of")
+        [errors] = json.loads(stats.read_text())["errors"]
+        self.assertEqual(errors["body"], "bar")
+        self.assertTrue(0.1 < errors["deflection"] < 1, errors)
+
     def test_a_run_without_equilibrium_ends_before_its_start(self):
         # the incline is steeper than the friction angle
         steep = {**SCENE, "settings": {"gravity": [7, 0, -7]}, "materials": {"m": {"mu": 0.1}},
