@@ -14,7 +14,8 @@ std::string count_of(std::size_t count, const std::string& noun, const std::stri
     return grouped(count) + " " + (count == 1 ? noun : nouns);
 }
 
-/// Returns the numbers of bodies and colliders, for example "11 deformable (2 of them implicit), 1 rigid, 1 collider".
+/// Returns the numbers of bodies, colliders, tetrahedra and nodes, for example "11 deformable (2 of them implicit), 1
+/// rigid, 1 collider, 1,536 tetrahedra, 560 nodes".
 std::string bodies_text(const RunResult& result) {
     const WorldReport& r = result.report;
     const std::size_t deformable = r.bodies - result.rigid_bodies;
@@ -24,6 +25,8 @@ std::string bodies_text(const RunResult& result) {
     if (result.implicit_bodies > 0) text += " (" + grouped(result.implicit_bodies) + " of them implicit)";
     if (result.rigid_bodies > 0) add(grouped(result.rigid_bodies) + " rigid");
     add(count_of(r.colliders, "collider", "colliders"));
+    add(count_of(r.elements, "tetrahedron", "tetrahedra"));
+    add(count_of(r.nodes, "node", "nodes"));
     if (r.asleep > 0) text += "; " + count_of(r.asleep, "body", "bodies") + " at rest at the end";
     return text;
 }
@@ -174,8 +177,6 @@ std::string summary_of(const RunResult& result) {
     if (result.restarted_at) text += summary_line("restarted", "at " + with_unit(*result.restarted_at, "s"));
     text += summary_line("bodies", bodies_text(result));
     if (const std::string choices = choices_text(r); !choices.empty()) text += summary_line("dynamics", choices);
-    text += summary_line("elements",
-                         count_of(r.elements, "tetrahedron", "tetrahedra") + ", " + count_of(r.nodes, "node", "nodes"));
     return text + start_lines(result) + step_lines(result) + warning_lines(result) + tie_lines(result) +
            probe_lines(result) + file_lines(result);
 }
