@@ -1,8 +1,8 @@
 // Summary that is printed at the end of a run, for people who do not know the methods of the engine.
 #include <cmath>
 
+#include "engine/output/number_text.h"
 #include "engine/program/dynamics_text.h"
-#include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
 #include "engine/program/start_text.h"
 
