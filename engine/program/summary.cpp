@@ -138,8 +138,7 @@ std::string warning_lines(const RunResult& result) {
     std::string text;
     for (const std::string& warning : warnings_of(result)) text += summary_line("WARNING", warning);
     if (!text.empty()) return text;
-    return summary_line("warnings", result.status == "ok" ? "none: all error estimates are within their limits"
-                                                          : "none for the simulated part of the run");
+    return summary_line("warnings", result.status == "ok" ? "none" : "none for the simulated part of the run");
 }
 
 /// Lines with statistics of the steps. Empty if no step was made.
