@@ -82,7 +82,7 @@ std::string balance_text(const WorldReport& r) {
 }
 
 /// Returns the largest estimated errors of all bodies, for example "mesh about 3 % of the motion (body 'arm') and about
-/// 12 % of the largest stress (body 'arm'), steps about 0.1 % of the motion (body 'ball')".
+/// 12 % of the largest stress (body 'arm'), steps about 0.1 % of the motion (body 'ball')". Estimates end at 100 %.
 std::string errors_text(const std::vector<ErrorEstimate>& errors) {
     std::string text;
     const auto add = [&](const char* between, const std::string& before, const std::string& after, auto&& error_of) {
@@ -94,7 +94,8 @@ std::string errors_text(const std::vector<ErrorEstimate>& errors) {
                 largest = error;
             }
         if (worst)
-            text += (text.empty() ? "" : between) + before + "about " + percent(largest) + " of " + after + " (body '" +
+            text += (text.empty() ? "" : between) + before +
+                    (largest < 1 ? "about " + percent(largest) : "100 % or more") + " of " + after + " (body '" +
                     worst->name + "')";
     };
     // The mesh changes only the displacements by deformation.
