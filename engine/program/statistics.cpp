@@ -1,9 +1,9 @@
 #include <cmath>
 #include <ostream>
 
+#include "engine/output/number_text.h"
 #include "engine/output/write_file.h"
 #include "engine/program/dynamics_text.h"
-#include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
 #include "engine/program/start_text.h"
 #include "skerry/instruction_set.h"

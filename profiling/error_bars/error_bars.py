@@ -105,9 +105,8 @@ PAGE = """# Error bars against known solutions
 This page shows how far you can trust the error bars of [`skerry study`](study.md) and the
 [error estimates](methods/error_estimates.md) of every run. `scripts/error_bars` studies {all} items with known
 solutions and writes this page; {count} have results. The scenes have coarse meshes and default settings. They were
-chosen before the first study. Afterwards `incline_slide` got a stiff block and a slow push, because its formula is that
-of a rigid block, and some items other quantities, because studies had no velocities and moments.
-[error_bars.csv](error_bars/error_bars.csv) lists all values, formulas and orders.
+chosen before the first study, except the quantities of some items, and the stiff block and slow push of
+`incline_slide`. [error_bars.csv](error_bars/error_bars.csv) lists values, formulas and orders.
 
 | claim | items |
 |---|---:|
@@ -116,8 +115,10 @@ of a rigid block, and some items other quantities, because studies had no veloci
 | the estimate of the run is within a factor of 3 of the true error | {estimated} of {count} |
 
 Errors below 0.001 % of the known value count as 0.001 %. Some known values have errors themselves, up to 7 % for an
-impact after Hertz: the column `doubt`, which the first line adds to the error bar. An item without a finite value
-meets the first two lines if the study names it as {verdicts}.
+impact after Hertz: the column `doubt`, which the first line adds to the error bar. Inside only because of it:
+{doubted}. An item without a finite value meets the first two lines if the study names it as {verdicts}.
+
+Items that miss the third claim, with the ratio of estimate and true error: {estimates}.
 
 Items that miss one of the first two claims, in % of the known value:
 
@@ -125,6 +126,10 @@ Items that miss one of the first two claims, in % of the known value:
 |---|---:|---:|---:|---|
 {failures}
 """
+
+
+def ratio_text(ratio):
+    return "no estimate" if math.isnan(ratio) else f"{ratio:.0f}" if ratio >= 10 else f"{ratio:.2g}"
 
 
 def write_page(rows):
@@ -141,6 +146,10 @@ def write_page(rows):
         all=len(all_items()), count=len(rows), inside=sum(row["inside"] for row in rows),
         sharp=sum(row["bar_over_error"] <= SHARP or math.isnan(row["known"]) and row["inside"] for row in rows),
         estimated=sum(1 / SHARP <= row["estimate_over_error"] <= SHARP for row in rows),
+        doubted=", ".join(f"`{row['item']}` (doubt {100 * row['doubt'] / abs(row['known']):.2g} %, {row['formula']})"
+                          for row in known if row["error"] > row["bar"] + EXACT * abs(row["known"]) and row["inside"]),
+        estimates=", ".join(f"`{row['item']}` {ratio_text(row['estimate_over_error'])}" for row in rows
+                            if not 1 / SHARP <= row["estimate_over_error"] <= SHARP),
         verdicts=" or ".join(sorted({f"`{item.verdict}`" for item in all_items() if item.verdict})), failures=failures))
 
 

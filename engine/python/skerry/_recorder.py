@@ -396,7 +396,9 @@ class WorldOutput:
 
             with world.error_estimator() as errors:
                 world.run(2)
-            errors.table()["deflection"]"""
+            errors.table()["deflection"]
+
+        ErrorEstimator.table() describes the columns."""
         return ErrorEstimator(self)  # type: ignore[arg-type]
 
     def record(self, *, every: float = 1 / 60, title: str = "skerry") -> Film:

@@ -20,7 +20,7 @@ from ._scene import Json, Path, assignments_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StudyQuantity:
-    """A number with its error bar. Values that were not measured are NaN.
+    """A number with its error bar. Values that were not measured are NaN. The error of a singular quantity is infinite.
 
     name, unit: name and SI unit. value: value of the scene as it is. error: half width of its error bar. mesh, step,
     contact: parts of the error from the mesh, the step length and the contact solver. noise: difference of runs whose
@@ -189,7 +189,7 @@ def study(
         called,
     )
     if called is _show:
-        print("\r100 %", file=sys.stderr)
+        print("\r100 %".ljust(40), file=sys.stderr)  # covers the line of _show
     return Study(core, file)
 
 
@@ -198,8 +198,10 @@ def _show(share: float, done: int, total: int) -> None:
 
 
 def _quantity(values: dict[str, Any]) -> StudyQuantity:
-    """A number that is not finite is None in JSON."""
-    absent = {key: math.inf if key == "agree_until" else math.nan for key, value in values.items() if value is None}
+    """A number that is not finite is None in JSON. The error of a singular quantity is infinite, and so is its part by
+    the mesh."""
+    infinite = ("agree_until", "error", "mesh") if values["verdict"] == "singular" else ("agree_until",)
+    absent = {key: math.inf if key in infinite else math.nan for key, value in values.items() if value is None}
     return StudyQuantity(**{**values, **absent})
 
 
