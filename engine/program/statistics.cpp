@@ -27,6 +27,7 @@ Json errors_of(const RunResult& result) {
                           {"contact", number_or_null(of.contact)},
                           {"deformation", number_or_null(of.deformation)},
                           {"overlap", number_or_null(of.overlap)},
+                          {"gap", number_or_null(of.gap)},
                           {"contact_radius", number_or_null(of.contact_radius)},
                           {"contact_edge", number_or_null(of.contact_edge)},
                           {"worst_tetrahedron", of.worst_tetrahedron},

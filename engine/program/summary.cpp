@@ -81,9 +81,11 @@ std::string balance_text(const WorldReport& r) {
                                                 : percent(r.momentum_error_share));
 }
 
-/// Returns the largest estimated errors of all bodies, for example "mesh about 3 % of the motion (body 'arm') and about
-/// 12 % of the largest stress (body 'arm'), steps about 0.1 % of the motion (body 'ball')". Estimates end at 100 %.
+/// Returns the largest estimated errors of all bodies, with their names if there are several, for example "mesh about 3
+/// % of the motion (body 'arm') and about 12 % of the largest stress (body 'arm'), steps about 0.1 % of the motion
+/// (body 'ball')".
 std::string errors_text(const std::vector<ErrorEstimate>& errors) {
+    constexpr Real least = 1e-4;  // smaller estimates are mostly rounding errors
     std::string text;
     const auto add = [&](const char* between, const std::string& before, const std::string& after, auto&& error_of) {
         const ErrorEstimate* worst = nullptr;
@@ -93,10 +95,12 @@ std::string errors_text(const std::vector<ErrorEstimate>& errors) {
                 worst = &of;
                 largest = error;
             }
-        if (worst)
-            text += (text.empty() ? "" : between) + before +
-                    (largest < 1 ? "about " + percent(largest) : "100 % or more") + " of " + after + " (body '" +
-                    worst->name + "')";
+        if (!worst) return;
+        const std::string size = largest >= 1      ? "100 % or more"
+                                 : largest < least ? "less than " + percent(least)
+                                                   : "about " + percent(largest);
+        text += (text.empty() ? "" : between) + before + size + " of " + after +
+                (errors.size() > 1 ? " (body '" + worst->name + "')" : "");
     };
     // The mesh changes only the displacements by deformation.
     add("", "mesh ", "the motion", [](const ErrorEstimate& of) { return of.deflection * of.deformation; });
