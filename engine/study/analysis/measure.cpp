@@ -128,10 +128,14 @@ std::string singular_text(const StudyFamily& family, std::size_t column, StudyFi
 }
 
 std::string irregular_text(const char* part, ConvergenceShape shape) {
-    const char* behaviour = shape == ConvergenceShape::oscillating ? "oscillates"
+    if (shape == ConvergenceShape::coarse)
+        return std::string("two levels of the ") + part +
+               " differ by more than 30 % of the value: both are too coarse, and the error may exceed the error bar";
+    const char* behaviour = shape == ConvergenceShape::oscillating ? "changes its sign"
                             : shape == ConvergenceShape::fast      ? "falls faster than the theory says"
                                                                    : "does not fall as it should";
-    return std::string("the ") + part + " error " + behaviour + ", so the value is not extrapolated";
+    return std::string("the ") + part + " error " + behaviour +
+           ", so the value is not extrapolated; the error bar is a multiple of the largest difference and can be used";
 }
 
 /// Sets the errors and the extrapolated value of a quantity from its families of runs.
@@ -149,6 +153,21 @@ void combine(MeasuredQuantity& quantity) {
         r.best += convergence->limit() - r.value;
         r.best_error += convergence->limit_error();
     }
+}
+
+/// Enlarges the mesh error of linear elements if smoothed elements on the same mesh have a value outside the error bar.
+/// Linear elements that lock converge so slowly that the differences of their meshes do not show the error.
+void apply_smoothed(Real value, MeasuredQuantity& quantity) {
+    constexpr Real safety = 1.5;
+    StudyQuantity& r = quantity.result;
+    quantity.least_mesh = safety * std::abs(value - r.value);
+    r.error += quantity.least_mesh - r.mesh;
+    r.mesh = quantity.least_mesh;
+    r.best = r.best_error = no_value;
+    r.verdict = StudyVerdict::irregular;
+    r.sentence += (r.sentence.empty() ? "" : "; ") + std::string("linear elements are too stiff here: with smoothed ") +
+                  "elements the value is " + short_number(value, 4) + " " + r.unit +
+                  ", and the error bar is a multiple of the difference";
 }
 
 void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Real wanted, MeasuredQuantity& quantity) {
@@ -195,6 +214,10 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     check("mesh", quantity.mesh, r.mesh);
     check("step", quantity.step, r.step);
     for (const auto& [variant, value] : quantity.elements)
+        if (variant.element == ElementKind::smoothed &&
+            std::abs(value - r.value) > std::max(r.error, share_of_wanted * wanted * r.scale))
+            apply_smoothed(value, quantity);
+    for (const auto& [variant, value] : quantity.elements)
         if (std::abs(value - r.value) > std::max(r.error, wanted * r.scale) && r.sentence.empty())
             r.sentence = "with " + std::string(name_of(*variant.element)) + " elements the value is " +
                          short_number(value, 4) + " " + r.unit + ", outside the error bar";
@@ -202,8 +225,8 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
 
 /// Measures the error of a number of each run.
 template <class ValueOf>
-MeasuredQuantity measure_values(const StudyFamily& family, const SeriesColumn& what, Real scale,
-                                const ValueOf& value_of) {
+MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, Real scale, const ValueOf& value_of) {
+    const SeriesColumn& what = family.scene->columns[column].what;
     MeasuredQuantity quantity;
     StudyQuantity& r = quantity.result;
     r.unit = what.unit;
@@ -223,8 +246,8 @@ MeasuredQuantity measure_values(const StudyFamily& family, const SeriesColumn& w
     Real noise = std::max(rounding * r.scale, quantity.noise);
     quantity.contact = Convergence(contact, {1, 1}, noise);
     if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());  // the solver's error is noise, too
-    quantity.mesh = Convergence(mesh, mesh_theory(what), noise);
-    quantity.step = Convergence(step, step_theory(*family.scene), noise);
+    quantity.mesh = Convergence(mesh, mesh_theory(what), noise, family.sizes[column]);
+    quantity.step = Convergence(step, step_theory(*family.scene), noise, family.sizes[column]);
     r.expected_mesh_order = mesh_theory(what).least;
     r.expected_step_order = step_theory(*family.scene).least;
     // A part that the study has no runs for is zero: rigid bodies have no mesh error, scenes without contacts no
@@ -244,7 +267,7 @@ MeasuredQuantity measure_values(const StudyFamily& family, const SeriesColumn& w
 
 }  // namespace
 
-StudyFamily::StudyFamily(const std::vector<StudyRun>& runs) : all(&runs), scene(&runs.front()) {
+StudyFamily::StudyFamily(const std::vector<StudyRun>& runs) : all(&runs), scene(&runs.front()), sizes(column_sizes(runs.front())) {
     for (const StudyRun& run : runs)
         if (run.status == StudyRunStatus::ok && run.time.size() == scene->time.size() &&
             run.columns.size() == scene->columns.size())
@@ -262,7 +285,7 @@ bool is_statistic(const StudyColumn& column) {
     return column.what.probe == "bodies";
 }
 
-std::vector<Real> column_scales(const StudyRun& run) {
+std::vector<Real> column_sizes(const StudyRun& run) {
     std::map<std::string, Real> largest;
     for (const StudyColumn& column : run.columns) {
         if (column.values.empty()) continue;
@@ -274,12 +297,16 @@ std::vector<Real> column_scales(const StudyRun& run) {
             if (value > scale) scale = value;  // unknown values do not count
         }
     }
+    std::vector<Real> sizes;
+    for (const StudyColumn& column : run.columns) sizes.push_back(largest[group_of(column.what)]);
+    return sizes;
+}
+
+std::vector<Real> column_scales(const StudyRun& run) {
     constexpr Real least_share_of_size = 1e-3;
-    std::vector<Real> scales;
-    for (const StudyColumn& column : run.columns) {
-        const Real scale = largest[group_of(column.what)];
-        scales.push_back(column.what.unit == "m" ? std::max(scale, least_share_of_size * column.size) : scale);
-    }
+    std::vector<Real> scales = column_sizes(run);
+    for (std::size_t c = 0; c < scales.size(); ++c)
+        if (run.columns[c].what.unit == "m") scales[c] = std::max(scales[c], least_share_of_size * run.columns[c].size);
     return scales;
 }
 
@@ -305,7 +332,7 @@ MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFig
                          Real agree_until, Real wanted) {
     const SeriesColumn& what = family.scene->columns[column].what;
     const auto value_of = [&](const StudyRun& run) { return figure_value(run, column, figure, agree_until); };
-    MeasuredQuantity quantity = measure_values(family, what, scale, value_of);
+    MeasuredQuantity quantity = measure_values(family, column, scale, value_of);
     StudyQuantity& r = quantity.result;
     r.name = what.probe + "." + what.quantity + ending_of(figure);
     r.agree_until = agree_until;
@@ -329,6 +356,8 @@ Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant) {
         mesh = no_value;
         for (const auto& [run, value] : quantity.elements)
             if (run.element == variant.element && run.refine == variant.refine) mesh = quantity.mesh.error_of(value);
+    } else {
+        mesh = std::max(mesh, quantity.least_mesh * std::exp2(Real{-1} * std::max(variant.refine, 0)));
     }
     return mesh + at(quantity.step, variant.step, r.step) + at(quantity.contact, variant.tolerance, r.contact) +
            quantity.noise;
@@ -340,7 +369,7 @@ std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real
     for (std::size_t row = 0; row < scene.values.size(); ++row) {
         const bool agreed = family.scene->time[row] <= agree_until || is_statistic(scene);
         const auto value_of = [&](const StudyRun& run) { return run.columns[column].values[row]; };
-        band.push_back(agreed ? measure_values(family, scene.what, scale, value_of).result.error : no_value);
+        band.push_back(agreed ? measure_values(family, column, scale, value_of).result.error : no_value);
     }
     return band;
 }

@@ -22,6 +22,7 @@ struct StudyFamily {
     const std::vector<StudyRun>* all = nullptr;
     const StudyRun* scene = nullptr;            // the scene as it is
     std::vector<const StudyRun*> comparable{};  // runs that ended well, with the times of `scene`; includes `scene`
+    std::vector<Real> sizes{};                  // size of the values of each column, see column_sizes()
 
     explicit StudyFamily(const std::vector<StudyRun>& runs);
     PerturbedRuns perturbed() const;
@@ -33,7 +34,12 @@ struct MeasuredQuantity {
     Convergence mesh{}, step{}, contact{};
     Real noise = 0;                                         // largest difference of the perturbed runs
     std::vector<std::pair<StudyVariant, Real>> elements{};  // value of each run with another kind of element
+    Real least_mesh = 0;  // mesh error that linear elements have at least, by comparison with smoothed ones
 };
+
+/// Returns the largest absolute value of each column over the run, for lengths and energies the largest change since the
+/// start. The components of a vector have the same size, and so have the energies of a probe.
+std::vector<Real> column_sizes(const StudyRun& run);
 
 /// Returns the scale of each column, to which its errors are relative: the largest absolute value of the run, for
 /// lengths and energies the largest change since the start. The components of a vector have the same scale, and so have

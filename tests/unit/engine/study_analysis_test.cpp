@@ -129,11 +129,50 @@ TEST_CASE("differences that do not fall as the theory says give a long bar and n
     }
     const StudyQuantity q = only_quantity(analyse(displacement_runs(-0.2, 0.4, 0, 1, 0), {}));
     CHECK(q.verdict == StudyVerdict::irregular);
-    CHECK(q.sentence == "the mesh error does not fall as it should, so the value is not extrapolated");
+    CHECK(q.sentence ==
+          "the mesh error does not fall as it should, so the value is not extrapolated; the error bar is a multiple of "
+          "the largest difference and can be used");
     CHECK(q.mesh_order == Approx(0.4));
     CHECK(q.expected_mesh_order == 2);
     CHECK(q.error > 0.2 * 0.1);
     CHECK(std::isnan(q.best));
+}
+
+TEST_CASE("two meshes that differ by more than 30 % of the value are both too coarse", "[unit][study]") {
+    const auto with = [](Real of_fine) {
+        return only_quantity(analyse(
+            runs_of({column("displacement_z", "m")}, {{}, {.refine = 1}, {.step = 0.5}, {.step = 0.25}},
+                    [&](const StudyVariant& v, Real t) {
+                        return std::vector<Real>{limit * t * (v.refine == 1 ? of_fine : 1)};
+                    }),
+            {}));
+    };
+    CHECK(with(1.25).verdict == StudyVerdict::known);
+    const StudyQuantity coarse = with(1.4);
+    CHECK(coarse.verdict == StudyVerdict::irregular);
+    CHECK(coarse.sentence.find("both are too coarse") != std::string::npos);
+    CHECK(coarse.error >= 0.14);  // the larger value
+    CHECK(std::isnan(coarse.best));
+    CHECK(coarse.run_errors[1] >= 0.14);
+}
+
+TEST_CASE("linear elements that lock have the error that smoothed elements show", "[unit][study]") {
+    std::vector<StudyRun> runs = displacement_runs(-0.01, 2, 0, 1, 0);
+    const auto add = [&runs](ElementKind kind, Real ratio) {
+        runs.push_back(runs[0]);
+        runs.back().variant.element = kind;
+        for (Real& value : runs.back().columns[0].values) value *= ratio;
+    };
+    add(ElementKind::linear, 0.5);  // linear elements say nothing of smoothed ones
+    CHECK(only_quantity(analyse(runs, {})).verdict == StudyVerdict::known);
+    runs.back().variant.element = ElementKind::smoothed;
+    const StudyResult result = analyse(runs, {});
+    const StudyQuantity locked = only_quantity(result);
+    CHECK(locked.verdict == StudyVerdict::irregular);
+    CHECK(locked.sentence.find("linear elements are too stiff here") != std::string::npos);
+    CHECK(locked.error == Approx(1.5 * 0.5 * 0.99 * 0.1));
+    CHECK(locked.run_errors[0] == Approx(locked.error));
+    CHECK_FALSE(result.cheapest->reaches);
 }
 
 TEST_CASE("an irregular order of a negligible part does not matter", "[unit][study]") {
