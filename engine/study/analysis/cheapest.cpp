@@ -58,11 +58,12 @@ bool counts(const MeasuredQuantity& quantity) {
 struct Candidate {
     CheapestSettings settings;
     std::string worst{};
+    bool is_predicted = false;  // true for a mesh that was not run
 };
 
 Candidate predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,
                   const Option& step, const Option& tolerance) {
-    Candidate found;
+    Candidate found{.is_predicted = mesh.predicted};
     CheapestSettings& settings = found.settings;
     settings.variant = mesh.variant;
     settings.variant.step = step.variant.step;
@@ -102,7 +103,7 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
     const double target = reaches ? wanted : nearly * least_measured;
     const Candidate* best = nullptr;
     for (const Candidate& candidate : candidates)
-        if (candidate.settings.error <= target &&
+        if (candidate.settings.error <= target && (reaches || !candidate.is_predicted) &&
             (!best || candidate.settings.cpu_seconds < best->settings.cpu_seconds))
             best = &candidate;
     CheapestSettings result = best->settings;
