@@ -117,7 +117,7 @@ std::string singular_text(const StudyFamily& family, std::size_t column, StudyFi
     constexpr Real least_rate = 0.1, least_steadiness = 0.75, same_place = 0.25;
     const StudyColumn& fine = levels.back()->columns[column];
     const StudyColumn& before = levels[levels.size() - 2]->columns[column];
-    if (!(rate[1] > least_rate) || !(rate[1] > least_steadiness * rate[0])) return {};
+    if (!(std::min(rate[0], rate[1]) > least_rate) || !(rate[1] > least_steadiness * rate[0])) return {};
     if ((fine.place - before.place).norm() > same_place * scene.size) return {};
     const Vec3& at = scene.place;
     return "grows " + short_number(std::exp2(rate[1])) + " times with each halving of the edges, at node " +
@@ -302,18 +302,38 @@ std::vector<Real> column_sizes(const StudyRun& run) {
     return sizes;
 }
 
-std::vector<Real> column_scales(const StudyRun& run) {
-    constexpr Real least_share_of_size = 1e-3;
-    std::vector<Real> scales = column_sizes(run);
-    for (std::size_t c = 0; c < scales.size(); ++c)
-        if (run.columns[c].what.unit == "m") scales[c] = std::max(scales[c], least_share_of_size * run.columns[c].size);
+std::vector<Real> column_scales(const StudyFamily& family) {
+    constexpr Real least_share_of_size = 1e-3, rounding = 1e-9, least_share_of_force = 1e-6;
+    const StudyRun& run = *family.scene;
+    const PerturbedRuns perturbed = family.perturbed();
+    std::vector<Real> scales = family.sizes;
+    Real force = 0;
+    std::map<std::string, Real> energy;  // largest energy of each probe [J]
+    for (std::size_t c = 0; c < scales.size(); ++c) {
+        const StudyColumn& column = run.columns[c];
+        if (column.what.unit == "N") force = std::max(force, scales[c]);
+        if (column.what.unit != "J") continue;
+        for (const Real value : column.values)
+            if (std::abs(value) > energy[column.what.probe]) energy[column.what.probe] = std::abs(value);
+    }
+    for (std::size_t c = 0; c < scales.size(); ++c) {
+        const StudyColumn& column = run.columns[c];
+        const std::string& unit = column.what.unit;
+        const Real least = unit == "m"   ? least_share_of_size * column.size
+                           : unit == "J" ? rounding * energy[column.what.probe]
+                           : unit == "N" ? least_share_of_force * force
+                                         : 0;
+        scales[c] = std::max({scales[c], least, first_difference(perturbed, c) / agreement_share});
+    }
     return scales;
 }
 
 std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t column, Real agree_until, Real scale) {
     const StudyColumn& scene = family.scene->columns[column];
     std::vector<StudyFigure> figures;
-    if (agree_until < family.scene->time.back() && !is_statistic(scene)) figures.push_back(StudyFigure::agreed);
+    if (agree_until < family.scene->time.back() && !is_statistic(scene) &&
+        std::isfinite(figure_value(*family.scene, column, StudyFigure::agreed, agree_until)))
+        figures.push_back(StudyFigure::agreed);
     figures.push_back(StudyFigure::end);
     const auto value = [&](StudyFigure figure) { return figure_value(*family.scene, column, figure, 0); };
     const bool relative = scene.what.unit == "m" || scene.what.unit == "J";

@@ -41,10 +41,12 @@ struct MeasuredQuantity {
 /// start. The components of a vector have the same size, and so have the energies of a probe.
 std::vector<Real> column_sizes(const StudyRun& run);
 
-/// Returns the scale of each column, to which its errors are relative: the largest absolute value of the run, for
-/// lengths and energies the largest change since the start. The components of a vector have the same scale, and so have
-/// the energies of a probe. Lengths have at least the scale of a thousandth of the body.
-std::vector<Real> column_scales(const StudyRun& run);
+/// Returns the scale of each column, to which its errors are relative: its size, but at least
+/// - for lengths a thousandth of the body,
+/// - for energies the rounding error of the largest energy of the probe,
+/// - for forces a millionth of the largest force of all columns,
+/// - the difference that the perturbation of the start makes at once, divided by the share of agreement.
+std::vector<Real> column_scales(const StudyFamily& family);
 
 /// Returns the figures of a column that get an error bar.
 std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t column, Real agree_until, Real scale);
