@@ -82,7 +82,9 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
     std::vector<BodyHandle> attached;
     for (const AttachmentHandle attachment : world.attachments()) attached.push_back(world.body(attachment));
     for (const BodyHandle body : bodies_in_order(world)) {
+        // Columns of all bodies have the name "bodies".
         const bool taken =
+            world.name(body) == "bodies" ||
             std::ranges::find(scene.recorded, world.name(body), &RecordedProbe::name) != scene.recorded.end();
         const auto add = [&](decltype(RecordedProbe::what) what) {
             probes.push_back({{"default probe " + std::to_string(probes.size()), std::move(what)},
