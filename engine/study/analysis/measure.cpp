@@ -268,9 +268,12 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
 }  // namespace
 
 StudyFamily::StudyFamily(const std::vector<StudyRun>& runs) : all(&runs), scene(&runs.front()), sizes(column_sizes(runs.front())) {
+    const auto same_column = [](const StudyColumn& a, const StudyColumn& b) {
+        return a.what.probe == b.what.probe && a.what.quantity == b.what.quantity && a.values.size() == b.values.size();
+    };
     for (const StudyRun& run : runs)
         if (run.status == StudyRunStatus::ok && run.time.size() == scene->time.size() &&
-            run.columns.size() == scene->columns.size())
+            std::ranges::equal(run.columns, scene->columns, same_column))
             comparable.push_back(&run);
 }
 
