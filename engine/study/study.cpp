@@ -106,7 +106,13 @@ private:
                             .message = plan_[i].reason,
                             .cpu_seconds = plan_[i].cost * runs_[0].cpu_seconds};
         choose_columns();
+        for (std::size_t c = 0; c < scene_.shape_errors.size() && c < runs_[0].columns.size(); ++c)
+            if (runs_[0].columns[c].what.unit == "m" || runs_[0].columns[c].what.unit == "Pa")
+                runs_[0].columns[c].shape_error = scene_.shape_errors[c];
         StudyResult result = analyse(std::move(runs_), settings_);
+        constexpr std::size_t most_bodies = 3;  // number of bodies with a remark
+        for (std::size_t i = 0; i < std::min(most_bodies, scene_.flat.size()); ++i)
+            result.sentences.push_back(flat_text(scene_.flat[i]));
         if (result.cheapest)
             result.cheapest->assignments = variant_assignments(scene_, result.cheapest->variant, mean_step_);
         return result;

@@ -57,6 +57,7 @@ struct StudyColumn {
     // largest value of the run. Else no_index.
     Index node = no_index;
     Vec3 place = Vec3::Zero();
+    Real shape_error = 0;  // error of the values, relative, because flat faces stand for a curved surface
 };
 
 /// A run of a study. `skerry run SCENE` with the assignments as --set repeats the run, except for its perturbation.

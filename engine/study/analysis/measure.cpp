@@ -153,6 +153,7 @@ void combine(MeasuredQuantity& quantity) {
         r.best += convergence->limit() - r.value;
         r.best_error += convergence->limit_error();
     }
+    r.best_error += quantity.shape;
 }
 
 /// Enlarges the mesh error of linear elements if smoothed elements on the same mesh have a value outside the error bar.
@@ -161,8 +162,8 @@ void apply_smoothed(Real value, MeasuredQuantity& quantity) {
     constexpr Real safety = 1.5;
     StudyQuantity& r = quantity.result;
     quantity.least_mesh = safety * std::abs(value - r.value);
-    r.error += quantity.least_mesh - r.mesh;
-    r.mesh = quantity.least_mesh;
+    r.error += quantity.least_mesh + quantity.shape - r.mesh;
+    r.mesh = quantity.least_mesh + quantity.shape;
     r.best = r.best_error = no_value;
     r.verdict = StudyVerdict::irregular;
     r.sentence += (r.sentence.empty() ? "" : "; ") + std::string("linear elements are too stiff here: with smoothed ") +
@@ -195,6 +196,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
             return decide(StudyVerdict::not_measured, "the mesh error is unknown: " + reason);
         r.mesh = 0;
         for (const auto& [variant, value] : quantity.elements) r.mesh = std::max(r.mesh, std::abs(value - r.value));
+        r.mesh += quantity.shape;
         r.error = r.mesh + r.step + r.contact + r.noise;
         return decide(StudyVerdict::not_measured,
                       "the mesh error is only guessed from other elements on the same mesh: " + reason);
@@ -258,6 +260,10 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
         return planned ? convergence.error() : 0;
     };
     r.mesh = error(quantity.mesh, is_mesh);
+    // Lengths may have an offset, which has no error.
+    quantity.shape =
+        family.scene->columns[column].shape_error * std::min(std::abs(r.value), family.sizes[column]);
+    r.mesh += quantity.shape;
     r.step = error(quantity.step, is_step);
     r.contact = error(quantity.contact, is_contact);
     r.noise = quantity.noise;
@@ -374,7 +380,7 @@ Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant) {
     const auto at = [](const Convergence& convergence, Real h, Real otherwise) {
         return convergence.shape() == ConvergenceShape::unmeasured ? otherwise : convergence.error_at(h);
     };
-    Real mesh = at(quantity.mesh, std::exp2(Real{-1} * variant.refine), r.mesh);
+    Real mesh = at(quantity.mesh, std::exp2(Real{-1} * variant.refine), r.mesh - quantity.shape);
     if (variant.element && quantity.mesh.shape() != ConvergenceShape::unmeasured) {
         mesh = no_value;
         for (const auto& [run, value] : quantity.elements)
@@ -382,7 +388,7 @@ Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant) {
     } else {
         mesh = std::max(mesh, quantity.least_mesh * std::exp2(Real{-1} * std::max(variant.refine, 0)));
     }
-    return mesh + at(quantity.step, variant.step, r.step) + at(quantity.contact, variant.tolerance, r.contact) +
+    return mesh + quantity.shape + at(quantity.step, variant.step, r.step) + at(quantity.contact, variant.tolerance, r.contact) +
            quantity.noise;
 }
 

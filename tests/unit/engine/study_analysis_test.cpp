@@ -175,6 +175,16 @@ TEST_CASE("linear elements that lock have the error that smoothed elements show"
     CHECK_FALSE(result.cheapest->reaches);
 }
 
+TEST_CASE("the error of flat faces is part of every mesh error", "[unit][study]") {
+    std::vector<StudyRun> runs = displacement_runs(-0.2, 2, 0, 1, 0);
+    const Real without = only_quantity(analyse(runs, {})).mesh;
+    runs[0].columns[0].shape_error = 0.03;
+    const StudyQuantity q = only_quantity(analyse(runs, {}));
+    CHECK(q.mesh == Approx(without + 0.03 * 0.8 * 0.1));
+    CHECK(q.run_errors[1] > 0.03 * 0.8 * 0.1);
+    CHECK(q.best_error > 0.03 * 0.8 * 0.1);
+}
+
 TEST_CASE("an irregular order of a negligible part does not matter", "[unit][study]") {
     CHECK(only_quantity(analyse(displacement_runs(-1e-5, 0.1, 0, 1, 0), {})).verdict == StudyVerdict::known);
     CHECK(only_quantity(analyse(displacement_runs(-0.2, 2, 1e-5, 0.1, 0), {})).verdict == StudyVerdict::known);
