@@ -312,15 +312,16 @@ std::vector<Real> column_sizes(const StudyRun& run) {
 }
 
 std::vector<Real> column_scales(const StudyFamily& family) {
-    constexpr Real least_share_of_size = 1e-3, rounding = 1e-9, least_share_of_force = 1e-6;
+    constexpr Real rounding = 1e-9, least_share = 1e-6;
     const StudyRun& run = *family.scene;
     const PerturbedRuns perturbed = family.perturbed();
     std::vector<Real> scales = family.sizes;
-    Real force = 0;
+    Real force = 0, motion = 0;
     std::map<std::string, Real> energy;  // largest energy of each probe [J]
     for (std::size_t c = 0; c < scales.size(); ++c) {
         const StudyColumn& column = run.columns[c];
         if (column.what.unit == "N") force = std::max(force, scales[c]);
+        if (column.what.unit == "m") motion = std::max(motion, scales[c]);
         if (column.what.unit != "J") continue;
         for (const Real value : column.values)
             if (std::abs(value) > energy[column.what.probe]) energy[column.what.probe] = std::abs(value);
@@ -328,9 +329,9 @@ std::vector<Real> column_scales(const StudyFamily& family) {
     for (std::size_t c = 0; c < scales.size(); ++c) {
         const StudyColumn& column = run.columns[c];
         const std::string& unit = column.what.unit;
-        const Real least = unit == "m"   ? least_share_of_size * column.size
+        const Real least = unit == "m"   ? std::max(rounding * column.size, least_share * motion)
                            : unit == "J" ? rounding * energy[column.what.probe]
-                           : unit == "N" ? least_share_of_force * force
+                           : unit == "N" ? least_share * force
                                          : 0;
         scales[c] = std::max({scales[c], least, first_difference(perturbed, c) / agreement_share});
     }

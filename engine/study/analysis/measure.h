@@ -43,7 +43,7 @@ struct MeasuredQuantity {
 std::vector<Real> column_sizes(const StudyRun& run);
 
 /// Returns the scale of each column, to which its errors are relative: its size, but at least
-/// - for lengths a thousandth of the body,
+/// - for lengths the rounding error of the size of the body, and a millionth of the largest motion of all columns,
 /// - for energies the rounding error of the largest energy of the probe,
 /// - for forces a millionth of the largest force of all columns,
 /// - the difference that the perturbation of the start makes at once, divided by the share of agreement.

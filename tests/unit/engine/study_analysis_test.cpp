@@ -323,6 +323,20 @@ TEST_CASE("the rounding stress and constant energy of a free body are no results
     CHECK(result.cheapest->reaches);
 }
 
+TEST_CASE("a small load has the relative errors of a large one", "[unit][study]") {
+    // The column's body has a size of 1 m.
+    const auto share = [](Real size) {
+        std::vector<StudyRun> runs = displacement_runs(-0.2, 2, 0.05, 1, 0.001);
+        for (StudyRun& run : runs)
+            for (Real& value : run.columns[0].values) value *= size;
+        const StudyResult result = analyse(runs, {.error = 0.3});
+        const StudyQuantity q = only_quantity(result);
+        CHECK(result.cheapest->variant == StudyVariant{.refine = 1});
+        return q.error / q.scale;
+    };
+    CHECK(share(1e-6) == Approx(share(1)));
+}
+
 TEST_CASE("an error that no run shows is not measured, with the reason", "[unit][study]") {
     std::vector<StudyRun> runs = displacement_runs(-0.2, 2, 0.05, 1, 0.001);
     for (StudyRun& run : runs)
