@@ -33,7 +33,16 @@ void require_positive(const char* field, double value, const char* expected) {
 }
 
 void check_settings(const StudySettings& settings) {
-    require_positive("error", settings.error, "a relative error > 0, for example 0.01");
+    constexpr const char* share = "a share above 0 and below 1, for example 0.05 for 5 %";
+    require_positive("error", settings.error, share);
+    if (settings.error >= 1)
+        Complaint{.file = {},
+                  .object = "study",
+                  .field = "error",
+                  .found = short_text(settings.error),
+                  .expected = share,
+                  .hint = {}}
+            .raise();
     if (settings.budget) require_positive("budget", *settings.budget, "a number > 0");
     if (settings.seconds) require_positive("seconds", *settings.seconds, "a time > 0 (s)");
     if (settings.threads < 0)

@@ -11,6 +11,7 @@ namespace skerry {
 namespace {
 
 constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real matters = 0.2;  // share of the error bar from which an irregular part matters
 
 const char* ending_of(StudyFigure figure) {
     switch (figure) {
@@ -61,7 +62,7 @@ Real figure_value(const StudyRun& run, std::size_t column, StudyFigure figure, R
 
 /// Group of columns with a common scale.
 std::string group_of(const SeriesColumn& column) {
-    if (column.unit == "J") return column.probe + " [J]";
+    if (column.unit == "J" || column.unit == "N") return column.probe + " [" + column.unit + "]";
     const std::string& name = column.quantity;
     const bool component = name.size() > 2 && name[name.size() - 2] == '_' && name.back() >= 'x' && name.back() <= 'z';
     return column.probe + "." + (component ? name.substr(0, name.size() - 2) : name);
@@ -150,6 +151,10 @@ void combine(MeasuredQuantity& quantity) {
         {&quantity.mesh, r.mesh}, {&quantity.step, r.step}, {&quantity.contact, r.contact}};
     for (const auto& [convergence, error] : parts) {
         if (convergence->shape() == ConvergenceShape::unmeasured && error == 0) continue;  // there is no such error
+        if (convergence->irregular() && error <= matters * r.error) {
+            r.best_error += error;  // the part is too small to spoil the extrapolation of the others
+            continue;
+        }
         r.best += convergence->limit() - r.value;
         r.best_error += convergence->limit_error();
     }
@@ -159,9 +164,9 @@ void combine(MeasuredQuantity& quantity) {
 /// Enlarges the mesh error of linear elements if smoothed elements on the same mesh have a value outside the error bar.
 /// Linear elements that lock converge so slowly that the differences of their meshes do not show the error.
 void apply_smoothed(Real value, MeasuredQuantity& quantity) {
-    constexpr Real safety = 1.5;
+    constexpr Real errors_of_difference = 1.5;
     StudyQuantity& r = quantity.result;
-    quantity.least_mesh = safety * std::abs(value - r.value);
+    quantity.least_mesh = errors_of_difference * std::abs(value - r.value);
     r.error += quantity.least_mesh + quantity.shape - r.mesh;
     r.mesh = quantity.least_mesh + quantity.shape;
     r.best = r.best_error = no_value;
@@ -205,11 +210,10 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
         return decide(StudyVerdict::not_measured, "the step error is unknown: " + reasons_of(family, is_step));
     if (std::isnan(r.contact))
         return decide(StudyVerdict::not_measured, "the contact error is unknown: " + reasons_of(family, is_contact));
-    // An irregular part matters if it is a fifth of the error bar and a tenth of the wanted error.
-    constexpr Real share_of_error = 0.2, share_of_wanted = 0.1;
+    constexpr Real share_of_wanted = 0.1;  // smaller irregular parts do not matter
     decide(StudyVerdict::known, "");
     const auto check = [&](const char* name, const Convergence& part, Real error) {
-        if (part.irregular() && error > share_of_error * r.error && error > share_of_wanted * wanted * r.scale)
+        if (part.irregular() && error > matters * r.error && error > share_of_wanted * wanted * r.scale)
             decide(StudyVerdict::irregular,
                    (r.sentence.empty() ? "" : r.sentence + "; ") + irregular_text(name, part.shape()));
     };

@@ -39,7 +39,8 @@ struct MeasuredQuantity {
 };
 
 /// Returns the largest absolute value of each column over the run, for lengths and energies the largest change since the
-/// start. The components of a vector have the same size, and so have the energies of a probe.
+/// start. The components of a vector have the same size, and so have the energies and the forces of a
+/// probe.
 std::vector<Real> column_sizes(const StudyRun& run);
 
 /// Returns the scale of each column, to which its errors are relative: its size, but at least
