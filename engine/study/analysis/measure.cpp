@@ -219,6 +219,9 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     };
     check("mesh", quantity.mesh, r.mesh);
     check("step", quantity.step, r.step);
+    for (const StudyRun& run : *family.all)
+        if (run.variant.draw != 0 && run.status == StudyRunStatus::failed && r.sentence.empty())
+            decide(StudyVerdict::irregular, "a run begun 1e-12 m apart failed, so this scene may fail by chance");
     for (const auto& [variant, value] : quantity.elements)
         if (variant.element == ElementKind::smoothed &&
             std::abs(value - r.value) > std::max(r.error, share_of_wanted * wanted * r.scale))

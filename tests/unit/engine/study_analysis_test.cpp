@@ -355,6 +355,14 @@ TEST_CASE("an error that no run shows is not measured, with the reason", "[unit]
     CHECK(only_quantity(analyse(runs, {})).mesh == Approx(0.1 * 0.085).epsilon(0.01));
 }
 
+TEST_CASE("a scene that fails after a tiny perturbation has no known values", "[unit][study]") {
+    std::vector<StudyRun> runs = displacement_runs(-0.2, 2, 0.05, 1, 0.001);
+    runs[6].status = StudyRunStatus::failed;
+    const StudyQuantity q = only_quantity(analyse(runs, {}));
+    CHECK(q.verdict == StudyVerdict::irregular);
+    CHECK(q.sentence.find("a run begun 1e-12 m apart failed") != std::string::npos);
+}
+
 TEST_CASE("runs that failed or differ in their rows are not evaluated", "[unit][study]") {
     std::vector<StudyRun> runs = displacement_runs(-0.2, 2, 0.05, 1, 0.001);
     runs[1].status = StudyRunStatus::failed;
@@ -384,6 +392,10 @@ TEST_CASE("the cheapest settings are those that a search over the model finds", 
     const CheapestSettings five = best(0.05);  // predicted: 1.5 (0.2/16 + 0.02) = 0.049 of a scale of 0.82
     CHECK(five.variant == StudyVariant{.refine = 2, .step = 0.5});
     CHECK(five.cpu_seconds == Approx(512));
+    // Clocks are not exact: a lower tolerance is no gain if its run took less time.
+    std::vector<StudyRun> runs = displacement_runs(-0.2, 2, 0.02, 1, 0);
+    runs[5].cpu_seconds *= 0.98;
+    CHECK(analyse(runs, {.error = 0.5}).cheapest->variant == StudyVariant{});
     const CheapestSettings none = best(1e-4);
     CHECK_FALSE(none.reaches);
     CHECK(none.variant == StudyVariant{.refine = 1, .step = 0.5});  // a quarter of the step gains less than a tenth
