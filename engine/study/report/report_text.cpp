@@ -44,6 +44,12 @@ bool is_negligible(const StudyQuantity& q, double wanted) {
     return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error <= wanted * q.scale;
 }
 
+/// True for a quantity that mostly repeats another one: means over time, and sizes of forces.
+bool is_minor(const StudyQuantity& q) {
+    return q.name.ends_with("_mean") || q.name.find(".largest_force_") != std::string::npos ||
+           q.name.find(".pressing_force_") != std::string::npos;
+}
+
 std::string quantities_text(const StudyResult& result) {
     std::vector<const StudyQuantity*> shown;
     std::size_t negligible = 0, width = 0;
@@ -53,6 +59,7 @@ std::string quantities_text(const StudyResult& result) {
         else
             shown.push_back(&q);
     }
+    std::ranges::stable_partition(shown, [](const StudyQuantity* q) { return !is_minor(*q); });
     // Statistics of all bodies come first: they are reported if there are too many bodies, or if they move chaotically.
     std::ranges::stable_partition(shown, [](const StudyQuantity* q) { return q->name.starts_with("bodies."); });
     const std::size_t left = shown.size() > most_quantities ? shown.size() - most_quantities : 0;

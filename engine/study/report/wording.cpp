@@ -95,7 +95,7 @@ QuantityText quantity_text(const StudyQuantity& q) {
         constexpr Real near = 0.1;
         if (std::abs(std::abs(q.value) - q.scale) > near * q.scale) {
             const auto [scale_factor, scale_prefix] = prefix_of(q.scale, q.unit);
-            text.share += " of " + short_number(q.scale / scale_factor, 2) +
+            text.share += " of " + short_number(q.scale / scale_factor) +
                           (q.unit == "1" ? "" : " " + scale_prefix + q.unit);
         }
     }
