@@ -157,8 +157,9 @@ private:
                   .field = "scene",
                   .found = "a scene or mesh file that changed while the study ran",
                   .expected = "the files with which the study began",
-                  .hint = "start the study again; the runs that had ended before are kept, and --redo replaces those of "
-                          "the old scene"}
+                  .hint =
+                      "start the study again; the runs that had ended before are kept, and --redo replaces those of "
+                      "the old scene"}
             .raise();
     }
 

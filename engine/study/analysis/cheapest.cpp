@@ -62,7 +62,7 @@ struct Candidate {
     CheapestSettings settings;
     std::string worst{};
     std::size_t within = 0, counted = 0;  // numbers of quantities within the wanted error, and of all with an error
-    bool may_be_nearest = true;  // false for a mesh that was not run, and for cruder elements
+    bool may_be_nearest = true;           // false for a mesh that was not run, and for cruder elements
 };
 
 Candidate predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,

@@ -29,7 +29,8 @@ std::string quantity_line(const StudyQuantity& q, std::size_t width) {
     for (const auto& [name, error, part] :
          {BarPart{"mesh", q.mesh, text.mesh}, BarPart{"step", q.step, text.step},
           BarPart{"contacts", q.contact, text.contact}, BarPart{"start", q.noise, text.noise}})
-        if (error > shown_share * q.error && !part.empty()) parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
+        if (error > shown_share * q.error && !part.empty())
+            parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
     if (!parts.empty()) line += " (" + (text.share.empty() ? "" : text.share + ": ") + parts + ")";
     // The extrapolated value is shown if it is much more exact.
     constexpr double much = 0.7;

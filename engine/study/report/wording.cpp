@@ -95,8 +95,8 @@ QuantityText quantity_text(const StudyQuantity& q) {
         constexpr Real near = 0.1;
         if (std::abs(std::abs(q.value) - q.scale) > near * q.scale) {
             const auto [scale_factor, scale_prefix] = prefix_of(q.scale, q.unit);
-            text.share += " of " + short_number(q.scale / scale_factor) +
-                          (q.unit == "1" ? "" : " " + scale_prefix + q.unit);
+            text.share +=
+                " of " + short_number(q.scale / scale_factor) + (q.unit == "1" ? "" : " " + scale_prefix + q.unit);
         }
     }
     text.orders = order_text("order", q.mesh_order, q.expected_mesh_order);

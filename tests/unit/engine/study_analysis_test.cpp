@@ -140,12 +140,12 @@ TEST_CASE("differences that do not fall as the theory says give a long bar and n
 
 TEST_CASE("two meshes that differ by more than 30 % of the value are both too coarse", "[unit][study]") {
     const auto with = [](Real of_fine) {
-        return only_quantity(analyse(
-            runs_of({column("displacement_z", "m")}, {{}, {.refine = 1}, {.step = 0.5}, {.step = 0.25}},
-                    [&](const StudyVariant& v, Real t) {
-                        return std::vector<Real>{limit * t * (v.refine == 1 ? of_fine : 1)};
-                    }),
-            {}));
+        return only_quantity(
+            analyse(runs_of({column("displacement_z", "m")}, {{}, {.refine = 1}, {.step = 0.5}, {.step = 0.25}},
+                            [&](const StudyVariant& v, Real t) {
+                                return std::vector<Real>{limit * t * (v.refine == 1 ? of_fine : 1)};
+                            }),
+                    {}));
     };
     CHECK(with(1.25).verdict == StudyVerdict::known);
     const StudyQuantity coarse = with(1.4);
@@ -312,13 +312,13 @@ TEST_CASE("the rounding stress and constant energy of a free body are no results
     StudyColumn stress = column("largest_von_mises", "Pa");
     stress.node = 25;
     const std::vector<StudyColumn> columns{column("displacement_z", "m"), stress, column("kinetic", "J", "energy")};
-    const StudyResult result =
-        analyse(runs_of(columns, all_variants,
-                        [](const StudyVariant& v, Real t) {
-                            const Real rounding = 6e-11 * t * std::pow(edge(v), -1) + 3e-6 * v.draw * (t < 0.5);
-                            return std::vector<Real>{t, rounding, 0.5 * (1 + 1e-16 * t)};
-                        }),
-                {});
+    const StudyResult result = analyse(runs_of(columns, all_variants,
+                                               [](const StudyVariant& v, Real t) {
+                                                   const Real rounding =
+                                                       6e-11 * t * std::pow(edge(v), -1) + 3e-6 * v.draw * (t < 0.5);
+                                                   return std::vector<Real>{t, rounding, 0.5 * (1 + 1e-16 * t)};
+                                               }),
+                                       {});
     CHECK(only_quantity(result).name == "tip.displacement_z_end");
     CHECK(result.cheapest->reaches);
 }
