@@ -88,7 +88,8 @@ def test_wrong_settings_are_refused(scene: Path) -> None:
 def test_the_error_of_a_singular_quantity_is_infinite() -> None:
     def quantity(verdict: str) -> sk.StudyQuantity:
         numbers = dict.fromkeys(field.name for field in dataclasses.fields(sk.StudyQuantity))
-        return _quantity({**numbers, "name": "stress", "unit": "Pa", "verdict": verdict, "sentence": ""})
+        runs: dict[str, list[float]] = {"run_values": [], "run_errors": []}
+        return _quantity({**numbers, **runs, "name": "stress", "unit": "Pa", "verdict": verdict, "sentence": ""})
 
     assert math.isinf(quantity("singular").error) and math.isinf(quantity("singular").mesh)
     assert math.isnan(quantity("singular").best) and math.isnan(quantity("not_measured").error)
