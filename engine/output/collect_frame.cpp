@@ -49,9 +49,13 @@ Frame collect_frame(const World& world, FrameContent content) {
     const bool yields =
         std::ranges::any_of(WorldAccess::state_of(world).model.materials.constants, &MaterialConstants::yields);
     std::vector<MeshError> fields(bodies.size());
-    if (content >= FrameContent::node_values)
+    if (content >= FrameContent::node_stress)
         parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t b = begin; b < end; ++b) fields[b] = measure_mesh_error(world, bodies[b]);
+            for (std::size_t b = begin; b < end; ++b)
+                if (content == FrameContent::node_stress)
+                    fields[b].nodes.stress = world.node_stress(bodies[b]);
+                else
+                    fields[b] = measure_mesh_error(world, bodies[b]);
         });
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const BodyHandle body = bodies[b];
