@@ -12,8 +12,11 @@ namespace skerry {
 
 namespace {
 
-// Curvature times mean edge length at an edge or corner of a mesh, at least, and on a flat face, at most.
-constexpr Real sharp = 0.67, flat = 1e-3;
+// Angle between the normal of a node and a face above which the node lies on an edge or corner of the body [rad]. At an
+// edge of a box it is pi/4. At nodes of a coarse ball it is about half of the angle between neighbouring faces.
+constexpr Real sharp = 0.7;
+// Curvature times mean edge length below which a face counts as flat.
+constexpr Real flat = 1e-3;
 
 /// Mean curvature of a sphere or capsule; 0 for other shapes, which are flat or have sharp edges [1/m].
 Real curvature_of(const ColliderGeometry& geometry) {
@@ -41,7 +44,7 @@ Real mean_of_nodes(const Contact& contact, bool first, std::span<const Real> of_
 struct Patch {
     Real force = 0;                // [N]
     Real curvature = 0, edge = 0;  // [N/m, N m]
-    Real sharpest = 0;             // largest curvature of a contact times the edge length there
+    Real sharpest = 0;             // largest tilt of a contact [rad]
 };
 
 }  // namespace
@@ -71,6 +74,15 @@ const ContactArea::Surface& ContactArea::surface_of(const World& world, BodyHand
                 surface.edge[n] += edge.norm();
                 ++edges[n];
             }
+    surface.tilt.assign(rest.size(), 0);
+    for (const auto& [a, b, c] : world.surface(body)) {
+        const Vec3 of_face = (at(b) - at(a)).cross(at(c) - at(a)).normalized();
+        for (const Index node : {a, b, c}) {
+            const auto n = static_cast<std::size_t>(node);
+            const Real cosine = std::clamp(of_face.dot(normal[n].normalized()), Real{-1}, Real{1});
+            surface.tilt[n] = std::max(surface.tilt[n], std::acos(cosine));
+        }
+    }
     for (std::size_t n = 0; n < rest.size(); ++n) {
         if (edges[n] == 0) continue;
         surface.curvature[n] /= edges[n];
@@ -93,12 +105,21 @@ Real ContactArea::curvature_at(const World& world, const Contact& contact, bool 
     return mean_of_nodes(contact, first, surface.curvature);
 }
 
+/// Tilt of the surface of a body at a contact; 0 for colliders and round bodies [rad].
+Real ContactArea::tilt_at(const World& world, const Contact& contact, bool first) {
+    const Model& model = WorldAccess::state_of(world).model;
+    const BodyHandle body = first ? contact.first : contact.second;
+    if (!world.alive(body) || model.round_shape(static_cast<std::size_t>(model.row(body, "sample")))) return 0;
+    return mean_of_nodes(contact, first, surface_of(world, body).tilt);
+}
+
 void ContactArea::sample(const World& world) {
     std::map<std::tuple<BodyHandle, BodyHandle, ColliderHandle>, Patch> patches;
     for (const Contact& contact : world.contacts()) {
         const Real force = contact.force().norm();
         if (contact.region < 0 || !(force > 0)) continue;
         const Real curvature = curvature_at(world, contact, true) + curvature_at(world, contact, false);
+        const Real tilt = std::max(tilt_at(world, contact, true), tilt_at(world, contact, false));
         for (const bool first : {true, false}) {
             const BodyHandle body = first ? contact.first : contact.second;
             if (!world.alive(body) || world.dynamics(body) == BodyDynamics::rigid) continue;
@@ -107,7 +128,7 @@ void ContactArea::sample(const World& world) {
             patch.curvature += force * curvature;
             const Real edge = mean_of_nodes(contact, first, surface_of(world, body).edge);
             patch.edge += force * edge;
-            patch.sharpest = std::max(patch.sharpest, curvature * edge);
+            patch.sharpest = std::max(patch.sharpest, tilt);
         }
     }
     for (const auto& [objects, patch] : patches) {

@@ -22,6 +22,7 @@ private:
     struct Surface {
         std::vector<Real> curvature;  // mean curvature by node, positive if convex [1/m]
         std::vector<Real> edge;       // mean length of the edges of a node [m]
+        std::vector<Real> tilt;       // largest angle between the normal of a node and those of its faces [rad]
     };
     struct Area {
         Real force = 0;   // largest contact force with one object at a sample [N]
@@ -31,6 +32,7 @@ private:
 
     const Surface& surface_of(const World& world, BodyHandle body);
     Real curvature_at(const World& world, const Contact& contact, bool first);
+    Real tilt_at(const World& world, const Contact& contact, bool first);
 
     std::map<BodyHandle, Surface> surfaces_;
     std::map<BodyHandle, Area> areas_;

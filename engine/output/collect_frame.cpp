@@ -5,7 +5,6 @@
 #include "engine/estimate/mesh_error.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/objects.h"
-#include "engine/world/elements_of_body.h"
 #include "engine/world/world_state.h"
 #include "jobs/parallel_for.h"
 
@@ -26,15 +25,6 @@ std::vector<Index> materials_of(const World& world, BodyHandle body) {
 const BoundVisual* visual_of(const World& world, BodyHandle body) {
     const Model& model = WorldAccess::state_of(world).model;
     return model.body_records[static_cast<std::size_t>(model.row(body, "frame"))].visual.get();
-}
-
-/// Returns the fields at the nodes of a body, and if `errors` is true also their error that is due to the mesh.
-MeshError fields_at_nodes(const World& world, BodyHandle body, bool errors) {
-    if (errors) return measure_mesh_error(world, body);
-    const Model& model = WorldAccess::state_of(world).model;
-    MeshError fields;
-    fields.nodes = fields_of_nodes(model, static_cast<std::size_t>(model.row(body, "frame")));
-    return fields;
 }
 
 /// Returns a value for each cell of a body, given those of its tetrahedra. A body without tetrahedra is rigid, and its
@@ -59,10 +49,13 @@ Frame collect_frame(const World& world, FrameContent content) {
     const bool yields =
         std::ranges::any_of(WorldAccess::state_of(world).model.materials.constants, &MaterialConstants::yields);
     std::vector<MeshError> fields(bodies.size());
-    if (content >= FrameContent::node_values)
+    if (content >= FrameContent::node_stress)
         parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t b = begin; b < end; ++b)
-                fields[b] = fields_at_nodes(world, bodies[b], content >= FrameContent::node_errors);
+                if (content == FrameContent::node_stress)
+                    fields[b].nodes.stress = world.node_stress(bodies[b]);
+                else
+                    fields[b] = measure_mesh_error(world, bodies[b]);
         });
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const BodyHandle body = bodies[b];

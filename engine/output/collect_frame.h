@@ -11,8 +11,8 @@ namespace skerry {
 /// Values of the bodies in a frame. Each content includes those above it, and takes longer to collect.
 enum class FrameContent {
     motion,       // positions, velocities, contacts and lines
-    node_values,  // stress and strain by node, and the energy of the world
-    node_errors,  // error of the stress that is due to the mesh, by node; takes as long again as node_values
+    node_stress,  // stress by node
+    node_values,  // strain and error of the mesh by node, and the energy of the world
     cell_values,  // values by cell
 };
 /// Values that the content does not include are left empty.

@@ -104,6 +104,11 @@ std::string errors_text(const std::vector<ErrorEstimate>& errors) {
     };
     // The mesh changes only the displacements by deformation.
     add("", "mesh ", "the motion", [](const ErrorEstimate& of) { return of.deflection * of.deformation; });
+    const bool is_rigid_motion = std::ranges::any_of(
+        errors, [](const ErrorEstimate& of) { return of.deformation < 0.9 && !std::isnan(of.deflection); });
+    if (is_rigid_motion)
+        add(", ", text.empty() ? "mesh " : "", "the deformation",
+            [](const ErrorEstimate& of) { return of.deflection; });
     add(" and ", text.empty() ? "mesh " : "", "the largest stress", [](const ErrorEstimate& of) { return of.stress; });
     add(", ", "steps ", "the motion", [](const ErrorEstimate& of) { return of.step; });
     add(", ", "contacts ", "the forces", [](const ErrorEstimate& of) { return of.contact; });

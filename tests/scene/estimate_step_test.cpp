@@ -373,6 +373,20 @@ TEST_CASE("the gap of a box at rest on a floor is the height at which it rests",
     CHECK(errors.bodies().front().gap == Approx(lowest).epsilon(0.01));
 }
 
+TEST_CASE("the coarsest ball has a contact area", "[scene]") {
+    World world;
+    world.add_collider(Plane{});
+    const BodyHandle body = world.add_body(
+        mesh::ball(0.05, 2),
+        {.material = world.add_material({.young_modulus = 1e5}), .position = {0, 0, 0.05}, .velocity = {0, 0, -0.2}});
+    REQUIRE(world.advance(0.01).ok());
+    ContactArea area;
+    area.sample(world);
+    std::vector<ErrorEstimate> bodies{{.body = body, .name = {}}};
+    area.add_to(bodies);
+    CHECK(bodies.front().contact_radius > 0);
+}
+
 TEST_CASE("the contact area of a ball on a floor is that of Hertz, and a cube has none", "[scene]") {
     const Real radius = 0.05, young_modulus = 1e5, poisson_ratio = 0.3;  // [m], [Pa]
     World world;

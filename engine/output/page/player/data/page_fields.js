@@ -10,7 +10,7 @@ const fields = {
     name: "Equivalent strain", lower: "equivalent strain", format: (value, error) => text.percent(value, error),
   },
   error: {
-    name: "Mesh error: refine where it is large", lower: "mesh error",
+    name: "Local error of the stress: refine where it is large", lower: "mesh error",
     format: (value, error) => text.percent(value, error),
   },
 };
