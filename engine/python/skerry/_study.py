@@ -26,8 +26,8 @@ class StudyQuantity:
     contact: parts of the error from the mesh, the step length and the contact solver. noise: difference of runs whose
     start differs by 1e-12 m. best, best_error: extrapolated value and its error. scale: size to which relative errors
     refer. mesh_order, step_order: observed orders of convergence, and those of the theory, `expected`. agree_until:
-    time until which runs with a start 1e-12 m apart agree, infinite if they agree to the end [s]. run_values, run_errors:
-    value of each run and half width of its error bar, in the order of Study.runs. verdict: "known",
+    time until which runs with a start 1e-12 m apart agree, infinite if they agree to the end [s]. run_values and
+    run_errors: value of each run and half width of its error bar, in the order of Study.runs. verdict: "known",
     "irregular", "singular", "chaotic" or "not_measured". sentence: the verdict in words.
     """
 
