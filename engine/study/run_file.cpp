@@ -1,9 +1,11 @@
 #include "engine/study/run_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <ostream>
+#include <stdexcept>
 
 #include "engine/output/write_file.h"
 #include "engine/program/number_text.h"
@@ -46,6 +48,13 @@ StudyColumn column_from(const Json& json) {
     return column;
 }
 
+/// True if every column has a value for each row, and a run that ended well has rows.
+bool is_whole(const StudyRun& run) {
+    if (run.status == StudyRunStatus::ok && (run.time.empty() || run.columns.empty())) return false;
+    return std::ranges::all_of(run.columns,
+                               [&](const StudyColumn& column) { return column.values.size() == run.time.size(); });
+}
+
 /// Reads a run from the document of write_run(). Throws an exception for any other document.
 StudyRun run_from(const Json& json, const StudyVariant& variant) {
     StudyRun run;
@@ -62,6 +71,7 @@ StudyRun run_from(const Json& json, const StudyVariant& variant) {
     json.at("max_contacts").get_to(run.max_contacts);
     json.at("time").get_to(run.time);
     for (const Json& column : json.at("columns")) run.columns.push_back(column_from(column));
+    if (!is_whole(run)) throw std::invalid_argument("columns of different lengths");
     return run;
 }
 

@@ -105,6 +105,7 @@ private:
                             .status = StudyRunStatus::left_out,
                             .message = plan_[i].reason,
                             .cpu_seconds = plan_[i].cost * runs_[0].cpu_seconds};
+        refuse_other_columns();
         choose_columns();
         StudyResult result = analyse(std::move(runs_), settings_);
         if (result.cheapest)
@@ -112,11 +113,25 @@ private:
         return result;
     }
 
+    /// Refuses runs whose columns are not those of the scene, because no values of them can be compared.
+    void refuse_other_columns() {
+        const auto same = [](const StudyColumn& a, const StudyColumn& b) {
+            return a.what.probe == b.what.probe && a.what.quantity == b.what.quantity && a.what.unit == b.what.unit;
+        };
+        for (StudyRun& run : runs_) {
+            if (run.status != StudyRunStatus::ok || std::ranges::equal(run.columns, runs_[0].columns, same)) continue;
+            run.status = StudyRunStatus::refused;
+            run.message = "it has other columns than the run of the scene as it is";
+            run.columns.clear();
+            run.time.clear();
+        }
+    }
+
     /// Selects the reported columns. Without names of probes, columns that are zero throughout are left out, such as
     /// contact forces of bodies that touch nothing.
     void choose_columns() {
         for (StudyRun& run : runs_) {
-            if (run.columns.empty()) continue;  // the run is left out or was refused
+            if (run.columns.size() != runs_[0].columns.size()) continue;  // the run is left out or was refused
             choose_columns_by_name(settings_.probes, scene_.path, run.columns);
             for (std::size_t c = 0; c < run.columns.size() && settings_.probes.empty(); ++c)
                 run.columns[c].reported &= std::ranges::any_of(
@@ -125,7 +140,7 @@ private:
     }
 
     std::string inputs_of(std::size_t i) {
-        std::string inputs = hasher_.hash(runs_[i].assignments);
+        std::string inputs = hasher_.hash(runs_[i].assignments) + " version " + SKERRY_VERSION;
         if (settings_.seconds) inputs += " seconds " + Json(*settings_.seconds).dump();
         if (plan_[i].variant.draw != 0) inputs += " draw " + std::to_string(plan_[i].variant.draw);
         return inputs;

@@ -3,7 +3,10 @@
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <ostream>
 
+#include "engine/output/write_file.h"
+#include "engine/scene/parse_json.h"
 #include "engine/scene/scene_plan.h"
 #include "engine/study/plan_study.h"
 #include "engine/study/run_file.h"
@@ -149,6 +152,35 @@ TEST_CASE("a study continues with the runs in its folder, and has the numbers of
     require_same(whole, study(scene, settings));
     CHECK(std::filesystem::last_write_time(file_of("scene")) == written);
     CHECK(std::filesystem::exists(file_of("refine_1")));
+}
+
+TEST_CASE("a stored run is refused if its columns are shorter than its times") {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "run_step_0.5.json";
+    StudyRun run{.variant = {.step = 0.5}, .assignments = {}, .time = {0, 1}};
+    run.columns = {{.what = {"tip", "displacement_x", "m"}, .values = {0, 1}}};
+    write_run(folder.path(), "inputs", run);
+    CHECK(read_run(folder.path(), "inputs", run.variant).run);
+    run.columns[0].values.pop_back();
+    write_run(folder.path(), "inputs", run);
+    const StoredRun stored = read_run(folder.path(), "inputs", run.variant);
+    CHECK_FALSE(stored.run);
+    CHECK(stored.found == "run_step_0.5.json is no run of a study");
+}
+
+TEST_CASE("a stored run without some of the columns is refused, and the others are compared") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 6, .folder = folder.path() / "runs"};
+    settings.seconds = 0.02;
+    study(scene, settings);
+    const std::filesystem::path file = settings.folder / "run_step_0.5.json";
+    Json json = read_json(file);
+    json["columns"].erase(json["columns"].size() - 1);
+    write_file(file, [&](std::ostream& out) { out << json.dump(); });
+    const StudyResult result = study(scene, settings);
+    CHECK(names_of_runs(result, StudyRunStatus::refused) == std::vector<std::string>{"step_0.5"});
+    CHECK(names_of_runs(result, StudyRunStatus::ok).size() >= 3);
 }
 
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
