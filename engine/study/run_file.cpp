@@ -6,9 +6,11 @@
 #include <iterator>
 #include <ostream>
 #include <stdexcept>
+#include <system_error>
 
 #include "engine/output/write_file.h"
 #include "engine/program/number_text.h"
+#include "skerry/error.h"
 
 namespace skerry {
 
@@ -134,6 +136,25 @@ StoredRun read_run(const std::filesystem::path& folder, const std::string& input
     } catch (const std::exception&) {  // no valid JSON, or a key is missing or has another type
         return {{}, name + " is no run of a study"};
     }
+}
+
+void remove_run(const std::filesystem::path& folder, const StudyVariant& variant) {
+    const std::filesystem::path file = run_file(folder, variant);
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return;
+    const Json json = Json::parse(stream, nullptr, false);
+    const auto schema = json.is_object() ? json.find("schema") : json.end();
+    if (schema == json.end() || !schema->is_string() ||
+        !schema->get_ref<const std::string&>().starts_with("skerry.study_run/"))
+        Complaint{.file = file.string(),
+                  .object = "study",
+                  .field = "folder",
+                  .found = "a file that is no run of a study",
+                  .expected = "runs of a study, which are replaced",
+                  .hint = "choose another folder"}
+            .raise();
+    std::error_code ignored;  // a file that remains is refused when it is read
+    std::filesystem::remove(file, ignored);
 }
 
 }  // namespace skerry

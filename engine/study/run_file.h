@@ -24,6 +24,9 @@ struct StoredRun {
 };
 StoredRun read_run(const std::filesystem::path& folder, const std::string& inputs, const StudyVariant& variant);
 
+/// Removes the file of a run, if there is one. Throws SceneError if the file holds anything else than a run of a study.
+void remove_run(const std::filesystem::path& folder, const StudyVariant& variant);
+
 Json variant_json(const StudyVariant& variant);
 /// JSON document of a run without its time series.
 Json run_json(const StudyRun& run);

@@ -53,15 +53,17 @@ public:
         : settings_(settings),
           threads_(settings.threads > 0 ? settings.threads : core_count()),
           budget_(settings.budget.value_or(usual_budget)),
+          hasher_(path),
           scene_(read_studied_scene(path, settings)),
-          plan_(plan_study(scene_)),
-          hasher_(path) {
+          plan_(plan_study(scene_)) {
         runs_.resize(plan_.size());
         inputs_.resize(plan_.size());
         shares_ = std::vector<std::atomic<double>>(plan_.size());
     }
 
     StudyResult run() {
+        if (settings_.redo && !settings_.folder.empty())
+            for (const PlannedRun& planned : plan_) remove_run(settings_.folder, planned.variant);
         make_runs(0, independent_runs);
         if (!stop_ && runs_[0].status == StudyRunStatus::ok) {
             drop_pointless();
@@ -139,19 +141,18 @@ private:
         }
     }
 
-    std::string inputs_of(std::size_t i) {
-        std::string inputs = hasher_.hash(runs_[i].assignments) + " version " + SKERRY_VERSION;
+    std::string inputs_of(std::size_t i, CaseHasher& hasher) const {
+        std::string inputs = hasher.hash(runs_[i].assignments) + " version " + SKERRY_VERSION;
         if (settings_.seconds) inputs += " seconds " + Json(*settings_.seconds).dump();
         if (plan_[i].variant.draw != 0) inputs += " draw " + std::to_string(plan_[i].variant.draw);
         return inputs;
     }
 
-    /// Reads the run from the folder. Returns true if the folder has it. Throws SceneError if the file has another run,
-    /// unless it may be replaced.
+    /// Reads the run from the folder. Returns true if the folder has it. Throws SceneError if the file has another run.
     bool read_stored(std::size_t i) {
         if (settings_.folder.empty()) return false;
         StoredRun stored = read_run(settings_.folder, inputs_[i], plan_[i].variant);
-        if (!stored.found.empty() && !settings_.redo)
+        if (!stored.found.empty())
             Complaint{.file = settings_.folder.string(),
                       .object = "study",
                       .field = "folder",
@@ -170,7 +171,7 @@ private:
         for (std::size_t i = first; i < end; ++i) {
             if (!plan_[i].reason.empty()) continue;
             runs_[i].assignments = variant_assignments(scene_, plan_[i].variant, mean_step_);
-            inputs_[i] = inputs_of(i);
+            inputs_[i] = inputs_of(i, hasher_);
             if (read_stored(i))
                 finish(i);
             else
@@ -202,6 +203,19 @@ private:
             watch_period, [&] { watch(); });
     }
 
+    /// Throws SceneError if the files of the scene are not those with which the study began.
+    void require_unchanged(std::size_t i) const {
+        CaseHasher now(scene_.path);
+        if (inputs_of(i, now) == inputs_[i]) return;
+        Complaint{.file = scene_.path.string(),
+                  .object = "study",
+                  .field = "scene",
+                  .found = "that the scene or one of its files changed while the study ran",
+                  .expected = "the same content for all runs",
+                  .hint = "runs that ended before the change are kept; undo the change to continue, or begin again"}
+            .raise();
+    }
+
     void make_run(std::size_t i, int threads_of_run) {
         if (stop_) return;
         ++running_;
@@ -212,9 +226,11 @@ private:
         if (threads_of_run == 1) job.overrides.backend = Backend::serial;
         job.overrides.assignments = runs_[i].assignments;
         job.overrides.fill_python = settings_.fill_python;
+        require_unchanged(i);
         const bool whole = run_variant(job, stop_, shares_[i], runs_[i]);
         --running_;
         if (!whole) return;
+        require_unchanged(i);
         if (!settings_.folder.empty()) write_run(settings_.folder, inputs_[i], runs_[i]);
         finish(i);
     }
@@ -247,9 +263,9 @@ private:
     const StudySettings& settings_;
     const int threads_;
     double budget_;
+    CaseHasher hasher_;  // before `scene_`, so that each change since the scene was read is found
     const StudiedScene scene_;
     std::vector<PlannedRun> plan_;
-    CaseHasher hasher_;
     Real mean_step_ = 0;  // of the scene as it is [s]
     // The following are indexed as the plan.
     std::vector<StudyRun> runs_;

@@ -183,6 +183,46 @@ TEST_CASE("a stored run without some of the columns is refused, and the others a
     CHECK(names_of_runs(result, StudyRunStatus::ok).size() >= 3);
 }
 
+TEST_CASE("a scene that changes while its study runs ends the study") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
+    settings.seconds = 0.02;
+    bool changed = false;
+    settings.go_on = [&](const StudyProgress& progress) {
+        if (progress.runs_done > 0 && !changed) {
+            std::string other = bar;
+            folder.write("bar.json", other.replace(other.find("1e5"), 3, "3e5"));
+            changed = true;
+        }
+        return true;
+    };
+    settings.seconds = 2;  // long enough for a call of go_on between the runs
+    CHECK(message_of(scene, settings).find("changed while the study ran") != std::string::npos);
+    for (const auto& file : std::filesystem::directory_iterator(settings.folder))
+        CHECK(file.path().filename() != "run_draw_2.json");
+}
+
+TEST_CASE("a study that is made again replaces runs only, and all of them") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
+    settings.seconds = 0.02;
+    const StudyResult whole = study(scene, settings);
+    Json json = read_json(settings.folder / "run_scene.json");
+    json["steps"] = 1;
+    const auto write_json = [&](const Json& content) {
+        write_file(settings.folder / "run_scene.json", [&](std::ostream& out) { out << content.dump(); });
+    };
+    write_json(json);
+    settings.redo = true;
+    CHECK(study(scene, settings).runs[0].steps == whole.runs[0].steps);
+    write_json({{"name", "a scene of the user"}});
+    CHECK(message_of(scene, settings).find("run_scene.json: study: folder: found a file that is no run of a study") !=
+          std::string::npos);
+    CHECK(read_json(settings.folder / "run_scene.json").contains("name"));
+}
+
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
