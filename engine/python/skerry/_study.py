@@ -163,7 +163,7 @@ def study(
     of the scene [s]. overrides: as for load_scene(). threads: number of threads, 0: all cores. budget: largest time of
     the study, divided by that of one run with one thread; finer meshes and other runs that do not fit are left out,
     default: 15, or more as long as the study takes less than 5 s. folder: keeps the runs; a later
-    study of the same scene continues with them. redo: True replaces runs of another scene in the folder. progress: True
+    study of the same scene continues with them. redo: True makes all runs again and replaces those in the folder. progress: True
     writes the share that is done to the standard error output; a function is called with this share and the numbers of
     the runs that are done and of all runs.
 

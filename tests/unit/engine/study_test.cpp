@@ -187,7 +187,7 @@ TEST_CASE("a scene that changes while its study runs ends the study") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
     StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
-    settings.seconds = 0.02;
+    settings.seconds = 2;  // long enough for a call of go_on between the runs
     bool changed = false;
     settings.go_on = [&](const StudyProgress& progress) {
         if (progress.runs_done > 0 && !changed) {
@@ -197,7 +197,6 @@ TEST_CASE("a scene that changes while its study runs ends the study") {
         }
         return true;
     };
-    settings.seconds = 2;  // long enough for a call of go_on between the runs
     CHECK(message_of(scene, settings).find("changed while the study ran") != std::string::npos);
     for (const auto& file : std::filesystem::directory_iterator(settings.folder))
         CHECK(file.path().filename() != "run_draw_2.json");
