@@ -63,6 +63,14 @@ class StudyTest(ProgramCase):
         scene = self.write("study.json", SCENE)
         self.assert_refused("study", scene, "--out", self.folder, said=["study.json", "SCENE"])
 
+    def test_files_that_the_scene_includes_are_no_outputs(self):
+        self.out.mkdir()
+        included = self.out / "cheapest.json"
+        included.write_text(json.dumps(SCENE))
+        scene = self.write("whole.json", {"include": ["results/cheapest.json"]})
+        self.assert_refused("study", scene, "--out", self.out, said=["cheapest.json", "a file of SCENE"])
+        self.assertEqual(json.loads(included.read_text()), SCENE)
+
     def test_runs_of_another_scene_are_replaced_only_on_request(self):
         self.study("--seconds", 0.01, "--budget", 4)
         refused = self.study("--seconds", 0.02, "--budget", 4, code=2)
