@@ -160,7 +160,7 @@ private:
                       .expected = "runs of " + scene_.path.string() + " in its present version, with these settings",
                       .hint = "add --redo to replace these runs, or choose another folder with --out"}
                 .raise();
-        if (!stored.run) return false;
+        if (!stored.run || stored.run->status == StudyRunStatus::refused) return false;
         runs_[i] = std::move(*stored.run);
         return true;
     }
@@ -231,7 +231,9 @@ private:
         --running_;
         if (!whole) return;
         require_unchanged(i);
-        if (!settings_.folder.empty()) write_run(settings_.folder, inputs_[i], runs_[i]);
+        // A refused scene is not stored: the reason may be a missing program or too little memory at the moment.
+        if (!settings_.folder.empty() && runs_[i].status != StudyRunStatus::refused)
+            write_run(settings_.folder, inputs_[i], runs_[i]);
         finish(i);
     }
 

@@ -222,6 +222,18 @@ TEST_CASE("a study that is made again replaces runs only, and all of them") {
     CHECK(read_json(settings.folder / "run_scene.json").contains("name"));
 }
 
+TEST_CASE("a refused run is made again by the next study") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
+    settings.seconds = 0.02;
+    study(scene, settings);
+    Json json = read_json(settings.folder / "run_draw_1.json");
+    json["status"] = "refused";
+    write_file(settings.folder / "run_draw_1.json", [&](std::ostream& out) { out << json.dump(); });
+    CHECK(study(scene, settings).runs[1].status == StudyRunStatus::ok);
+}
+
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
