@@ -19,8 +19,8 @@ struct StudiedScene {
     std::vector<std::string> assignments;  // changes that all runs share
     SceneLevels levels;
     Settings settings;
-    bool has_explicit = false, has_implicit = false;  // kinds of deformable bodies
-    double longest_call = 0;                          // longest simulated time of a call of advance [s]
+    bool has_explicit = false;  // true if a body is deformable and explicit
+    double longest_call = 0;    // longest simulated time of a call of advance [s]
 };
 
 /// Reads and builds the scene, and checks the names of the probes. Throws SceneError.

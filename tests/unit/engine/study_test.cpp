@@ -234,6 +234,19 @@ TEST_CASE("a refused run is made again by the next study") {
     CHECK(study(scene, settings).runs[1].status == StudyRunStatus::ok);
 }
 
+TEST_CASE("the runs with other steps have as many steps as their names say") {
+    const TemporaryFolder folder;
+    std::string implicit = bar;
+    implicit.insert(implicit.find("\"pin\""), R"("dynamics": "implicit", )");
+    // The steps are shorter than implicit_step, because 0.01 s are no multiple of it.
+    const StudySettings settings{.probes = {"tip"}, .assignments = {"settings.implicit_step=0.0011"}, .threads = 1};
+    const StudyResult result = study(folder.write("implicit.json", implicit), settings);
+    REQUIRE(result.runs[0].steps == 100);
+    for (const StudyRun& run : result.runs)
+        if (run.status == StudyRunStatus::ok)
+            CHECK(static_cast<Real>(run.steps) * run.variant.step == 100);
+}
+
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
