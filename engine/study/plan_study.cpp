@@ -56,18 +56,20 @@ Real mean_implicit_step(const StudiedScene& scene, Real mean_step) {
 }  // namespace
 
 StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySettings& settings) {
+    std::vector<std::string> assignments = settings.assignments;
+    if (settings.seconds) assignments.push_back("seconds=" + number_json(*settings.seconds));
     StudiedScene studied{.path = path,
-                         .file = read_scene_file(path, settings.assignments),
-                         .assignments = settings.assignments,
+                         .file = read_scene_file(path, assignments),
+                         .assignments = assignments,
                          .levels = {},
                          .settings = {}};
     studied.levels = levels_of(studied.file, path);
     SceneOverrides overrides{.threads = 1};
-    overrides.assignments = settings.assignments;
+    overrides.assignments = assignments;
     overrides.fill_python = settings.fill_python;
     Scene scene = load_scene(path, overrides);
     studied.settings = scene.world.settings();
-    studied.longest_call = plan_run(scene, path, settings.seconds).longest_call();
+    studied.longest_call = plan_run(scene, path, {}).longest_call();
     for (const BodyHandle body : scene.world.bodies())
         studied.has_explicit |= scene.world.dynamics(body) == BodyDynamics::explicit_elastic;
     std::vector<StudyColumn> columns = StudyRecorder(scene).columns();

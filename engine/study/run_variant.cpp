@@ -25,7 +25,7 @@ class VariantRun {
 public:
     VariantRun(const VariantJob& job, const std::atomic<bool>& stop, std::atomic<double>& share, StudyRun& run)
         : scene_(load_scene(job.scene, job.overrides)),
-          plan_(plan_run(scene_, job.scene, job.seconds)),
+          plan_(plan_run(scene_, job.scene, {})),
           recorder_(scene_),
           one_thread_(job.overrides.threads == 1),
           stop_(stop),

@@ -143,7 +143,6 @@ private:
 
     std::string inputs_of(std::size_t i, CaseHasher& hasher) const {
         std::string inputs = hasher.hash(runs_[i].assignments) + " version " + SKERRY_VERSION;
-        if (settings_.seconds) inputs += " seconds " + Json(*settings_.seconds).dump();
         if (plan_[i].variant.draw != 0) inputs += " draw " + std::to_string(plan_[i].variant.draw);
         return inputs;
     }
@@ -220,7 +219,6 @@ private:
         if (stop_) return;
         ++running_;
         VariantJob job{.scene = scene_.path,
-                       .seconds = settings_.seconds,
                        .overrides = {.threads = threads_of_run},
                        .variant = plan_[i].variant};
         if (threads_of_run == 1) job.overrides.backend = Backend::serial;

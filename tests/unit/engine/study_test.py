@@ -37,9 +37,11 @@ class StudyTest(ProgramCase):
         stats = self.folder / "stats.json"
         finer = next(run for run in study["runs"] if run["name"] == "step_0.5")
         options = [option for text in finer["set"] for option in ("--set", text)]
-        self.skerry("run", self.scene, "--seconds", 0.05, *options, "--quiet", "--stats", stats)
+        self.assertIn("seconds=0.05", finer["set"])
+        self.skerry("run", self.scene, *options, "--quiet", "--stats", stats)
         self.assertEqual(json.loads(stats.read_text())["state_hash"], finer["state_hash"])
-        self.skerry("run", self.out / "cheapest.json", "--quiet", "--seconds", 0.05)
+        self.assertEqual(json.loads((self.out / "cheapest.json").read_text())["seconds"], 0.05)
+        self.skerry("run", self.out / "cheapest.json", "--quiet")
         again = self.study("--error", "0.5", "--probe", "block.displacement_z", "--seconds", 0.05, "--quiet")
         self.assertEqual((again.stdout, again.stderr), ("", ""))
 
