@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <new>
 #include <random>
 
 #include "engine/scene/run_plan.h"
@@ -123,8 +124,13 @@ bool run_variant(const VariantJob& job, const std::atomic<bool>& stop, std::atom
     } catch (const SceneError& error) {
         run.status = StudyRunStatus::refused;
         run.message = error.what();
-        return true;
+    } catch (const std::bad_alloc&) {
+        run.status = StudyRunStatus::refused;
+        run.message = "there is not enough memory for it";
+        run.time.clear();
+        run.columns.clear();
     }
+    return true;
 }
 
 }  // namespace skerry
