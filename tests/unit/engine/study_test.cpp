@@ -8,6 +8,7 @@
 #include "engine/output/write_file.h"
 #include "engine/scene/parse_json.h"
 #include "engine/scene/scene_plan.h"
+#include "engine/scene/write_scene.h"
 #include "engine/study/plan_study.h"
 #include "engine/study/run_file.h"
 #include "engine/study/run_variant.h"
@@ -245,6 +246,17 @@ TEST_CASE("the runs with other steps have as many steps as their names say") {
     for (const StudyRun& run : result.runs)
         if (run.status == StudyRunStatus::ok)
             CHECK(static_cast<Real>(run.steps) * run.variant.step == 100);
+}
+
+TEST_CASE("a scene that is written through a symbolic link names the same files") {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder.path() / "deep" / "real");
+    std::filesystem::create_directory_symlink(folder.path() / "deep" / "real", folder.path() / "link");
+    folder.write("m.msh", "mesh");
+    const std::filesystem::path scene = folder.path() / "link" / "cheapest.json";
+    CHECK(path_in_scene(folder.path() / "m.msh", scene) == "../../m.msh");
+    CHECK(std::filesystem::equivalent(scene.parent_path() / path_in_scene(folder.path() / "m.msh", scene),
+                                      folder.path() / "m.msh"));
 }
 
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
