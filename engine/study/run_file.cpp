@@ -1,6 +1,11 @@
 #include "engine/study/run_file.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -112,6 +117,33 @@ Json run_json(const StudyRun& run) {
             {"state_hash", hash_text(run.state_hash)},
             {"tetrahedra", run.tetrahedra},
             {"max_contacts", run.max_contacts}};
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder) {
+    if (folder.empty()) return;
+    const auto refuse = [&](const std::string& found, const std::string& expected, const std::string& hint) {
+        Complaint{.file = folder.string(),
+                  .object = "study",
+                  .field = "folder",
+                  .found = found,
+                  .expected = expected,
+                  .hint = hint}
+            .raise();
+    };
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) refuse("the error \"" + error.message() + "\"", "a folder that exists or can be created", {});
+    file_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    // File systems without locks have other errors, and are used without a lock.
+    if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        close(file_);
+        refuse("a folder in which another study runs", "a folder of one study at a time",
+               "wait for the other study, or choose another folder");
+    }
+}
+
+FolderLock::~FolderLock() {
+    if (file_ >= 0) close(file_);
 }
 
 void write_run(const std::filesystem::path& folder, const std::string& inputs, const StudyRun& run) {

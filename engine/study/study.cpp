@@ -55,7 +55,8 @@ public:
           budget_(settings.budget.value_or(usual_budget)),
           hasher_(path),
           scene_(read_studied_scene(path, settings)),
-          plan_(plan_study(scene_)) {
+          plan_(plan_study(scene_)),
+          lock_(settings.folder) {
         runs_.resize(plan_.size());
         inputs_.resize(plan_.size());
         shares_ = std::vector<std::atomic<double>>(plan_.size());
@@ -266,6 +267,7 @@ private:
     CaseHasher hasher_;  // before `scene_`, so that each change since the scene was read is found
     const StudiedScene scene_;
     std::vector<PlannedRun> plan_;
+    const FolderLock lock_;  // after `scene_`, so that an invalid scene creates no folder
     Real mean_step_ = 0;  // of the scene as it is [s]
     // The following are indexed as the plan.
     std::vector<StudyRun> runs_;

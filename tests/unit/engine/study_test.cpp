@@ -259,6 +259,19 @@ TEST_CASE("a scene that is written through a symbolic link names the same files"
                                       folder.path() / "m.msh"));
 }
 
+TEST_CASE("a folder has one study at a time") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
+    settings.seconds = 0.02;
+    {
+        const FolderLock other(settings.folder);
+        CHECK(message_of(scene, settings).find("runs: study: folder: found a folder in which another study runs") !=
+              std::string::npos);
+    }
+    CHECK(message_of(scene, settings).empty());
+}
+
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
