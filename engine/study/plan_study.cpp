@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "engine/scene/run_plan.h"
@@ -133,9 +134,10 @@ std::vector<std::string> variant_assignments(const StudiedScene& scene, const St
     }
     if (variant.tolerance != 1) {
         assignments.push_back("settings.tolerance=" + number_json(scene.settings.tolerance * variant.tolerance));
-        constexpr int more = 10;
+        constexpr int more = 10, most = std::numeric_limits<int>::max() / more;
         if (variant.tolerance < 1)
-            assignments.push_back("settings.max_iterations=" + std::to_string(scene.settings.max_iterations * more));
+            assignments.push_back("settings.max_iterations=" +
+                                  std::to_string(std::min(scene.settings.max_iterations, most) * more));
     }
     const auto add = [&](std::vector<std::string> more) { std::ranges::move(more, std::back_inserter(assignments)); };
     if (variant.refine != 0) add(scene.levels.assignments(variant.refine));

@@ -272,6 +272,12 @@ TEST_CASE("a folder has one study at a time") {
     CHECK(message_of(scene, settings).empty());
 }
 
+TEST_CASE("the largest number of iterations of a study is a valid number") {
+    StudiedScene scene{.path = {}, .file = {}, .assignments = {}, .levels = {}, .settings = {}};
+    scene.settings.max_iterations = 300'000'000;
+    CHECK(variant_assignments(scene, {.tolerance = 0.01}, 1e-3).back() == "settings.max_iterations=2147483640");
+}
+
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
