@@ -130,15 +130,23 @@ private:
         }
     }
 
-    /// Selects the reported columns. Without names of probes, columns that are zero throughout are left out, such as
+    /// True if a run has a value other than zero in the column.
+    bool has_values(std::size_t column) const {
+        return std::ranges::any_of(runs_, [&](const StudyRun& run) {
+            return run.columns.size() == runs_[0].columns.size() &&
+                   std::ranges::any_of(run.columns[column].values,
+                                       [](Real value) { return std::isfinite(value) && value != 0; });
+        });
+    }
+
+    /// Selects the reported columns. Without names of probes, columns that are zero in all runs are left out, such as
     /// contact forces of bodies that touch nothing.
     void choose_columns() {
         for (StudyRun& run : runs_) {
             if (run.columns.size() != runs_[0].columns.size()) continue;  // the run is left out or was refused
             choose_columns_by_name(settings_.probes, scene_.path, run.columns);
             for (std::size_t c = 0; c < run.columns.size() && settings_.probes.empty(); ++c)
-                run.columns[c].reported &= std::ranges::any_of(
-                    runs_[0].columns[c].values, [](Real value) { return std::isfinite(value) && value != 0; });
+                run.columns[c].reported &= has_values(c);
         }
     }
 
