@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <mutex>
 #include <utility>
 
 #include "engine/scene/case_hash.h"
@@ -79,6 +80,7 @@ public:
                                        ". Correct it first; no errors were determined.");
             result.runs.assign(runs_.begin(), runs_.begin() + independent_runs);
         }
+        if (!lost_.empty()) result.sentences.insert(result.sentences.begin(), lost_);
         result.scene = scene_.file.name;
         return result;
     }
@@ -238,10 +240,21 @@ private:
         --running_;
         if (!whole) return;
         require_unchanged(i);
-        // A refused scene is not stored: the reason may be a missing program or too little memory at the moment.
-        if (!settings_.folder.empty() && runs_[i].status != StudyRunStatus::refused)
-            write_run(settings_.folder, inputs_[i], runs_[i]);
+        store(i);
         finish(i);
+    }
+
+    /// Writes the run into the folder. The study goes on if this is impossible, because its results do not need the
+    /// files.
+    void store(std::size_t i) {
+        // A refused scene is not stored: the reason may be a missing program or too little memory at the moment.
+        if (settings_.folder.empty() || runs_[i].status == StudyRunStatus::refused) return;
+        try {
+            write_run(settings_.folder, inputs_[i], runs_[i]);
+        } catch (const SceneError& error) {
+            const std::lock_guard lock(lost_mutex_);
+            if (lost_.empty()) lost_ = std::string("Not all runs could be kept in the folder: ") + error.what() + ".";
+        }
     }
 
     void finish(std::size_t i) {
@@ -281,6 +294,8 @@ private:
     std::vector<StudyRun> runs_;
     std::vector<std::string> inputs_;          // texts that identify all inputs of a run
     std::vector<std::atomic<double>> shares_;  // simulated shares of the durations
+    std::mutex lost_mutex_;
+    std::string lost_;  // sentence on the first run that could not be written; else empty
     std::atomic<int> done_{0}, running_{0};
     std::atomic<bool> stop_{false};
 };

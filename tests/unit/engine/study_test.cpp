@@ -278,6 +278,20 @@ TEST_CASE("the largest number of iterations of a study is a valid number") {
     CHECK(variant_assignments(scene, {.tolerance = 0.01}, 1e-3).back() == "settings.max_iterations=2147483640");
 }
 
+TEST_CASE("a study whose runs cannot be written has results all the same") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
+    settings.seconds = 0.02;
+    std::filesystem::create_directories(settings.folder);
+    std::filesystem::create_symlink(scene / "run.json", settings.folder / "run_draw_1.json");  // `scene` is no folder
+    const StudyResult result = study(scene, settings);
+    CHECK_FALSE(result.quantities.empty());
+    CHECK(std::ranges::any_of(result.sentences, [](const std::string& sentence) {
+        return sentence.starts_with("Not all runs could be kept in the folder: ");
+    }));
+}
+
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
