@@ -121,24 +121,18 @@ Json run_json(const StudyRun& run) {
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
     if (folder.empty()) return;
-    const auto refuse = [&](const std::string& found, const std::string& expected, const std::string& hint) {
-        Complaint{.file = folder.string(),
-                  .object = "study",
-                  .field = "folder",
-                  .found = found,
-                  .expected = expected,
-                  .hint = hint}
-            .raise();
-    };
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) refuse("the error \"" + error.message() + "\"", "a folder that exists or can be created", {});
+    make_folder(folder);
     file_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     // File systems without locks have other errors, and are used without a lock.
     if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         close(file_);
-        refuse("a folder in which another study runs", "a folder of one study at a time",
-               "wait for the other study, or choose another folder");
+        Complaint{.file = folder.string(),
+                  .object = "study",
+                  .field = "folder",
+                  .found = "a folder in which another study runs",
+                  .expected = "a folder of one study at a time",
+                  .hint = "wait for the other study, or choose another folder"}
+            .raise();
     }
 }
 
