@@ -22,12 +22,12 @@ from ._scene import Json, Path, assignments_of
 class StudyQuantity:
     """A number with its error bar. Values that were not measured are NaN.
 
-    name, unit: name and SI unit. value: value of the scene as it is. error: half width of its error bar. mesh, step,
-    contact: parts of the error from the mesh, the step length and the contact solver. noise: difference of runs whose
-    start differs by 1e-12 m. best, best_error: extrapolated value and its error. scale: size to which relative errors
-    refer. mesh_order, step_order: observed orders of convergence, and those of the theory, `expected`. agree_until:
-    time until which runs with a start 1e-12 m apart agree, infinite if they agree to the end [s]. verdict: "known",
-    "irregular", "singular", "chaotic" or "not_measured". sentence: the verdict in words.
+    name, unit: name and SI unit. value: value of the scene as it is. error: half width of its error bar, infinite for a
+    singular stress. mesh, step, contact: parts of the error from the mesh, the step length and the contact solver.
+    noise: difference of runs whose start differs by 1e-12 m. best, best_error: extrapolated value and its error. scale:
+    size to which relative errors refer. mesh_order, step_order: observed orders of convergence, and those of the
+    theory, `expected`. agree_until: time until which runs with a start 1e-12 m apart agree, infinite if they agree to
+    the end [s]. verdict: "known", "irregular", "singular", "chaotic" or "not_measured". sentence: the verdict in words.
     """
 
     name: str
@@ -198,8 +198,9 @@ def _show(share: float, done: int, total: int) -> None:
 
 
 def _quantity(values: dict[str, Any]) -> StudyQuantity:
-    """A number that is not finite is None in JSON."""
-    absent = {key: math.inf if key == "agree_until" else math.nan for key, value in values.items() if value is None}
+    """A number that is not finite is None in JSON: an infinite one in the following keys, else an unknown one."""
+    infinite = ("agree_until", "error", "mesh") if values["verdict"] == "singular" else ("agree_until",)
+    absent = {key: math.inf if key in infinite else math.nan for key, value in values.items() if value is None}
     return StudyQuantity(**{**values, **absent})
 
 
