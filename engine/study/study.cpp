@@ -37,12 +37,13 @@ void check_settings(const StudySettings& settings) {
     require_positive("error", settings.error, "a relative error > 0, for example 0.01");
     if (settings.budget) require_positive("budget", *settings.budget, "a number > 0");
     if (settings.seconds) require_positive("seconds", *settings.seconds, "a time > 0 (s)");
-    if (settings.threads < 0)
+    constexpr int most_threads = 1024;
+    if (settings.threads < 0 || settings.threads > most_threads)
         Complaint{.file = {},
                   .object = "study",
                   .field = "threads",
                   .found = std::to_string(settings.threads),
-                  .expected = "a number of threads >= 0 (0: the number of cores)",
+                  .expected = "a number of threads from 0 to 1024 (0: the number of cores)",
                   .hint = {}}
             .raise();
 }

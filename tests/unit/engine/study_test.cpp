@@ -318,8 +318,10 @@ TEST_CASE("wrong settings of a study are refused by name") {
     CHECK(message_of(scene, settings).find("error") != std::string::npos);
     settings = {.budget = -1};
     CHECK(message_of(scene, settings).find("budget") != std::string::npos);
-    settings = {.threads = -1};
-    CHECK(message_of(scene, settings).find("threads") != std::string::npos);
+    for (const int threads : {-1, 1'000'000'000}) {
+        settings = {.threads = threads};
+        CHECK(message_of(scene, settings).find("threads: found " + std::to_string(threads)) != std::string::npos);
+    }
     settings = {};
     settings.seconds = 0;
     CHECK(message_of(scene, settings).find("seconds") != std::string::npos);
