@@ -169,7 +169,7 @@ private:
                       .field = "folder",
                       .found = stored.found,
                       .expected = "runs of " + scene_.path.string() + " in its present version, with these settings",
-                      .hint = "add --redo to replace these runs, or choose another folder with --out"}
+                      .hint = "choose another folder, or redo to replace runs of studies"}
                 .raise();
         if (!stored.run || stored.run->status == StudyRunStatus::refused) return false;
         runs_[i] = std::move(*stored.run);

@@ -304,7 +304,7 @@ TEST_CASE("runs of another scene are refused unless they may be replaced") {
           std::string::npos);
     settings.seconds = 0.02;
     settings.assignments = {"materials.rubber.E=2e5"};
-    CHECK(message_of(scene, settings).find("--redo") != std::string::npos);
+    CHECK(message_of(scene, settings).find("redo") != std::string::npos);
     settings.redo = true;
     CHECK(study(scene, settings).runs[0].assignments ==
           std::vector<std::string>{"materials.rubber.E=2e5", "seconds=0.02"});

@@ -76,7 +76,7 @@ class StudyTest(ProgramCase):
     def test_runs_of_another_scene_are_replaced_only_on_request(self):
         self.study("--seconds", 0.01, "--budget", 4)
         refused = self.study("--seconds", 0.02, "--budget", 4, code=2)
-        self.assertIn("--redo", refused.stderr)
+        self.assertIn("redo", refused.stderr)
         self.study("--seconds", 0.02, "--budget", 4, "--redo")
 
     def test_a_scene_that_fails_has_exit_code_1(self):
