@@ -189,12 +189,12 @@ def study(
         called,
     )
     if called is _show:
-        print("\r100 %", file=sys.stderr)
+        print("\r\033[K100 %", file=sys.stderr)
     return Study(core, file)
 
 
 def _show(share: float, done: int, total: int) -> None:
-    print(f"\r{100 * share:.0f} %, {done} of {total} runs", end="", file=sys.stderr, flush=True)
+    print(f"\r\033[K{100 * share:.0f} %, {done} of {total} runs", end="", file=sys.stderr, flush=True)
 
 
 def _quantity(values: dict[str, Any]) -> StudyQuantity:
