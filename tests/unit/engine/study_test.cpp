@@ -292,6 +292,17 @@ TEST_CASE("a study whose runs cannot be written has results all the same") {
     }));
 }
 
+TEST_CASE("a study has the largest stress at a probe of contacts") {
+    const TemporaryFolder folder;
+    std::string probed = bar;
+    probed.insert(probed.rfind("]}"), R"(, {"name": "end", "body": "arm", "quantity": "contacts",
+        "box": {"lower": [0.099, -1, -1], "upper": [1, 1, 1]}})");
+    StudySettings settings{.probes = {"end"}, .threads = 1, .budget = 4};
+    settings.seconds = 0.02;
+    const StudyResult result = study(folder.write("bar.json", probed), settings);
+    CHECK(quantity(result, "end.largest_von_mises_end").value > 0);
+}
+
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
