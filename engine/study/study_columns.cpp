@@ -226,7 +226,7 @@ void choose_columns_by_name(const std::vector<std::string>& names, const std::fi
         for (StudyColumn& column : columns) {
             const std::string full = column.what.probe + "." + column.what.quantity;
             const bool chosen = column.what.probe == name || full == name ||
-                                (name.find('.') != std::string::npos && full.starts_with(name + "_"));
+                                (name.starts_with(column.what.probe + ".") && full.starts_with(name + "_"));
             column.reported |= chosen;
             found |= chosen;
         }

@@ -12,6 +12,7 @@
 #include "engine/study/plan_study.h"
 #include "engine/study/run_file.h"
 #include "engine/study/run_variant.h"
+#include "engine/study/study_columns.h"
 #include "skerry/error.h"
 #include "skerry/study.h"
 #include "tests/support/temporary_folder.h"
@@ -301,6 +302,14 @@ TEST_CASE("a study has the largest stress at a probe of contacts") {
     settings.seconds = 0.02;
     const StudyResult result = study(folder.write("bar.json", probed), settings);
     CHECK(quantity(result, "end.largest_von_mises_end").value > 0);
+}
+
+TEST_CASE("the name of a body with a dot chooses no other body") {
+    std::vector<StudyColumn> columns{{.what = {"a.b", "force_x", "N"}}, {.what = {"a.b_1", "force_x", "N"}}};
+    choose_columns_by_name({"a.b"}, "scene.json", columns);
+    CHECK((columns[0].reported && !columns[1].reported));
+    choose_columns_by_name({"a.b_1.force"}, "scene.json", columns);
+    CHECK((!columns[0].reported && columns[1].reported));
 }
 
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
