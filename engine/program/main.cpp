@@ -13,9 +13,9 @@
 #include <malloc.h>
 #endif
 
+#include "engine/output/number_text.h"
 #include "engine/program/commands.h"
 #include "engine/program/examples.h"
-#include "engine/program/number_text.h"
 #include "engine/program/output_formats.h"
 #include "engine/program/sweep/cases/sweep_file.h"
 #include "engine/scene/place.h"
@@ -384,7 +384,7 @@ void add_study(CLI::App& app, StudyOptions& options) {
         .add_option(
             "--threads,--jobs", options.settings.threads,
             "number of threads of the study; 0: one per core. The runs have one thread each, except very long ones")
-        ->check(CLI::Range(0, 1024));
+        ->check(within(0, 1024));
     add_number(
         command, "--budget", options.settings.budget,
         "largest wall time of the study, divided by that of one run with one thread; finer meshes and other runs "

@@ -4,9 +4,10 @@
 #include <fstream>
 #include <iterator>
 #include <ostream>
+#include <stdexcept>
 
+#include "engine/output/number_text.h"
 #include "engine/output/write_file.h"
-#include "engine/program/number_text.h"
 
 namespace skerry {
 
@@ -61,7 +62,10 @@ StudyRun run_from(const Json& json, const StudyVariant& variant) {
     json.at("tetrahedra").get_to(run.tetrahedra);
     json.at("max_contacts").get_to(run.max_contacts);
     json.at("time").get_to(run.time);
-    for (const Json& column : json.at("columns")) run.columns.push_back(column_from(column));
+    for (const Json& column : json.at("columns")) {
+        run.columns.push_back(column_from(column));
+        if (run.columns.back().values.size() != run.time.size()) throw std::length_error("a column lacks values");
+    }
     return run;
 }
 

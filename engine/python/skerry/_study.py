@@ -20,13 +20,14 @@ from ._scene import Json, Path, assignments_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StudyQuantity:
-    """A number with its error bar. Values that were not measured are NaN.
+    """A number with its error bar. Values that were not measured are NaN. The error of a singular quantity is infinite.
 
     name, unit: name and SI unit. value: value of the scene as it is. error: half width of its error bar. mesh, step,
     contact: parts of the error from the mesh, the step length and the contact solver. noise: difference of runs whose
     start differs by 1e-12 m. best, best_error: extrapolated value and its error. scale: size to which relative errors
     refer. mesh_order, step_order: observed orders of convergence, and those of the theory, `expected`. agree_until:
-    time until which runs with a start 1e-12 m apart agree, infinite if they agree to the end [s]. verdict: "known",
+    time until which runs with a start 1e-12 m apart agree, infinite if they agree to the end [s]. run_values, run_errors:
+    value of each run and half width of its error bar, in the order of Study.runs. verdict: "known",
     "irregular", "singular", "chaotic" or "not_measured". sentence: the verdict in words.
     """
 
@@ -46,6 +47,8 @@ class StudyQuantity:
     step_order: float
     expected_step_order: float
     agree_until: float
+    run_values: tuple[float, ...]
+    run_errors: tuple[float, ...]
     verdict: str
     sentence: str
 
@@ -189,7 +192,7 @@ def study(
         called,
     )
     if called is _show:
-        print("\r100 %", file=sys.stderr)
+        print("\r100 %".ljust(40), file=sys.stderr)  # covers the line of _show
     return Study(core, file)
 
 
@@ -198,9 +201,15 @@ def _show(share: float, done: int, total: int) -> None:
 
 
 def _quantity(values: dict[str, Any]) -> StudyQuantity:
-    """A number that is not finite is None in JSON."""
-    absent = {key: math.inf if key == "agree_until" else math.nan for key, value in values.items() if value is None}
-    return StudyQuantity(**{**values, **absent})
+    """A number that is not finite is None in JSON. The error of a singular quantity is infinite, and so is its part by
+    the mesh."""
+    infinite = ("agree_until", "error", "mesh") if values["verdict"] == "singular" else ("agree_until",)
+    absent = {key: math.inf if key in infinite else math.nan for key, value in values.items() if value is None}
+    runs = {
+        key: tuple(math.nan if number is None else number for number in values[key])
+        for key in ("run_values", "run_errors")
+    }
+    return StudyQuantity(**{**values, **absent, **runs})
 
 
 def _run(values: dict[str, Any], series: tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]) -> StudyRun:
