@@ -60,6 +60,7 @@ StudyRun run_from(const Json& json, const StudyVariant& variant) {
     run.state_hash = std::stoull(json.at("state_hash").get<std::string>(), nullptr, 16);
     json.at("tetrahedra").get_to(run.tetrahedra);
     json.at("max_contacts").get_to(run.max_contacts);
+    for (const auto& [name, area] : json.at("loaded_areas").items()) run.loads.push_back({name, area.get<Real>()});
     json.at("time").get_to(run.time);
     for (const Json& column : json.at("columns")) run.columns.push_back(column_from(column));
     return run;
@@ -88,6 +89,8 @@ Json variant_json(const StudyVariant& variant) {
 }
 
 Json run_json(const StudyRun& run) {
+    Json areas = Json::object();
+    for (const StudyLoad& load : run.loads) areas[load.name] = load.area;
     return {{"name", variant_name(run.variant)},
             {"variant", variant_json(run.variant)},
             {"set", run.assignments},
@@ -99,7 +102,8 @@ Json run_json(const StudyRun& run) {
             {"integrator", name_of(run.integrator)},
             {"state_hash", hash_text(run.state_hash)},
             {"tetrahedra", run.tetrahedra},
-            {"max_contacts", run.max_contacts}};
+            {"max_contacts", run.max_contacts},
+            {"loaded_areas", areas}};
 }
 
 void write_run(const std::filesystem::path& folder, const std::string& inputs, const StudyRun& run) {
