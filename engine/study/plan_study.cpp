@@ -52,7 +52,8 @@ StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySe
                          .file = read_scene_file(path, settings.assignments),
                          .assignments = settings.assignments,
                          .levels = {},
-                         .settings = {}};
+                         .settings = {},
+                         .flat = {}};
     studied.levels = levels_of(studied.file, path);
     SceneOverrides overrides{.threads = 1};
     overrides.assignments = settings.assignments;
@@ -60,11 +61,15 @@ StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySe
     Scene scene = load_scene(path, overrides);
     studied.settings = scene.world.settings();
     studied.longest_call = plan_run(scene, path, settings.seconds).longest_call();
-    for (const BodyHandle body : scene.world.bodies()) {
+    for (const BodyHandle body : scene.world.bodies())
         studied.has_explicit |= scene.world.dynamics(body) == BodyDynamics::explicit_elastic;
-        studied.has_implicit |= scene.world.dynamics(body) == BodyDynamics::implicit_elastic;
+    const StudyRecorder recorder(scene);
+    studied.flat = flat_bodies(studied.file, scene.world);
+    for (const std::string& name : recorder.bodies()) {
+        const auto flat = std::ranges::find(studied.flat, name, &FlatBody::name);
+        studied.shape_errors.push_back(flat == studied.flat.end() ? 0 : flat->error());
     }
-    std::vector<StudyColumn> columns = StudyRecorder(scene).columns();
+    std::vector<StudyColumn> columns = recorder.columns();
     choose_columns_by_name(settings.probes, path, columns);
     return studied;
 }

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <ostream>
+#include <stdexcept>
 
 #include "engine/output/write_file.h"
 #include "engine/program/number_text.h"
@@ -62,7 +63,10 @@ StudyRun run_from(const Json& json, const StudyVariant& variant) {
     json.at("max_contacts").get_to(run.max_contacts);
     for (const auto& [name, area] : json.at("loaded_areas").items()) run.loads.push_back({name, area.get<Real>()});
     json.at("time").get_to(run.time);
-    for (const Json& column : json.at("columns")) run.columns.push_back(column_from(column));
+    for (const Json& column : json.at("columns")) {
+        run.columns.push_back(column_from(column));
+        if (run.columns.back().values.size() != run.time.size()) throw std::length_error("a column lacks values");
+    }
     return run;
 }
 

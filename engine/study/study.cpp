@@ -34,7 +34,16 @@ void require_positive(const char* field, double value, const char* expected) {
 }
 
 void check_settings(const StudySettings& settings) {
-    require_positive("error", settings.error, "a relative error > 0, for example 0.01");
+    constexpr const char* share = "a share above 0 and below 1, for example 0.05 for 5 %";
+    require_positive("error", settings.error, share);
+    if (settings.error >= 1)
+        Complaint{.file = {},
+                  .object = "study",
+                  .field = "error",
+                  .found = short_text(settings.error),
+                  .expected = share,
+                  .hint = {}}
+            .raise();
     if (settings.budget) require_positive("budget", *settings.budget, "a number > 0");
     if (settings.seconds) require_positive("seconds", *settings.seconds, "a time > 0 (s)");
     if (settings.threads < 0)
@@ -124,8 +133,14 @@ private:
                             .message = plan_[i].reason,
                             .cpu_seconds = plan_[i].cost * runs_[0].cpu_seconds};
         choose_columns();
+        for (std::size_t c = 0; c < scene_.shape_errors.size() && c < runs_[0].columns.size(); ++c)
+            if (runs_[0].columns[c].what.unit == "m" || runs_[0].columns[c].what.unit == "Pa")
+                runs_[0].columns[c].shape_error = scene_.shape_errors[c];
         StudyResult result = analyse(std::move(runs_), settings_);
         add_load_sentences(result.runs, result.sentences);
+        constexpr std::size_t most_bodies = 3;  // number of bodies with a remark
+        for (std::size_t i = 0; i < std::min(most_bodies, scene_.flat.size()); ++i)
+            result.sentences.push_back(flat_text(scene_.flat[i]));
         if (result.cheapest)
             result.cheapest->assignments = variant_assignments(scene_, result.cheapest->variant, mean_step_);
         return result;
@@ -135,7 +150,7 @@ private:
     /// contact forces of bodies that touch nothing.
     void choose_columns() {
         for (StudyRun& run : runs_) {
-            if (run.columns.empty()) continue;  // the run is left out or was refused
+            if (run.columns.size() != runs_[0].columns.size()) continue;  // the run is left out or was refused
             choose_columns_by_name(settings_.probes, scene_.path, run.columns);
             for (std::size_t c = 0; c < run.columns.size() && settings_.probes.empty(); ++c)
                 run.columns[c].reported &= std::ranges::any_of(
@@ -143,11 +158,27 @@ private:
         }
     }
 
+    /// Part of a text of inputs_of() that is the hash of the scene and its files.
+    static std::string hash_of(const std::string& inputs) { return inputs.substr(0, inputs.find(' ')); }
+
     std::string inputs_of(std::size_t i) {
         std::string inputs = hasher_.hash(runs_[i].assignments);
         if (settings_.seconds) inputs += " seconds " + Json(*settings_.seconds).dump();
         if (plan_[i].variant.draw != 0) inputs += " draw " + std::to_string(plan_[i].variant.draw);
         return inputs;
+    }
+
+    /// Throws SceneError if the scene or one of its files changed while the study ran.
+    void require_unchanged(std::size_t i) const {
+        if (CaseHasher(scene_.path).hash(runs_[i].assignments) == hash_of(inputs_[i])) return;
+        Complaint{.file = scene_.path.string(),
+                  .object = "study",
+                  .field = "scene",
+                  .found = "a scene or mesh file that changed while the study ran",
+                  .expected = "the files with which the study began",
+                  .hint = "start the study again; the runs that had ended before are kept, and --redo replaces those of "
+                          "the old scene"}
+            .raise();
     }
 
     /// Reads the run from the folder. Returns true if the folder has it. Throws SceneError if the file has another run,
@@ -163,7 +194,8 @@ private:
                       .expected = "runs of " + scene_.path.string() + " in its present version, with these settings",
                       .hint = "add --redo to replace these runs, or choose another folder with --out"}
                 .raise();
-        if (!stored.run) return false;
+        // The reason of a refused run may be gone, for example a mesher that was not found.
+        if (!stored.run || stored.run->status == StudyRunStatus::refused) return false;
         runs_[i] = std::move(*stored.run);
         return true;
     }
@@ -219,6 +251,7 @@ private:
         const bool whole = run_variant(job, stop_, shares_[i], runs_[i]);
         --running_;
         if (!whole) return;
+        require_unchanged(i);
         if (!settings_.folder.empty()) write_run(settings_.folder, inputs_[i], runs_[i]);
         finish(i);
     }

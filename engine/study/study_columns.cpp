@@ -82,7 +82,9 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
     std::vector<BodyHandle> attached;
     for (const AttachmentHandle attachment : world.attachments()) attached.push_back(world.body(attachment));
     for (const BodyHandle body : bodies_in_order(world)) {
+        // Columns of all bodies have the name "bodies".
         const bool taken =
+            world.name(body) == "bodies" ||
             std::ranges::find(scene.recorded, world.name(body), &RecordedProbe::name) != scene.recorded.end();
         const auto add = [&](decltype(RecordedProbe::what) what) {
             probes.push_back({{"default probe " + std::to_string(probes.size()), std::move(what)},
@@ -127,7 +129,7 @@ void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
             .what = recorder_.columns()[c], .size = body ? diagonal(world_, {&*body, 1}) : size_, .reported = reported};
         column.what.probe = shown;
         add_stress(probe);
-        sources_.push_back({std::move(column), Part::mean, {c}});
+        sources_.push_back({std::move(column), Part::mean, {c}, body ? world_.name(*body) : std::string()});
     };
     for (const RecordedProbe& probe : of_scene)
         for (; c < recorder_.columns().size() && recorder_.columns()[c].probe == probe.name; ++c)
@@ -173,6 +175,12 @@ void StudyRecorder::sample() {
         const auto number = static_cast<std::size_t>(most - values.begin());
         stress.node = nodes.empty() ? static_cast<Index>(number) : nodes[number];
     }
+}
+
+std::vector<std::string> StudyRecorder::bodies() const {
+    std::vector<std::string> names;
+    for (const Source& source : sources_) names.push_back(source.body);
+    return names;
 }
 
 std::vector<Real> StudyRecorder::time() const {

@@ -57,6 +57,7 @@ struct StudyColumn {
     // largest value of the run. Else no_index.
     Index node = no_index;
     Vec3 place = Vec3::Zero();
+    Real shape_error = 0;  // error of the values, relative, because flat faces stand for a curved surface
 };
 
 /// The faces on which a traction of a scene acts.
@@ -191,8 +192,8 @@ std::string study_text(const StudyResult& result);
 /// quantities and runs. The page is one file that needs no other files.
 std::string study_page(const StudyResult& result);
 
-/// Returns a JSON document with all numbers except the time series of the runs. A number that is not finite becomes
-/// null.
+/// Returns a JSON document with all numbers except the time series of the runs. The key `bands` has the error bars of
+/// the rows of the first run. A number that is not finite becomes null.
 std::string study_json(const StudyResult& result);
 
 /// Writes the scene with the cheapest settings, which `result` must have. Paths in the new file lead to the files of

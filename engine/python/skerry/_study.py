@@ -26,7 +26,8 @@ class StudyQuantity:
     contact: parts of the error from the mesh, the step length and the contact solver. noise: difference of runs whose
     start differs by 1e-12 m. best, best_error: extrapolated value and its error. scale: size to which relative errors
     refer. mesh_order, step_order: observed orders of convergence, and those of the theory, `expected`. agree_until:
-    time until which runs with a start 1e-12 m apart agree, infinite if they agree to the end [s]. verdict: "known",
+    time until which runs with a start 1e-12 m apart agree, infinite if they agree to the end [s]. run_values, run_errors:
+    value of each run and half width of its error bar, in the order of Study.runs. verdict: "known",
     "irregular", "singular", "chaotic" or "not_measured". sentence: the verdict in words.
     """
 
@@ -46,6 +47,8 @@ class StudyQuantity:
     step_order: float
     expected_step_order: float
     agree_until: float
+    run_values: tuple[float, ...]
+    run_errors: tuple[float, ...]
     verdict: str
     sentence: str
 
@@ -200,7 +203,11 @@ def _show(share: float, done: int, total: int) -> None:
 def _quantity(values: dict[str, Any]) -> StudyQuantity:
     """A number that is not finite is None in JSON."""
     absent = {key: math.inf if key == "agree_until" else math.nan for key, value in values.items() if value is None}
-    return StudyQuantity(**{**values, **absent})
+    runs = {
+        key: tuple(math.nan if number is None else number for number in values[key])
+        for key in ("run_values", "run_errors")
+    }
+    return StudyQuantity(**{**values, **absent, **runs})
 
 
 def _run(values: dict[str, Any], series: tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]) -> StudyRun:

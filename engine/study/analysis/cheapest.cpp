@@ -58,11 +58,13 @@ bool counts(const MeasuredQuantity& quantity) {
 struct Candidate {
     CheapestSettings settings;
     std::string worst{};
+    bool may_be_nearest = true;  // false for a mesh that was not run, and for cruder elements
 };
 
 Candidate predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,
                   const Option& step, const Option& tolerance) {
     Candidate found;
+    found.may_be_nearest = !mesh.predicted && mesh.variant.element != ElementKind::linear;
     CheapestSettings& settings = found.settings;
     settings.variant = mesh.variant;
     settings.variant.step = step.variant.step;
@@ -94,7 +96,7 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
                 candidates.push_back(predict(family, quantities, mesh, step, tolerance));
                 const double error = candidates.back().settings.error;
                 least_error = std::min(least_error, error);
-                if (!mesh.predicted) least_measured = std::min(least_measured, error);
+                if (candidates.back().may_be_nearest) least_measured = std::min(least_measured, error);
             }
     // If no settings reach the wanted error, those of the runs with nearly the smallest error come nearest.
     constexpr double nearly = 1.1;
@@ -102,7 +104,7 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
     const double target = reaches ? wanted : nearly * least_measured;
     const Candidate* best = nullptr;
     for (const Candidate& candidate : candidates)
-        if (candidate.settings.error <= target &&
+        if (candidate.settings.error <= target && (reaches || candidate.may_be_nearest) &&
             (!best || candidate.settings.cpu_seconds < best->settings.cpu_seconds))
             best = &candidate;
     CheapestSettings result = best->settings;

@@ -29,8 +29,11 @@ std::string quantity_line(const StudyQuantity& q, std::size_t width) {
     for (const auto& [name, error, part] :
          {BarPart{"mesh", q.mesh, text.mesh}, BarPart{"step", q.step, text.step},
           BarPart{"contacts", q.contact, text.contact}, BarPart{"start", q.noise, text.noise}})
-        if (error > shown_share * q.error) parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
+        if (error > shown_share * q.error && !part.empty()) parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
     if (!parts.empty()) line += " (" + (text.share.empty() ? "" : text.share + ": ") + parts + ")";
+    // The extrapolated value is shown if it is much more exact.
+    constexpr double much = 0.7;
+    if (!text.best.empty() && q.best_error < much * q.error) line += ", best " + text.best + " +- " + text.best_error;
     if (!text.orders.empty()) line += ", " + text.orders;
     if (q.verdict != StudyVerdict::known) line += ", " + std::string(name_of(q.verdict));
     return line + "\n";
@@ -59,8 +62,8 @@ std::string quantities_text(const StudyResult& result) {
     for (const StudyQuantity* q : shown) text += quantity_line(*q, width);
     if (left > 0) text += "  ... and " + std::to_string(left) + " more, in the page\n";
     if (negligible > 0)
-        text += "  ... and " + std::to_string(negligible) + (negligible > 1 ? " components" : " component") +
-                " smaller than the wanted error\n";
+        text += "  ... and " + std::to_string(negligible) + (negligible > 1 ? " values" : " value") + " below " +
+                percent(result.wanted_error) + " of the largest of " + (negligible > 1 ? "their" : "its") + " kind\n";
     return text;
 }
 

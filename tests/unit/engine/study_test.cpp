@@ -3,6 +3,9 @@
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
+#include <numbers>
+#include <utility>
 
 #include "engine/scene/scene_plan.h"
 #include "engine/study/plan_study.h"
@@ -166,6 +169,58 @@ TEST_CASE("runs of another scene are refused unless they may be replaced") {
     CHECK(message_of(scene, settings).find("--redo") != std::string::npos);
     settings.redo = true;
     CHECK(study(scene, settings).runs[0].assignments == settings.assignments);
+}
+
+TEST_CASE("a study ends if its scene changes while it runs") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings = small_study();
+    bool changed = false;
+    settings.go_on = [&](const StudyProgress&) {
+        if (!std::exchange(changed, true)) {
+            std::string other = bar;
+            folder.write("bar.json", other.replace(other.find("1e5"), 3, "3e5"));
+        }
+        return true;
+    };
+    CHECK(message_of(scene, settings).find("changed while the study ran") != std::string::npos);
+}
+
+TEST_CASE("stored runs that were refused are made again, and damaged ones are named") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings = small_study(folder.path() / "runs");
+    settings.budget = 5;
+    settings.seconds = 0.02;
+    study(scene, settings);
+    const std::filesystem::path file = settings.folder / "run_draw_1.json";
+    const auto change = [&file](auto edit) {
+        Json run = Json::parse(std::ifstream(file));
+        edit(run);
+        std::ofstream(file) << run;
+    };
+    change([](Json& run) { run["status"] = "refused"; });
+    CHECK(study(scene, settings).runs[1].status == StudyRunStatus::ok);
+    change([](Json& run) { run["columns"][0]["values"].erase(0); });
+    CHECK(message_of(scene, settings).find("run_draw_1.json is no run of a study") != std::string::npos);
+}
+
+TEST_CASE("flat faces of a cylinder are off by a twelfth of the square of their angle, those of a box are not") {
+    constexpr int count = 24;
+    constexpr Real angle = 2 * std::numbers::pi / count;
+    std::vector<Vec3> nodes;
+    std::vector<std::array<Index, 3>> triangles;
+    for (int i = 0; i < count; ++i) {
+        for (const Real z : {0.0, 0.3}) nodes.emplace_back(2 * std::cos(i * angle), 2 * std::sin(i * angle), z);
+        const Index a = 2 * i, b = 2 * ((i + 1) % count);
+        triangles.push_back({a, b, b + 1});
+        triangles.push_back({a, b + 1, a + 1});
+    }
+    const FlatFaces round = flat_faces(nodes, triangles);
+    CHECK(round.share == Approx(angle * angle / 12).epsilon(0.01));  // next term: a share of angle^2 / 12
+    CHECK(round.angle == Approx(angle));
+    const std::vector<Vec3> corner{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    CHECK(flat_faces(corner, std::vector<std::array<Index, 3>>{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}).share == 0);
 }
 
 TEST_CASE("wrong settings of a study are refused by name") {
