@@ -212,8 +212,7 @@ ImplicitShare ImplicitSearch::add_implicit(const ImplicitGoal& goal) {
     });
     ImplicitShare result{.moment = added > 0 ? added / least_moment_ : 0, .too_many = given_up > most_volume * volume};
     if (goal.most_nodes > 0 && !result.too_many)
-        result.too_many =
-            cluster_sizes(elements_, blocks_, out_.modulus, goal.inverse_mass).largest > goal.most_nodes;
+        result.too_many = cluster_sizes(elements_, blocks_, out_.modulus, goal.inverse_mass).largest > goal.most_nodes;
     return result;
 }
 

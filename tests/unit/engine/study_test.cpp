@@ -282,7 +282,8 @@ TEST_CASE("a study names the tractions that act on another area with finer meshe
     const auto sentences = [&](const std::string& upper) {
         std::string pulled = hanging;
         pulled.insert(pulled.rfind('}'), R"(, "loads": [{"name": "pull", "kind": "traction", "body": "arm",
-            "traction": [0, 0, -10], "box": {"lower": [-1, -1, -1], "upper": )" + upper + "}}]");
+            "traction": [0, 0, -10], "box": {"lower": [-1, -1, -1], "upper": )" +
+                                             upper + "}}]");
         StudySettings settings = small_study();
         settings.seconds = 0.02;
         std::vector<std::string> found = study(folder.write("pulled.json", pulled), settings).sentences;
@@ -292,8 +293,9 @@ TEST_CASE("a study names the tractions that act on another area with finer meshe
     // The box ends within the faces of the scene and at edges of the finer ones.
     const std::vector<std::string> found = sentences("[0.026, 1, -0.099]");
     REQUIRE(found.size() == 1);
-    CHECK(found[0].starts_with("Load 'pull' acts on 0.005 m^2 in the scene as it is, and on 0.0075 m^2 with the mesh "
-                               "1 level finer"));
+    CHECK(
+        found[0].starts_with("Load 'pull' acts on 0.005 m^2 in the scene as it is, and on 0.0075 m^2 with the mesh "
+                             "1 level finer"));
     CHECK(sentences("[0.001, 1, -0.099]").empty());
 }
 
