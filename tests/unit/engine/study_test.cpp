@@ -406,6 +406,28 @@ TEST_CASE("the budget leaves out the costly runs, which are the less important o
           "with it the study would take about 21 times as long as one run, more than the budget of 10");
 }
 
+TEST_CASE("a study names the tractions that act on another area with finer meshes") {
+    const TemporaryFolder folder;
+    const auto sentences = [&](const std::string& upper) {
+        std::string pulled = hanging;
+        pulled.insert(pulled.rfind('}'), R"(, "loads": [{"name": "pull", "kind": "traction", "body": "arm",
+            "traction": [0, 0, -10], "box": {"lower": [-1, -1, -1], "upper": )" +
+                                             upper + "}}]");
+        StudySettings settings = small_study();
+        settings.seconds = 0.02;
+        std::vector<std::string> found = study(folder.write("pulled.json", pulled), settings).sentences;
+        std::erase_if(found, [](const std::string& sentence) { return !sentence.starts_with("Load "); });
+        return found;
+    };
+    // The box ends within the faces of the scene and at edges of the finer ones.
+    const std::vector<std::string> found = sentences("[0.026, 1, -0.099]");
+    REQUIRE(found.size() == 1);
+    CHECK(
+        found[0].starts_with("Load 'pull' acts on 0.005 m^2 in the scene as it is, and on 0.0075 m^2 with the mesh "
+                             "1 level finer"));
+    CHECK(sentences("[0.001, 1, -0.099]").empty());
+}
+
 TEST_CASE("a perturbation moves free nodes by at most 1e-12 m and leaves held nodes") {
     const TemporaryFolder folder;
     const std::filesystem::path file = folder.write("bar.json", bar);
