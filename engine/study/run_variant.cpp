@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <ctime>
+#include <new>
 #include <random>
+#include <utility>
+#include <variant>
 
 #include "engine/scene/run_plan.h"
 #include "engine/scene/scene_plan.h"
 #include "engine/study/study_columns.h"
 #include "jobs/executor.h"
 #include "skerry/error.h"
+#include "skerry/load.h"
 
 namespace skerry {
 
@@ -21,11 +25,30 @@ double cpu_clock(bool one_thread) {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// The tractions of a world with the areas of their faces in the present shape.
+std::vector<StudyLoad> loads_of(World& world) {
+    std::vector<StudyLoad> found;
+    const Loads loads(world);
+    for (const LoadHandle handle : loads.all()) {
+        const AnyLoad settings = loads.settings(handle);
+        const auto* traction = std::get_if<TractionLoad>(&settings);
+        if (!traction) continue;
+        const std::span<const Vec3> position = world.positions(traction->body);
+        StudyLoad load{.name = loads.name(handle)};
+        for (const auto& face : traction->faces) {
+            const auto corner = [&](std::size_t k) { return position[static_cast<std::size_t>(face[k])]; };
+            load.area += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 2;
+        }
+        found.push_back(std::move(load));
+    }
+    return found;
+}
+
 class VariantRun {
 public:
     VariantRun(const VariantJob& job, const std::atomic<bool>& stop, std::atomic<double>& share, StudyRun& run)
         : scene_(load_scene(job.scene, job.overrides)),
-          plan_(plan_run(scene_, job.scene, job.seconds)),
+          plan_(plan_run(scene_, job.scene, {})),
           recorder_(scene_),
           one_thread_(job.overrides.threads == 1),
           stop_(stop),
@@ -35,6 +58,7 @@ public:
     }
 
     bool run() {
+        run_.loads = loads_of(scene_.world);
         recorder_.sample();
         bool goes_on = true;
         for (long frame = 0; frame < plan_.frames() && goes_on; ++frame) goes_on = advance_frame(frame);
@@ -123,8 +147,13 @@ bool run_variant(const VariantJob& job, const std::atomic<bool>& stop, std::atom
     } catch (const SceneError& error) {
         run.status = StudyRunStatus::refused;
         run.message = error.what();
-        return true;
+    } catch (const std::bad_alloc&) {
+        run.status = StudyRunStatus::refused;
+        run.message = "there is not enough memory for it";
+        run.time.clear();
+        run.columns.clear();
     }
+    return true;
 }
 
 }  // namespace skerry

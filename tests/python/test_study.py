@@ -4,6 +4,7 @@ import dataclasses
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -72,6 +73,19 @@ def test_an_interrupted_study_continues(scene: Path, tmp_path: Path) -> None:
         np.testing.assert_equal(found.quantities[name].error, quantity.error)
     with pytest.raises(sk.SceneError, match="another scene"):
         sk.study(scene, threads=1, budget=20, folder=folder, seconds=0.05)
+
+
+def test_a_mapping_is_studied_like_its_file(scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    files = sorted(tmp_path.iterdir())
+    settings: dict[str, Any] = {"error": 0.5, "threads": 1, "budget": 60, "seconds": 0.04}
+    mapping = json.loads(scene.read_text(encoding="utf-8"))
+    found, of_file = sk.study(mapping, **settings), sk.study(scene, **settings)
+    assert sorted(tmp_path.iterdir()) == files
+    assert [run.state_hash for run in found.runs] == [run.state_hash for run in of_file.runs]
+    assert found.cheapest
+    found.write_cheapest_scene("cheapest.json")
+    assert sk.load_scene("cheapest.json").world.bodies
 
 
 def test_wrong_settings_are_refused(scene: Path) -> None:

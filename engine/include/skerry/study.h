@@ -60,6 +60,13 @@ struct StudyColumn {
     Real shape_error = 0;  // error of the values, relative, because flat faces stand for a curved surface
 };
 
+/// The faces on which a traction of a scene acts.
+struct StudyLoad {
+    std::string name;  // of the load
+    Real area = 0;     // of its faces at the start [m^2]
+    bool operator==(const StudyLoad&) const = default;
+};
+
 /// A run of a study. `skerry run SCENE` with the assignments as --set repeats the run, except for its perturbation.
 struct StudyRun {
     StudyVariant variant;
@@ -72,6 +79,7 @@ struct StudyRun {
     Integrator integrator = Integrator::symplectic_euler;
     std::uint64_t state_hash = 0;  // hash of the state at the end
     std::size_t tetrahedra = 0, max_contacts = 0;
+    std::vector<StudyLoad> loads{};
     std::vector<Real> time{};  // simulated time of each row [s]
     std::vector<StudyColumn> columns{};
 };
@@ -161,7 +169,7 @@ struct StudySettings {
     std::optional<double> budget{};
     // Folder that keeps the results of the runs. A later study of the same scene continues with them. Empty: none.
     std::filesystem::path folder{};
-    bool redo = false;  // true: results in the folder that belong to another scene or other settings are replaced
+    bool redo = false;          // true: the runs in the folder are removed and made again
     std::string fill_python{};  // see SceneOverrides::fill_python
     // If given, called about every 20 ms on the thread that called study(). If it returns false or throws, all runs
     // stop before their next step. An exception is rethrown.
