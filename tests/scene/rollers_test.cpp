@@ -121,8 +121,8 @@ TEST_CASE("momentum and energy add up if a moving pin holds nodes that rollers h
 TEST_CASE("momentum adds up if a pin moves a whole body", "[scene]") {
     World world(weightless());
     const Mesh mesh = mesh::box(bar_size, {4, 2, 2});
-    const BodyHandle body = world.add_body(
-        mesh, {.material = world.add_material(linear()), .dynamics = BodyDynamics::explicit_elastic});
+    const BodyHandle body =
+        world.add_body(mesh, {.material = world.add_material(linear()), .dynamics = BodyDynamics::explicit_elastic});
     world.attach(body, nodes_where(mesh, [](const Vec3&) { return true; }), {.velocity = {1, 0, 0}});
     REQUIRE(world.advance(0.1).ok());
     CHECK(world.report().momentum_error_share < 1e-9);

@@ -195,7 +195,7 @@ def study(
             called,
         )
     if called is _show:
-        print("\r100 %".ljust(40), file=sys.stderr)  # covers the line of _show
+        print("\r\033[K100 %", file=sys.stderr)
     return Study(core, deepcopy(scene))
 
 
