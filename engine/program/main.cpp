@@ -13,9 +13,9 @@
 #include <malloc.h>
 #endif
 
+#include "engine/output/number_text.h"
 #include "engine/program/commands.h"
 #include "engine/program/examples.h"
-#include "engine/program/number_text.h"
 #include "engine/program/output_formats.h"
 #include "engine/program/sweep/cases/sweep_file.h"
 #include "engine/scene/place.h"

@@ -46,13 +46,15 @@ StudyFiles study_files(const StudyOptions& options, const std::filesystem::path&
 
 std::string quantities_csv(const StudyResult& result) {
     std::string csv;
-    add_csv_line({"quantity", "unit", "value", "error", "mesh", "step", "contact", "best", "best_error", "mesh_order",
-                  "expected_mesh_order", "step_order", "expected_step_order", "agree_until", "verdict", "sentence"},
+    add_csv_line({"quantity", "unit", "value", "error", "mesh", "step", "contact", "noise", "scale", "best",
+                  "best_error", "mesh_order", "expected_mesh_order", "step_order", "expected_step_order", "agree_until",
+                  "verdict", "sentence"},
                  csv);
     for (const StudyQuantity& q : result.quantities) {
         std::vector<std::string> cells{q.name, q.unit};
-        for (const Real number : {q.value, q.error, q.mesh, q.step, q.contact, q.best, q.best_error, q.mesh_order,
-                                  q.expected_mesh_order, q.step_order, q.expected_step_order, q.agree_until})
+        for (const Real number :
+             {q.value, q.error, q.mesh, q.step, q.contact, q.noise, q.scale, q.best, q.best_error, q.mesh_order,
+              q.expected_mesh_order, q.step_order, q.expected_step_order, q.agree_until})
             cells.push_back(csv_number(number));
         cells.insert(cells.end(), {std::string(name_of(q.verdict)), q.sentence});
         add_csv_line(cells, csv);

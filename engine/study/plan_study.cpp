@@ -63,7 +63,8 @@ StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySe
                          .file = read_scene_file(path, assignments),
                          .assignments = assignments,
                          .levels = {},
-                         .settings = {}};
+                         .settings = {},
+                         .flat = {}};
     studied.levels = levels_of(studied.file, path);
     SceneOverrides overrides{.threads = 1};
     overrides.assignments = assignments;
@@ -73,7 +74,13 @@ StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySe
     studied.longest_call = plan_run(scene, path, {}).longest_call();
     for (const BodyHandle body : scene.world.bodies())
         studied.has_explicit |= scene.world.dynamics(body) == BodyDynamics::explicit_elastic;
-    std::vector<StudyColumn> columns = StudyRecorder(scene).columns();
+    const StudyRecorder recorder(scene);
+    studied.flat = flat_bodies(studied.file, scene.world);
+    for (const std::string& name : recorder.bodies()) {
+        const auto flat = std::ranges::find(studied.flat, name, &FlatBody::name);
+        studied.shape_errors.push_back(flat == studied.flat.end() ? 0 : flat->error());
+    }
+    std::vector<StudyColumn> columns = recorder.columns();
     choose_columns_by_name(settings.probes, path, columns);
     return studied;
 }

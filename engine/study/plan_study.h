@@ -7,6 +7,7 @@
 
 #include "engine/scene/mesh_levels.h"
 #include "engine/scene/scene_file.h"
+#include "engine/study/flat_faces.h"
 #include "skerry/scene.h"
 #include "skerry/study.h"
 
@@ -19,8 +20,10 @@ struct StudiedScene {
     std::vector<std::string> assignments;  // changes that all runs share
     SceneLevels levels;
     Settings settings;
-    bool has_explicit = false;  // true if a body is deformable and explicit
-    double longest_call = 0;    // longest simulated time of a call of advance [s]
+    bool has_explicit = false;         // true with deformable bodies that are integrated explicitly
+    std::vector<FlatBody> flat;        // bodies whose refined meshes keep the flat faces of a file
+    std::vector<Real> shape_errors{};  // StudyColumn::shape_error of each column
+    double longest_call = 0;           // longest simulated time of a call of advance [s]
 };
 
 /// Reads and builds the scene, and checks the names of the probes. Throws SceneError.

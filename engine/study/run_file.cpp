@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "engine/output/number_text.h"
 #include "engine/output/write_file.h"
-#include "engine/program/number_text.h"
 #include "skerry/error.h"
 
 namespace skerry {
@@ -76,6 +76,7 @@ StudyRun run_from(const Json& json, const StudyVariant& variant) {
     run.state_hash = std::stoull(json.at("state_hash").get<std::string>(), nullptr, 16);
     json.at("tetrahedra").get_to(run.tetrahedra);
     json.at("max_contacts").get_to(run.max_contacts);
+    for (const auto& [name, area] : json.at("loaded_areas").items()) run.loads.push_back({name, area.get<Real>()});
     json.at("time").get_to(run.time);
     for (const Json& column : json.at("columns")) run.columns.push_back(column_from(column));
     if (!is_whole(run)) throw std::invalid_argument("columns of different lengths");
@@ -105,6 +106,8 @@ Json variant_json(const StudyVariant& variant) {
 }
 
 Json run_json(const StudyRun& run) {
+    Json areas = Json::object();
+    for (const StudyLoad& load : run.loads) areas[load.name] = load.area;
     return {{"name", variant_name(run.variant)},
             {"variant", variant_json(run.variant)},
             {"set", run.assignments},
@@ -116,7 +119,8 @@ Json run_json(const StudyRun& run) {
             {"integrator", name_of(run.integrator)},
             {"state_hash", hash_text(run.state_hash)},
             {"tetrahedra", run.tetrahedra},
-            {"max_contacts", run.max_contacts}};
+            {"max_contacts", run.max_contacts},
+            {"loaded_areas", areas}};
 }
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {

@@ -4,12 +4,15 @@
 #include <ctime>
 #include <new>
 #include <random>
+#include <utility>
+#include <variant>
 
 #include "engine/scene/run_plan.h"
 #include "engine/scene/scene_plan.h"
 #include "engine/study/study_columns.h"
 #include "jobs/executor.h"
 #include "skerry/error.h"
+#include "skerry/load.h"
 
 namespace skerry {
 
@@ -20,6 +23,25 @@ double cpu_clock(bool one_thread) {
     timespec now{};
     clock_gettime(one_thread ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// The tractions of a world with the areas of their faces in the present shape.
+std::vector<StudyLoad> loads_of(World& world) {
+    std::vector<StudyLoad> found;
+    const Loads loads(world);
+    for (const LoadHandle handle : loads.all()) {
+        const AnyLoad settings = loads.settings(handle);
+        const auto* traction = std::get_if<TractionLoad>(&settings);
+        if (!traction) continue;
+        const std::span<const Vec3> position = world.positions(traction->body);
+        StudyLoad load{.name = loads.name(handle)};
+        for (const auto& face : traction->faces) {
+            const auto corner = [&](std::size_t k) { return position[static_cast<std::size_t>(face[k])]; };
+            load.area += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 2;
+        }
+        found.push_back(std::move(load));
+    }
+    return found;
 }
 
 class VariantRun {
@@ -36,6 +58,7 @@ public:
     }
 
     bool run() {
+        run_.loads = loads_of(scene_.world);
         recorder_.sample();
         bool goes_on = true;
         for (long frame = 0; frame < plan_.frames() && goes_on; ++frame) goes_on = advance_frame(frame);

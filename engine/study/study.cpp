@@ -12,6 +12,7 @@
 #include "engine/scene/write_scene.h"
 #include "engine/study/analysis/analyse.h"
 #include "engine/study/plan_study.h"
+#include "engine/study/report/wording.h"
 #include "engine/study/run_file.h"
 #include "engine/study/run_variant.h"
 #include "engine/study/study_columns.h"
@@ -34,7 +35,16 @@ void require_positive(const char* field, double value, const char* expected) {
 }
 
 void check_settings(const StudySettings& settings) {
-    require_positive("error", settings.error, "a relative error > 0, for example 0.01");
+    constexpr const char* share = "a share above 0 and below 1, for example 0.05 for 5 %";
+    require_positive("error", settings.error, share);
+    if (settings.error >= 1)
+        Complaint{.file = {},
+                  .object = "study",
+                  .field = "error",
+                  .found = short_text(settings.error),
+                  .expected = share,
+                  .hint = {}}
+            .raise();
     if (settings.budget) require_positive("budget", *settings.budget, "a number > 0");
     if (settings.seconds) require_positive("seconds", *settings.seconds, "a time > 0 (s)");
     constexpr int most_threads = 1024;
@@ -46,6 +56,23 @@ void check_settings(const StudySettings& settings) {
                   .expected = "a number of threads from 0 to 1024 (0: the number of cores)",
                   .hint = {}}
             .raise();
+}
+
+/// Names the tractions that act on another area with the finest meshes: a box or a sphere may select other faces there.
+void add_load_sentences(const std::vector<StudyRun>& runs, std::vector<std::string>& sentences) {
+    constexpr Real least_change = 0.05;
+    const StudyRun* finest = &runs[0];
+    for (const StudyRun& run : runs)
+        if (run.status == StudyRunStatus::ok && run.variant.refine > finest->variant.refine) finest = &run;
+    for (const StudyLoad& load : runs[0].loads) {
+        const auto fine = std::ranges::find(finest->loads, load.name, &StudyLoad::name);
+        if (fine == finest->loads.end() || std::abs(fine->area - load.area) <= least_change * load.area) continue;
+        sentences.push_back("Load '" + load.name + "' acts on " + short_number(load.area) +
+                            " m^2 in the scene as it is, and on " + short_number(fine->area) + " m^2 with the " +
+                            variant_text(finest->variant) +
+                            ", because other faces are selected there. The mesh errors include this change. To avoid "
+                            "it, choose the faces by a set of the mesh, or by a box that ends where faces end.");
+    }
 }
 
 /// A study that is running.
@@ -113,7 +140,14 @@ private:
                             .cpu_seconds = plan_[i].cost * runs_[0].cpu_seconds};
         refuse_other_columns();
         choose_columns();
+        for (std::size_t c = 0; c < scene_.shape_errors.size() && c < runs_[0].columns.size(); ++c)
+            if (runs_[0].columns[c].what.unit == "m" || runs_[0].columns[c].what.unit == "Pa")
+                runs_[0].columns[c].shape_error = scene_.shape_errors[c];
         StudyResult result = analyse(std::move(runs_), settings_);
+        add_load_sentences(result.runs, result.sentences);
+        constexpr std::size_t most_bodies = 3;  // number of bodies with a remark
+        for (std::size_t i = 0; i < std::min(most_bodies, scene_.flat.size()); ++i)
+            result.sentences.push_back(flat_text(scene_.flat[i]));
         if (result.cheapest)
             result.cheapest->assignments = variant_assignments(scene_, result.cheapest->variant, mean_step_);
         return result;

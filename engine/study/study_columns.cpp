@@ -99,7 +99,7 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
     for (const BodyHandle body : world.bodies()) names.insert(world.name(body));
     for (const BodyHandle body : bodies_in_order(world)) {
         std::string shown = world.name(body);
-        if (probe_names.contains(shown)) {
+        if (shown == "bodies" || probe_names.contains(shown)) {  // columns of all bodies have the name "bodies"
             do shown = "body " + shown;
             while (!names.insert(shown).second);
         }
@@ -146,7 +146,7 @@ void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
             .what = recorder_.columns()[c], .size = body ? diagonal(world_, {&*body, 1}) : size_, .reported = reported};
         column.what.probe = shown;
         add_stress(probe);
-        sources_.push_back({std::move(column), Part::mean, {c}});
+        sources_.push_back({std::move(column), Part::mean, {c}, body ? world_.name(*body) : std::string()});
     };
     for (const RecordedProbe& probe : of_scene)
         for (; c < recorder_.columns().size() && recorder_.columns()[c].probe == probe.name; ++c)
@@ -192,6 +192,12 @@ void StudyRecorder::sample() {
         const auto number = static_cast<std::size_t>(most - values.begin());
         stress.node = nodes.empty() ? static_cast<Index>(number) : nodes[number];
     }
+}
+
+std::vector<std::string> StudyRecorder::bodies() const {
+    std::vector<std::string> names;
+    for (const Source& source : sources_) names.push_back(source.body);
+    return names;
 }
 
 std::vector<Real> StudyRecorder::time() const {

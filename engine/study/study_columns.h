@@ -23,6 +23,8 @@ public:
     /// Times of the rows [s].
     std::vector<Real> time() const;
     std::vector<StudyColumn> columns() const;
+    /// Name of the body of each column; empty for columns of no body or of several.
+    std::vector<std::string> bodies() const;
 
 private:
     /// How the value of a column follows from the values of some columns of the recorder.
@@ -31,6 +33,7 @@ private:
         StudyColumn column;
         Part part = Part::mean;
         std::vector<std::size_t> from;  // columns of the recorder
+        std::string body{};             // see bodies()
     };
     /// A column of a largest stress.
     struct Stress {

@@ -23,8 +23,22 @@ Json quantity_json(const StudyQuantity& q) {
             {"step_order", q.step_order},
             {"expected_step_order", q.expected_step_order},
             {"agree_until", q.agree_until},
+            {"run_values", q.run_values},
+            {"run_errors", q.run_errors},
             {"verdict", name_of(q.verdict)},
             {"sentence", q.sentence}};
+}
+
+/// Half widths of the error bars of the time series of the first run.
+Json bands_json(const StudyResult& result) {
+    Json bands = Json::array();
+    for (std::size_t c = 0; c < result.bands.size(); ++c) {
+        if (result.bands[c].empty()) continue;
+        const SeriesColumn& what = result.runs.front().columns[c].what;
+        bands.push_back(
+            {{"probe", what.probe}, {"quantity", what.quantity}, {"unit", what.unit}, {"errors", result.bands[c]}});
+    }
+    return bands;
 }
 
 }  // namespace
@@ -40,6 +54,7 @@ std::string study_json(const StudyResult& result) {
                             {"reaches", cheapest->reaches},         {"error", cheapest->error},
                             {"cpu_seconds", cheapest->cpu_seconds}, {"sentence", cheapest->sentence}};
     for (const StudyRun& run : result.runs) json["runs"].push_back(run_json(run));
+    json["bands"] = bands_json(result);
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

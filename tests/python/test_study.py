@@ -1,14 +1,17 @@
 """Studies: error bars of the results of a scene."""
 
+import dataclasses
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import skerry as sk
 from scenes import SCENE, changed
+from skerry._study import _quantity
 
 SMALL = {"box": {"size": [0.1, 0.1, 0.1], "cells": [2, 2, 2]}}
 BODY = {**SCENE["bodies"][0], "mesh": SMALL, "element": "linear"}
@@ -55,7 +58,7 @@ def test_probes_choose_quantities(scene: Path) -> None:
 
 def test_an_interrupted_study_continues(scene: Path, tmp_path: Path) -> None:
     def stop(share: float, done: int, total: int) -> None:
-        if done > 2:
+        if done > 0:
             raise KeyboardInterrupt
 
     folder = tmp_path / "runs"
@@ -72,6 +75,19 @@ def test_an_interrupted_study_continues(scene: Path, tmp_path: Path) -> None:
         sk.study(scene, threads=1, budget=20, folder=folder, seconds=0.05)
 
 
+def test_a_mapping_is_studied_like_its_file(scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    files = sorted(tmp_path.iterdir())
+    settings: dict[str, Any] = {"error": 0.5, "threads": 1, "budget": 60, "seconds": 0.04}
+    mapping = json.loads(scene.read_text(encoding="utf-8"))
+    found, of_file = sk.study(mapping, **settings), sk.study(scene, **settings)
+    assert sorted(tmp_path.iterdir()) == files
+    assert [run.state_hash for run in found.runs] == [run.state_hash for run in of_file.runs]
+    assert found.cheapest
+    found.write_cheapest_scene("cheapest.json")
+    assert sk.load_scene("cheapest.json").world.bodies
+
+
 def test_wrong_settings_are_refused(scene: Path) -> None:
     with pytest.raises(sk.SceneError, match="error"):
         sk.study(scene, error=0)
@@ -81,3 +97,13 @@ def test_wrong_settings_are_refused(scene: Path) -> None:
         sk.study(scene, progress=1)  # type: ignore[arg-type]
     with pytest.raises(sk.SceneError, match="missing.json"):
         sk.study("missing.json")
+
+
+def test_the_error_of_a_singular_quantity_is_infinite() -> None:
+    def quantity(verdict: str) -> sk.StudyQuantity:
+        numbers = dict.fromkeys(field.name for field in dataclasses.fields(sk.StudyQuantity))
+        runs: dict[str, list[float]] = {"run_values": [], "run_errors": []}
+        return _quantity({**numbers, **runs, "name": "stress", "unit": "Pa", "verdict": verdict, "sentence": ""})
+
+    assert math.isinf(quantity("singular").error) and math.isinf(quantity("singular").mesh)
+    assert math.isnan(quantity("singular").best) and math.isnan(quantity("not_measured").error)

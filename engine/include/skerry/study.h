@@ -57,6 +57,14 @@ struct StudyColumn {
     // largest value of the run. Else no_index.
     Index node = no_index;
     Vec3 place = Vec3::Zero();
+    Real shape_error = 0;  // error of the values, relative, because flat faces stand for a curved surface
+};
+
+/// The faces on which a traction of a scene acts.
+struct StudyLoad {
+    std::string name;  // of the load
+    Real area = 0;     // of its faces at the start [m^2]
+    bool operator==(const StudyLoad&) const = default;
 };
 
 /// A run of a study. `skerry run SCENE` with the assignments as --set repeats the run, except for its perturbation.
@@ -71,6 +79,7 @@ struct StudyRun {
     Integrator integrator = Integrator::symplectic_euler;
     std::uint64_t state_hash = 0;  // hash of the state at the end
     std::size_t tetrahedra = 0, max_contacts = 0;
+    std::vector<StudyLoad> loads{};
     std::vector<Real> time{};  // simulated time of each row [s]
     std::vector<StudyColumn> columns{};
 };
@@ -95,7 +104,7 @@ struct EnumNames<StudyVerdict> {
 
 /// A number with its error bar. Values that were not measured are NaN.
 struct StudyQuantity {
-    std::string name;  // name as in the table of a sweep, for example tip.displacement_z_end
+    std::string name;  // name as in the table of a sweep without its unit, for example tip.displacement_z_end
     std::string unit;  // SI unit; 1 for counts and ratios
     Real value = std::numeric_limits<Real>::quiet_NaN();  // value of the scene as it is
     // Value extrapolated to vanishing edges, steps and tolerance, and its error.
@@ -183,8 +192,8 @@ std::string study_text(const StudyResult& result);
 /// quantities and runs. The page is one file that needs no other files.
 std::string study_page(const StudyResult& result);
 
-/// Returns a JSON document with all numbers except the time series of the runs. A number that is not finite becomes
-/// null.
+/// Returns a JSON document with all numbers except the time series of the runs. The key `bands` has the error bars of
+/// the rows of the first run. A number that is not finite becomes null.
 std::string study_json(const StudyResult& result);
 
 /// Writes the scene with the cheapest settings, which `result` must have. Paths in the new file lead to the files of

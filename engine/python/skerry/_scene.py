@@ -8,8 +8,9 @@ import os
 import sys
 import warnings
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from tempfile import NamedTemporaryFile
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -216,6 +217,19 @@ def load_scene(
             "scene: found a text in JSON, expected a path of a JSON file or a mapping, such as json.loads(text)"
         )
     return _with_doubts(_core.load_scene(file, assignments, count, python))
+
+
+@contextmanager
+def scene_file(scene: Path | Mapping[str, Json]) -> Iterator[str]:
+    """Path of a JSON file with a scene. For a mapping the file is temporary, and lies in the present folder, where the
+    paths of mesh files start."""
+    if not isinstance(scene, Mapping):
+        yield path_text(scene, "scene", "a path of a JSON file or a mapping")
+        return
+    with NamedTemporaryFile("w", encoding="utf-8", prefix="scene_", suffix=".json", dir=os.getcwd()) as file:
+        json.dump({"name": "scene", **_plain(scene, "")}, file)
+        file.flush()
+        yield file.name
 
 
 def assignments_of(overrides: Mapping[str, Json] | None) -> list[str]:

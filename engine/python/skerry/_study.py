@@ -7,6 +7,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterable, Mapping
+from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._arrays import checked, counted, flag, path_text, real
-from ._scene import Json, Path, assignments_of
+from ._scene import Json, Path, assignments_of, scene_file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,7 +28,8 @@ class StudyQuantity:
     noise: difference of runs whose start differs by 1e-12 m. best, best_error: extrapolated value and its error. scale:
     size to which relative errors refer. mesh_order, step_order: observed orders of convergence, and those of the
     theory, `expected`. agree_until: time until which runs with a start 1e-12 m apart agree, infinite if they agree to
-    the end [s]. verdict: "known", "irregular", "singular", "chaotic" or "not_measured". sentence: the verdict in words.
+    the end [s]. run_values, run_errors: value of each run and half width of its error bar, in the order of Study.runs.
+    verdict: "known", "irregular", "singular", "chaotic" or "not_measured". sentence: the verdict in words.
     """
 
     name: str
@@ -46,6 +48,8 @@ class StudyQuantity:
     step_order: float
     expected_step_order: float
     agree_until: float
+    run_values: tuple[float, ...]
+    run_errors: tuple[float, ...]
     verdict: str
     sentence: str
 
@@ -95,7 +99,7 @@ class Study:
 
     __slots__ = ("_core", "_scene", "agree_until", "cheapest", "growth_rate", "quantities", "runs", "sentences")
 
-    def __init__(self, core: Any, scene: str) -> None:
+    def __init__(self, core: Any, scene: Path | Mapping[str, Json]) -> None:
         self._core = core
         self._scene = scene
         values = json.loads(core.json())
@@ -129,7 +133,8 @@ class Study:
         """Writes a scene file with the cheapest settings.
 
         SceneError: there are none."""
-        self._core.write_cheapest_scene(self._scene, path_text(file, "file"))
+        with scene_file(self._scene) as path:
+            self._core.write_cheapest_scene(path, path_text(file, "file"))
 
     def __str__(self) -> str:
         text: str = self._core.text()
@@ -140,7 +145,7 @@ class Study:
 
 
 def study(
-    scene: Path,
+    scene: Path | Mapping[str, Json],
     *,
     error: float = 0.01,
     probes: Iterable[str] = (),
@@ -158,39 +163,40 @@ def study(
         print(found)
         found.quantities["cube.displacement_z_end"].error
 
-    scene: path of a JSON file. error: wanted relative error, for which the cheapest settings are searched. probes:
-    names NAME or NAME.QUANTITY of probes and bodies, default: all. seconds: time at which the runs end, default: that
-    of the scene [s]. overrides: as for load_scene(). threads: number of threads, 0: all cores. budget: largest time of
-    the study, divided by that of one run with one thread; finer meshes and other runs that do not fit are left out,
-    default: 15, or more as long as the study takes less than 5 s. folder: keeps the runs; a later
-    study of the same scene continues with them. redo: True makes all runs again and replaces those in the folder. progress: True
-    writes the share that is done to the standard error output; a function is called with this share and the numbers of
-    the runs that are done and of all runs.
+    scene: path of a JSON file, or a mapping with the content of one, which is kept in a temporary file in the present
+    folder meanwhile. error: wanted relative error, for which the cheapest settings are searched. probes: names NAME or
+    NAME.QUANTITY of probes and bodies, default: all. seconds: time at which the runs end, default: that of the scene
+    [s]. overrides: as for load_scene(). threads: number of threads, 0: all cores. budget: largest time of the study,
+    divided by that of one run with one thread; finer meshes and other runs that do not fit are left out, default: 15,
+    or more as long as the study takes less than 5 s. folder: keeps the runs; a later study of the same scene continues
+    with them. redo: True makes all runs again. progress: True writes the share that is done to
+    the standard error output; a function is called with this share and the numbers of the runs that are done and of all
+    runs.
 
     The numbers do not depend on the number of threads, except through the budget. A run that fails is a result. Ctrl-C
     ends the study; runs that have ended stay in the folder. SceneError: the scene or a setting is wrong."""
-    file = path_text(scene, "scene")
     names = list(checked(probes, "study: probes", Iterable))
     if isinstance(probes, str) or not all(isinstance(name, str) for name in names):
         raise TypeError(f"study: probes: found {probes!r}, expected a list of names")
     called: Callable[[float, int, int], object] | None
     called = progress if callable(progress) else _show if flag(progress, "study: progress") else None
-    core = _core.study(
-        file,
-        real(error, "study: error"),
-        names,
-        None if seconds is None else real(seconds, "study: seconds"),
-        assignments_of(overrides),
-        counted(threads, "study: threads"),
-        None if budget is None else real(budget, "study: budget"),
-        "" if folder is None else path_text(folder, "folder"),
-        flag(redo, "study: redo"),
-        os.environ.get("SKERRY_FILL_PYTHON", sys.executable),
-        called,
-    )
+    with scene_file(scene) as file:
+        core = _core.study(
+            file,
+            real(error, "study: error"),
+            names,
+            None if seconds is None else real(seconds, "study: seconds"),
+            assignments_of(overrides),
+            counted(threads, "study: threads"),
+            None if budget is None else real(budget, "study: budget"),
+            "" if folder is None else path_text(folder, "folder"),
+            flag(redo, "study: redo"),
+            os.environ.get("SKERRY_FILL_PYTHON", sys.executable),
+            called,
+        )
     if called is _show:
-        print("\r\033[K100 %", file=sys.stderr)
-    return Study(core, file)
+        print("\r100 %".ljust(40), file=sys.stderr)  # covers the line of _show
+    return Study(core, deepcopy(scene))
 
 
 def _show(share: float, done: int, total: int) -> None:
@@ -201,7 +207,11 @@ def _quantity(values: dict[str, Any]) -> StudyQuantity:
     """A number that is not finite is None in JSON: an infinite one in the following keys, else an unknown one."""
     infinite = ("agree_until", "error", "mesh") if values["verdict"] == "singular" else ("agree_until",)
     absent = {key: math.inf if key in infinite else math.nan for key, value in values.items() if value is None}
-    return StudyQuantity(**{**values, **absent})
+    runs = {
+        key: tuple(math.nan if number is None else number for number in values[key])
+        for key in ("run_values", "run_errors")
+    }
+    return StudyQuantity(**{**values, **absent, **runs})
 
 
 def _run(values: dict[str, Any], series: tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]) -> StudyRun:

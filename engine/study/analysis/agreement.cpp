@@ -20,6 +20,10 @@ Real difference_at(const PerturbedRuns& runs, std::size_t column, std::size_t ro
 
 }  // namespace
 
+Real first_difference(const PerturbedRuns& runs, std::size_t column) {
+    return runs.run->time.empty() ? 0 : difference_at(runs, column, 0);
+}
+
 Real agree_until(const PerturbedRuns& runs, std::size_t column, Real scale) {
     for (std::size_t row = 0; row < runs.run->time.size(); ++row)
         if (difference_at(runs, column, row) > agreement_share * scale) return runs.run->time[row > 0 ? row - 1 : 0];

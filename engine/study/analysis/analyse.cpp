@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "engine/study/analysis/cheapest.h"
 
 namespace skerry {
@@ -36,7 +36,7 @@ StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings) {
     result.wanted_error = settings.error;
     result.runs = std::move(runs);
     const StudyFamily family(result.runs);
-    const std::vector<Real> scales = column_scales(*family.scene);
+    const std::vector<Real> scales = column_scales(family);
     const PerturbedRuns perturbed = family.perturbed();
     std::vector<Real> until;
     for (std::size_t column = 0; column < scales.size(); ++column) {
@@ -55,6 +55,9 @@ StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings) {
     for (std::size_t column = 0; column < scales.size(); ++column) {
         const StudyColumn& what = family.scene->columns[column];
         if (!what.reported || (is_statistic(what) && !chaotic && reports_bodies)) continue;
+        // Values below the effect of 1e-12 m or of rounding mean nothing, as the stress of a body that flies freely.
+        if (settings.probes.empty() && what.what.unit != "m" && family.sizes[column] < agreement_share * scales[column])
+            continue;
         result.bands[column] = error_band(family, column, scales[column], until[column]);
         for (const StudyFigure figure : figures_of(family, column, until[column], scales[column]))
             measured.push_back(measure(family, column, figure, scales[column], until[column], settings.error));

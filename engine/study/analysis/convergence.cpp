@@ -14,18 +14,20 @@ constexpr Real safety = 1.5;
 constexpr Real assumed_order = 1;  // order of two levels
 // An observed order is near the theory between these shares of the least and the largest order of the theory.
 constexpr Real near_least = 0.5, near_most = 1.5;
+// Two levels that differ by a larger share of the value are too coarse for any order to hold.
+constexpr Real coarse_share = 0.3;
 
 }  // namespace
 
-Convergence::Convergence(std::vector<ConvergenceLevel> levels, TheoryOrder theory, Real noise)
+Convergence::Convergence(std::vector<ConvergenceLevel> levels, TheoryOrder theory, Real noise, Real size)
     : levels_(std::move(levels)) {
     std::erase_if(levels_, [](const ConvergenceLevel& level) { return !std::isfinite(level.value); });
     std::ranges::sort(levels_, std::ranges::greater(), &ConvergenceLevel::h);
     const bool has_scene = std::ranges::any_of(levels_, [](const ConvergenceLevel& level) { return level.h == 1; });
-    if (has_scene && levels_.size() > 1) find_order(theory, noise);
+    if (has_scene && levels_.size() > 1) find_order(theory, noise, size);
 }
 
-void Convergence::find_order(TheoryOrder theory, Real noise) {
+void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
     const std::size_t n = levels_.size();
     const ConvergenceLevel &fine = levels_[n - 1], &middle = levels_[n - 2];
     const Real ratio = middle.h / fine.h, difference = middle.value - fine.value;
@@ -39,6 +41,13 @@ void Convergence::find_order(TheoryOrder theory, Real noise) {
     constexpr Real same_ratio = 1e-6;
     if (n == 2 || std::abs(levels_[n - 3].h / middle.h - ratio) > same_ratio * ratio) {
         shape_ = ConvergenceShape::two_levels;
+        if (std::abs(difference) > coarse_share * size) {
+            shape_ = ConvergenceShape::coarse;
+            used_order_ = 0;
+            // The larger of both values. An offset, as in a position, does not count.
+            least_error_ =
+                std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
+        }
         return;
     }
     const Real coarse_difference = levels_[n - 3].value - middle.value;
@@ -65,19 +74,19 @@ void Convergence::find_order(TheoryOrder theory, Real noise) {
 }
 
 bool Convergence::irregular() const {
-    return shape_ == ConvergenceShape::slow || shape_ == ConvergenceShape::fast ||
+    return shape_ == ConvergenceShape::coarse || shape_ == ConvergenceShape::slow || shape_ == ConvergenceShape::fast ||
            shape_ == ConvergenceShape::oscillating;
 }
 
 Real Convergence::error_of(Real value) const {
     if (shape_ == ConvergenceShape::unmeasured) return unknown;
-    return safety * (std::abs(value - levels_.back().value) + remainder_);
+    return std::max(least_error_, safety * (std::abs(value - levels_.back().value) + remainder_));
 }
 
 Real Convergence::error_at(Real h) const {
     if (shape_ == ConvergenceShape::unmeasured) return unknown;
     const Real finest = levels_.back().h;
-    if (h < finest) return safety * remainder_ * std::pow(h / finest, used_order_);
+    if (h < finest) return std::max(least_error_, safety * remainder_ * std::pow(h / finest, used_order_));
     // A coarse level that is near the limit by accident has at least the error of the finer levels.
     Real error = 0;
     for (const ConvergenceLevel& level : levels_)

@@ -22,20 +22,22 @@ struct TheoryOrder {
 /// Behaviour of the differences between successive levels.
 /// - unmeasured: there is one level only.
 /// - two_levels: two levels give a difference and no order.
+/// - coarse: two levels differ so much that the error of neither is small.
 /// - regular: the observed order is near that of the theory.
 /// - equal: the differences are not above the noise.
 /// - slow: the observed order is far below that of the theory, or the differences grow.
 /// - fast: the observed order is far above that of the theory, so the coarse levels do not follow it yet.
 /// - oscillating: successive differences have opposite signs.
-enum class ConvergenceShape { unmeasured, two_levels, regular, equal, slow, fast, oscillating };
+enum class ConvergenceShape { unmeasured, two_levels, coarse, regular, equal, slow, fast, oscillating };
 
 /// Error of a value, and its limit for vanishing h.
 class Convergence {
 public:
     Convergence() = default;
     /// Needs one level with h = 1. Levels with values that are not finite are omitted. `noise` is the size of
-    /// differences without meaning, for example that of rounding errors.
-    Convergence(std::vector<ConvergenceLevel> levels, TheoryOrder theory, Real noise);
+    /// differences without meaning, for example that of rounding errors. `size`: size of the value, against which the
+    /// difference of two levels is large or small.
+    Convergence(std::vector<ConvergenceLevel> levels, TheoryOrder theory, Real noise, Real size = infinity);
 
     ConvergenceShape shape() const { return shape_; }
     /// Observed order; NaN unless three levels with a constant ratio of h differ by more than the noise.
@@ -55,13 +57,14 @@ public:
     Real limit_error() const;
 
 private:
-    void find_order(TheoryOrder theory, Real noise);
+    void find_order(TheoryOrder theory, Real noise, Real size);
 
     std::vector<ConvergenceLevel> levels_{};  // from coarse to fine
     ConvergenceShape shape_ = ConvergenceShape::unmeasured;
     Real order_ = std::numeric_limits<Real>::quiet_NaN();
-    Real used_order_ = 1;  // order with which errors are predicted
-    Real remainder_ = 0;   // estimated error of the finest level
+    Real used_order_ = 1;   // order with which errors are predicted
+    Real remainder_ = 0;    // estimated error of the finest level
+    Real least_error_ = 0;  // error bounds of all levels are at least this large
 };
 
 }  // namespace skerry

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <map>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 
 namespace skerry {
 
 namespace {
 
 constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real matters = 0.2;  // share of the error bar from which an irregular part matters
 
 const char* ending_of(StudyFigure figure) {
     switch (figure) {
@@ -61,7 +62,7 @@ Real figure_value(const StudyRun& run, std::size_t column, StudyFigure figure, R
 
 /// Group of columns with a common scale.
 std::string group_of(const SeriesColumn& column) {
-    if (column.unit == "J") return column.probe + " [J]";
+    if (column.unit == "J" || column.unit == "N") return column.probe + " [" + column.unit + "]";
     const std::string& name = column.quantity;
     const bool component = name.size() > 2 && name[name.size() - 2] == '_' && name.back() >= 'x' && name.back() <= 'z';
     return column.probe + "." + (component ? name.substr(0, name.size() - 2) : name);
@@ -117,7 +118,7 @@ std::string singular_text(const StudyFamily& family, std::size_t column, StudyFi
     constexpr Real least_rate = 0.1, least_steadiness = 0.75, same_place = 0.25;
     const StudyColumn& fine = levels.back()->columns[column];
     const StudyColumn& before = levels[levels.size() - 2]->columns[column];
-    if (!(rate[1] > least_rate) || !(rate[1] > least_steadiness * rate[0])) return {};
+    if (!(std::min(rate[0], rate[1]) > least_rate) || !(rate[1] > least_steadiness * rate[0])) return {};
     if ((fine.place - before.place).norm() > same_place * scene.size) return {};
     const Vec3& at = scene.place;
     return "grows " + short_number(std::exp2(rate[1])) + " times with each halving of the edges, at node " +
@@ -128,10 +129,14 @@ std::string singular_text(const StudyFamily& family, std::size_t column, StudyFi
 }
 
 std::string irregular_text(const char* part, ConvergenceShape shape) {
-    const char* behaviour = shape == ConvergenceShape::oscillating ? "oscillates"
+    if (shape == ConvergenceShape::coarse)
+        return std::string("two levels of the ") + part +
+               " differ by more than 30 % of the value: both are too coarse, and the error may exceed the error bar";
+    const char* behaviour = shape == ConvergenceShape::oscillating ? "changes its sign"
                             : shape == ConvergenceShape::fast      ? "falls faster than the theory says"
                                                                    : "does not fall as it should";
-    return std::string("the ") + part + " error " + behaviour + ", so the value is not extrapolated";
+    return std::string("the ") + part + " error " + behaviour +
+           ", so the value is not extrapolated; the error bar is a multiple of the largest difference and can be used";
 }
 
 /// Sets the errors and the extrapolated value of a quantity from its families of runs.
@@ -146,9 +151,29 @@ void combine(MeasuredQuantity& quantity) {
         {&quantity.mesh, r.mesh}, {&quantity.step, r.step}, {&quantity.contact, r.contact}};
     for (const auto& [convergence, error] : parts) {
         if (convergence->shape() == ConvergenceShape::unmeasured && error == 0) continue;  // there is no such error
+        if (convergence->irregular() && error <= matters * r.error) {
+            r.best_error += error;  // the part is too small to spoil the extrapolation of the others
+            continue;
+        }
         r.best += convergence->limit() - r.value;
         r.best_error += convergence->limit_error();
     }
+    r.best_error += quantity.shape;
+}
+
+/// Enlarges the mesh error of linear elements if smoothed elements on the same mesh have a value outside the error bar.
+/// Linear elements that lock converge so slowly that the differences of their meshes do not show the error.
+void apply_smoothed(Real value, MeasuredQuantity& quantity) {
+    constexpr Real errors_of_difference = 1.5;
+    StudyQuantity& r = quantity.result;
+    quantity.least_mesh = errors_of_difference * std::abs(value - r.value);
+    r.error += quantity.least_mesh + quantity.shape - r.mesh;
+    r.mesh = quantity.least_mesh + quantity.shape;
+    r.best = r.best_error = no_value;
+    r.verdict = StudyVerdict::irregular;
+    r.sentence += (r.sentence.empty() ? "" : "; ") + std::string("linear elements are too stiff here: with smoothed ") +
+                  "elements the value is " + short_number(value, 4) + " " + r.unit +
+                  ", and the error bar is a multiple of the difference";
 }
 
 void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Real wanted, MeasuredQuantity& quantity) {
@@ -176,6 +201,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
             return decide(StudyVerdict::not_measured, "the mesh error is unknown: " + reason);
         r.mesh = 0;
         for (const auto& [variant, value] : quantity.elements) r.mesh = std::max(r.mesh, std::abs(value - r.value));
+        r.mesh += quantity.shape;
         r.error = r.mesh + r.step + r.contact + r.noise;
         return decide(StudyVerdict::not_measured,
                       "the mesh error is only guessed from other elements on the same mesh: " + reason);
@@ -184,16 +210,22 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
         return decide(StudyVerdict::not_measured, "the step error is unknown: " + reasons_of(family, is_step));
     if (std::isnan(r.contact))
         return decide(StudyVerdict::not_measured, "the contact error is unknown: " + reasons_of(family, is_contact));
-    // An irregular part matters if it is a fifth of the error bar and a tenth of the wanted error.
-    constexpr Real share_of_error = 0.2, share_of_wanted = 0.1;
+    constexpr Real share_of_wanted = 0.1;  // smaller irregular parts do not matter
     decide(StudyVerdict::known, "");
     const auto check = [&](const char* name, const Convergence& part, Real error) {
-        if (part.irregular() && error > share_of_error * r.error && error > share_of_wanted * wanted * r.scale)
+        if (part.irregular() && error > matters * r.error && error > share_of_wanted * wanted * r.scale)
             decide(StudyVerdict::irregular,
                    (r.sentence.empty() ? "" : r.sentence + "; ") + irregular_text(name, part.shape()));
     };
     check("mesh", quantity.mesh, r.mesh);
     check("step", quantity.step, r.step);
+    for (const StudyRun& run : *family.all)
+        if (run.variant.draw != 0 && run.status == StudyRunStatus::failed && r.sentence.empty())
+            decide(StudyVerdict::irregular, "a run begun 1e-12 m apart failed, so this scene may fail by chance");
+    for (const auto& [variant, value] : quantity.elements)
+        if (variant.element == ElementKind::smoothed &&
+            std::abs(value - r.value) > std::max(r.error, share_of_wanted * wanted * r.scale))
+            apply_smoothed(value, quantity);
     for (const auto& [variant, value] : quantity.elements)
         if (std::abs(value - r.value) > std::max(r.error, wanted * r.scale) && r.sentence.empty())
             r.sentence = "with " + std::string(name_of(*variant.element)) + " elements the value is " +
@@ -202,8 +234,8 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
 
 /// Measures the error of a number of each run.
 template <class ValueOf>
-MeasuredQuantity measure_values(const StudyFamily& family, const SeriesColumn& what, Real scale,
-                                const ValueOf& value_of) {
+MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, Real scale, const ValueOf& value_of) {
+    const SeriesColumn& what = family.scene->columns[column].what;
     MeasuredQuantity quantity;
     StudyQuantity& r = quantity.result;
     r.unit = what.unit;
@@ -223,8 +255,8 @@ MeasuredQuantity measure_values(const StudyFamily& family, const SeriesColumn& w
     Real noise = std::max(rounding * r.scale, quantity.noise);
     quantity.contact = Convergence(contact, {1, 1}, noise);
     if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());  // the solver's error is noise, too
-    quantity.mesh = Convergence(mesh, mesh_theory(what), noise);
-    quantity.step = Convergence(step, step_theory(*family.scene), noise);
+    quantity.mesh = Convergence(mesh, mesh_theory(what), noise, family.sizes[column]);
+    quantity.step = Convergence(step, step_theory(*family.scene), noise, family.sizes[column]);
     r.expected_mesh_order = mesh_theory(what).least;
     r.expected_step_order = step_theory(*family.scene).least;
     // A part that the study has no runs for is zero: rigid bodies have no mesh error, scenes without contacts no
@@ -235,6 +267,9 @@ MeasuredQuantity measure_values(const StudyFamily& family, const SeriesColumn& w
         return planned ? convergence.error() : 0;
     };
     r.mesh = error(quantity.mesh, is_mesh);
+    // Lengths may have an offset, which has no error.
+    quantity.shape = family.scene->columns[column].shape_error * std::min(std::abs(r.value), family.sizes[column]);
+    r.mesh += quantity.shape;
     r.step = error(quantity.step, is_step);
     r.contact = error(quantity.contact, is_contact);
     r.noise = quantity.noise;
@@ -244,10 +279,14 @@ MeasuredQuantity measure_values(const StudyFamily& family, const SeriesColumn& w
 
 }  // namespace
 
-StudyFamily::StudyFamily(const std::vector<StudyRun>& runs) : all(&runs), scene(&runs.front()) {
+StudyFamily::StudyFamily(const std::vector<StudyRun>& runs)
+    : all(&runs), scene(&runs.front()), sizes(column_sizes(runs.front())) {
+    const auto same_column = [](const StudyColumn& a, const StudyColumn& b) {
+        return a.what.probe == b.what.probe && a.what.quantity == b.what.quantity && a.values.size() == b.values.size();
+    };
     for (const StudyRun& run : runs)
         if (run.status == StudyRunStatus::ok && run.time.size() == scene->time.size() &&
-            run.columns.size() == scene->columns.size())
+            std::ranges::equal(run.columns, scene->columns, same_column))
             comparable.push_back(&run);
 }
 
@@ -262,7 +301,7 @@ bool is_statistic(const StudyColumn& column) {
     return column.what.probe == "bodies";
 }
 
-std::vector<Real> column_scales(const StudyRun& run) {
+std::vector<Real> column_sizes(const StudyRun& run) {
     std::map<std::string, Real> largest;
     for (const StudyColumn& column : run.columns) {
         if (column.values.empty()) continue;
@@ -274,11 +313,34 @@ std::vector<Real> column_scales(const StudyRun& run) {
             if (value > scale) scale = value;  // unknown values do not count
         }
     }
-    constexpr Real least_share_of_size = 1e-3;
-    std::vector<Real> scales;
-    for (const StudyColumn& column : run.columns) {
-        const Real scale = largest[group_of(column.what)];
-        scales.push_back(column.what.unit == "m" ? std::max(scale, least_share_of_size * column.size) : scale);
+    std::vector<Real> sizes;
+    for (const StudyColumn& column : run.columns) sizes.push_back(largest[group_of(column.what)]);
+    return sizes;
+}
+
+std::vector<Real> column_scales(const StudyFamily& family) {
+    constexpr Real rounding = 1e-9, least_share = 1e-6;
+    const StudyRun& run = *family.scene;
+    const PerturbedRuns perturbed = family.perturbed();
+    std::vector<Real> scales = family.sizes;
+    Real force = 0, motion = 0;
+    std::map<std::string, Real> energy;  // largest energy of each probe [J]
+    for (std::size_t c = 0; c < scales.size(); ++c) {
+        const StudyColumn& column = run.columns[c];
+        if (column.what.unit == "N") force = std::max(force, scales[c]);
+        if (column.what.unit == "m") motion = std::max(motion, scales[c]);
+        if (column.what.unit != "J") continue;
+        for (const Real value : column.values)
+            if (std::abs(value) > energy[column.what.probe]) energy[column.what.probe] = std::abs(value);
+    }
+    for (std::size_t c = 0; c < scales.size(); ++c) {
+        const StudyColumn& column = run.columns[c];
+        const std::string& unit = column.what.unit;
+        const Real least = unit == "m"   ? std::max(rounding * column.size, least_share * motion)
+                           : unit == "J" ? rounding * energy[column.what.probe]
+                           : unit == "N" ? least_share * force
+                                         : 0;
+        scales[c] = std::max({scales[c], least, first_difference(perturbed, c) / agreement_share});
     }
     return scales;
 }
@@ -286,7 +348,9 @@ std::vector<Real> column_scales(const StudyRun& run) {
 std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t column, Real agree_until, Real scale) {
     const StudyColumn& scene = family.scene->columns[column];
     std::vector<StudyFigure> figures;
-    if (agree_until < family.scene->time.back() && !is_statistic(scene)) figures.push_back(StudyFigure::agreed);
+    if (agree_until < family.scene->time.back() && !is_statistic(scene) &&
+        std::isfinite(figure_value(*family.scene, column, StudyFigure::agreed, agree_until)))
+        figures.push_back(StudyFigure::agreed);
     figures.push_back(StudyFigure::end);
     const auto value = [&](StudyFigure figure) { return figure_value(*family.scene, column, figure, 0); };
     const bool relative = scene.what.unit == "m" || scene.what.unit == "J";
@@ -305,7 +369,7 @@ MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFig
                          Real agree_until, Real wanted) {
     const SeriesColumn& what = family.scene->columns[column].what;
     const auto value_of = [&](const StudyRun& run) { return figure_value(run, column, figure, agree_until); };
-    MeasuredQuantity quantity = measure_values(family, what, scale, value_of);
+    MeasuredQuantity quantity = measure_values(family, column, scale, value_of);
     StudyQuantity& r = quantity.result;
     r.name = what.probe + "." + what.quantity + ending_of(figure);
     r.agree_until = agree_until;
@@ -324,14 +388,16 @@ Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant) {
     const auto at = [](const Convergence& convergence, Real h, Real otherwise) {
         return convergence.shape() == ConvergenceShape::unmeasured ? otherwise : convergence.error_at(h);
     };
-    Real mesh = at(quantity.mesh, std::exp2(Real{-1} * variant.refine), r.mesh);
+    Real mesh = at(quantity.mesh, std::exp2(Real{-1} * variant.refine), r.mesh - quantity.shape);
     if (variant.element && quantity.mesh.shape() != ConvergenceShape::unmeasured) {
         mesh = no_value;
         for (const auto& [run, value] : quantity.elements)
             if (run.element == variant.element && run.refine == variant.refine) mesh = quantity.mesh.error_of(value);
+    } else {
+        mesh = std::max(mesh, quantity.least_mesh * std::exp2(Real{-1} * std::max(variant.refine, 0)));
     }
-    return mesh + at(quantity.step, variant.step, r.step) + at(quantity.contact, variant.tolerance, r.contact) +
-           quantity.noise;
+    return mesh + quantity.shape + at(quantity.step, variant.step, r.step) +
+           at(quantity.contact, variant.tolerance, r.contact) + quantity.noise;
 }
 
 std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real scale, Real agree_until) {
@@ -340,7 +406,7 @@ std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real
     for (std::size_t row = 0; row < scene.values.size(); ++row) {
         const bool agreed = family.scene->time[row] <= agree_until || is_statistic(scene);
         const auto value_of = [&](const StudyRun& run) { return run.columns[column].values[row]; };
-        band.push_back(agreed ? measure_values(family, scene.what, scale, value_of).result.error : no_value);
+        band.push_back(agreed ? measure_values(family, column, scale, value_of).result.error : no_value);
     }
     return band;
 }

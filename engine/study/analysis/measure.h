@@ -22,6 +22,7 @@ struct StudyFamily {
     const std::vector<StudyRun>* all = nullptr;
     const StudyRun* scene = nullptr;            // the scene as it is
     std::vector<const StudyRun*> comparable{};  // runs that ended well, with the times of `scene`; includes `scene`
+    std::vector<Real> sizes{};                  // size of the values of each column, see column_sizes()
 
     explicit StudyFamily(const std::vector<StudyRun>& runs);
     PerturbedRuns perturbed() const;
@@ -33,12 +34,20 @@ struct MeasuredQuantity {
     Convergence mesh{}, step{}, contact{};
     Real noise = 0;                                         // largest difference of the perturbed runs
     std::vector<std::pair<StudyVariant, Real>> elements{};  // value of each run with another kind of element
+    Real shape = 0;       // part of the mesh error that finer meshes keep, see StudyColumn::shape_error
+    Real least_mesh = 0;  // mesh error that linear elements have at least, by comparison with smoothed ones
 };
 
-/// Returns the scale of each column, to which its errors are relative: the largest absolute value of the run, for
-/// lengths and energies the largest change since the start. The components of a vector have the same scale, and so have
-/// the energies of a probe. Lengths have at least the scale of a thousandth of the body.
-std::vector<Real> column_scales(const StudyRun& run);
+/// Returns the largest absolute value of each column over the run, for lengths and energies the largest change since
+/// the start. The components of a vector have the same size, and so have the energies and the forces of a probe.
+std::vector<Real> column_sizes(const StudyRun& run);
+
+/// Returns the scale of each column, to which its errors are relative: its size, but at least
+/// - for lengths the rounding error of the size of the body, and a millionth of the largest motion of all columns,
+/// - for energies the rounding error of the largest energy of the probe,
+/// - for forces a millionth of the largest force of all columns,
+/// - the difference that the perturbation of the start makes at once, divided by the share of agreement.
+std::vector<Real> column_scales(const StudyFamily& family);
 
 /// Returns the figures of a column that get an error bar.
 std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t column, Real agree_until, Real scale);

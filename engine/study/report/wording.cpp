@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 
 namespace skerry {
 
@@ -36,9 +36,19 @@ std::string to_digit_of(Real value, Real error) {
     return text;
 }
 
+/// Formats a share in percent with two digits, large ones as whole numbers.
+std::string share_text(Real share) {
+    constexpr Real whole = 99.5, most_written_out = 1e6;  // [%]
+    const Real percents = 100 * share;
+    const bool is_whole = percents >= whole && percents < most_written_out;
+    return (is_whole ? std::to_string(std::lround(percents)) : short_number(percents, 2)) + " %";
+}
+
 std::string order_text(const char* name, Real order, Real expected) {
-    if (std::isnan(order)) return {};
-    return std::string(name) + " " + short_number(order, 2) + " (" + short_number(expected, 2) + " expected)";
+    if (!std::isfinite(order)) return {};
+    // Where the theory has a lowest and a highest order, `expected` is the lowest one.
+    return std::string(name) + " " + short_number(order, 2) + " (" + (expected < 2 ? "at least " : "") +
+           short_number(expected, 2) + " expected)";
 }
 
 }  // namespace
@@ -79,7 +89,16 @@ QuantityText quantity_text(const StudyQuantity& q) {
         text.best = to_digit_of(in_unit(q.best), in_unit(q.best_error));
         text.best_error = in_unit(q.best_error) > 0 ? part(q.best_error) : "0";
     }
-    if (has_error && in_unit(q.error) > 0 && q.scale > 0) text.share = short_number(100 * q.error / q.scale, 2) + " %";
+    if (has_error && in_unit(q.error) > 0 && q.scale > 0) {
+        text.share = share_text(q.error / q.scale);
+        // The share is that of the scale, which a reader must know if it is not about the value.
+        constexpr Real near = 0.1;
+        if (std::abs(std::abs(q.value) - q.scale) > near * q.scale) {
+            const auto [scale_factor, scale_prefix] = prefix_of(q.scale, q.unit);
+            text.share +=
+                " of " + short_number(q.scale / scale_factor) + (q.unit == "1" ? "" : " " + scale_prefix + q.unit);
+        }
+    }
     text.orders = order_text("order", q.mesh_order, q.expected_mesh_order);
     // The order of the steps is of interest if the steps have a good part of the error.
     constexpr Real share = 0.2;

@@ -168,7 +168,8 @@ public:
         }
         start(b, twins);
         const Kept kept(model_, twins.searched);
-        const ImplicitShare share = twins.search->find({step, step / gain_of_forms, headroom, twins.most_moment});
+        const ImplicitShare share = twins.search->find(
+            {step, step / gain_of_forms, headroom, twins.most_moment, largest_cluster, model_.nodes.inverse_mass});
         const Found found = judged(model_, twins.searched, share, twins.most_moment);
         Result result{step, found, Kept(model_, twins.searched)};
         kept.put_back(model_, twins.searched);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "systems/dynamics/clusters/build_clusters.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/dynamics/stability/stiffness_share.h"
@@ -199,15 +200,20 @@ void ImplicitSearch::give_up(Real step) {
     if (!gave_up) least_need_ *= less;
 }
 
-ImplicitShare ImplicitSearch::added(const ImplicitGoal& goal) const {
+ImplicitShare ImplicitSearch::add_implicit(const ImplicitGoal& goal) {
     Real volume = 0, given_up = 0, added = 0;  // m^3; kg m^2
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
         volume += elements_.volume[b][l];
         if (share(b, l) != 0) return;
         given_up += elements_.volume[b][l];
-        added += added_moment(goal.step, goal.headroom * stiffness_[row(b)][l], elements_.volume[b][l]);
+        Real& modulus = out_.modulus[row(b)][l];
+        modulus = goal.headroom * stiffness_[row(b)][l];
+        added += added_moment(goal.step, modulus, elements_.volume[b][l]);
     });
-    return {.moment = added > 0 ? added / least_moment_ : 0, .too_many = given_up > most_volume * volume};
+    ImplicitShare result{.moment = added > 0 ? added / least_moment_ : 0, .too_many = given_up > most_volume * volume};
+    if (goal.most_nodes > 0 && !result.too_many)
+        result.too_many = cluster_sizes(elements_, blocks_, out_.modulus, goal.inverse_mass).largest > goal.most_nodes;
+    return result;
 }
 
 Real ImplicitSearch::estimate_volume(Real stable) const {
@@ -254,10 +260,10 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
         // The element would be unstable even with the full masses of its nodes.
         if (need(b, l, goal.stable) > 1) share(b, l) = 0;
     });
-    ImplicitShare found = added(goal);
+    ImplicitShare found = add_implicit(goal);
     bool found_enough = false;
     for (int round = 1;; ++round) {
-        // Implicit elements stay implicit, so later rounds cannot reduce their volume or moment of inertia.
+        // Implicit elements stay implicit, so later rounds cannot reduce their volume, moment of inertia or clusters.
         if (found.too_many || !(found.moment <= goal.most_moment)) return found;
         if (round % rounds_of_estimates == 1 || found_enough)
             measure();
@@ -271,15 +277,12 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
         if (found_enough) continue;  // the next round confirms the estimate by the rigorous bound
         if (round % rounds_of_sharing == 0) {
             give_up(goal.stable);
-            found = added(goal);
+            found = add_implicit(goal);
         }
         for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
             share(b, l) *= std::clamp(goal.stable / step_[row(b)][l], 1 / most_change, most_change);
         });
     }
-    for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
-        if (share(b, l) == 0) out_.modulus[row(b)][l] = goal.headroom * stiffness_[row(b)][l];
-    });
     return found;
 }
 

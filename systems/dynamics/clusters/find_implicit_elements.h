@@ -25,11 +25,16 @@ struct ImplicitGoal {
     Real stable;
     Real headroom;     // ratio of the assumed to the present stiffness of an implicit element
     Real most_moment;  // largest allowed ImplicitShare::moment; the search fails above it
+    // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. With a limit, inverse
+    // masses tell which nodes move; by row of NodeTable [1/kg].
+    std::size_t most_nodes = 0;
+    std::span<const Real> inverse_mass{};
 };
 
 struct ImplicitShare {
     Real moment = 0;  // moment of inertia added by the clusters, relative to the least principal moment of the body
-    bool too_many = false;  // the search failed: more than 3/4 of the volume would be implicit
+    // The search failed: more than 3/4 of the volume would be implicit, or a cluster would have too many nodes.
+    bool too_many = false;
 };
 
 /// Searches for the implicit elements of a body in one shape. find() can be called for any number of step lengths. Data
@@ -49,8 +54,8 @@ public:
 
     /// Shares the masses of the body so that every explicit element is stable at a step of goal.stable, and makes as
     /// few elements implicit as necessary. The elements that need the largest fraction of the masses of their nodes
-    /// become implicit first. The search stops when implicit elements have too much volume or add too much moment of
-    /// inertia. The outputs are then invalid.
+    /// become implicit first. The search stops when implicit elements have too much volume, add too much moment of
+    /// inertia or form too large a cluster. The outputs are then invalid.
     ImplicitShare find(const ImplicitGoal& goal);
 
     /// Estimate of the fraction of the volume that must be implicit, so that the masses of the nodes suffice for all
@@ -96,7 +101,8 @@ private:
     /// need() is at least least_need_. Elements whose nodes all belong to implicit elements are candidates as well,
     /// because they enlarge no cluster. If there is no candidate, the function lowers least_need_.
     void give_up(Real step);
-    ImplicitShare added(const ImplicitGoal& goal) const;
+    /// Writes the assumed moduli of the implicit elements, and returns what these elements add.
+    ImplicitShare add_implicit(const ImplicitGoal& goal);
 
     const ElementInputs elements_;
     Range blocks_;
@@ -124,8 +130,8 @@ private:
 
 /// Makes every explicit element implicit that is unstable at a step of goal.stable. Implicit elements stay implicit,
 /// and the mass shares and mass forms of all other elements are unchanged. This function is faster than
-/// ImplicitSearch::find(), but makes more elements implicit because masses are not shared anew. goal.most_moment is
-/// ignored.
+/// ImplicitSearch::find(), but makes more elements implicit because masses are not shared anew. The limits
+/// of the goal are ignored.
 ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> mass, const ImplicitGoal& goal, std::span<Real> stiffness_sum,
                                     const ImplicitOutputs& out, const ElementBounds& bounds);

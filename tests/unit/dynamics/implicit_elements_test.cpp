@@ -373,6 +373,14 @@ TEST_CASE("the search gives up the same elements as a simple one, however many s
         CHECK(search.find(goal).moment > goal.most_moment);
         goal.most_moment = found.moment;
         CHECK(search.find(goal).moment == found.moment);
+        // The limit on the nodes of a cluster acts likewise.
+        goal.inverse_mass = box.body.inverse_mass;
+        goal.most_nodes =
+            cluster_sizes(box.body.inputs(), box.body.blocks, box.body.elements.implicit_modulus, box.body.inverse_mass)
+                .largest;
+        CHECK(!search.find(goal).too_many);
+        --goal.most_nodes;
+        CHECK(search.find(goal).too_many);
     }
 }
 

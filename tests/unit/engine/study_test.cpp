@@ -3,6 +3,7 @@
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 #include <ostream>
 
 #include "engine/output/write_file.h"
@@ -348,6 +349,24 @@ TEST_CASE("runs of another scene are refused unless they may be replaced") {
           std::vector<std::string>{"materials.rubber.E=2e5", "seconds=0.02"});
 }
 
+TEST_CASE("flat faces of a cylinder are off by a twelfth of the square of their angle, those of a box are not") {
+    constexpr int count = 24;
+    constexpr Real angle = 2 * std::numbers::pi / count;
+    std::vector<Vec3> nodes;
+    std::vector<std::array<Index, 3>> triangles;
+    for (int i = 0; i < count; ++i) {
+        for (const Real z : {0.0, 0.3}) nodes.emplace_back(2 * std::cos(i * angle), 2 * std::sin(i * angle), z);
+        const Index a = 2 * i, b = 2 * ((i + 1) % count);
+        triangles.push_back({a, b, b + 1});
+        triangles.push_back({a, b + 1, a + 1});
+    }
+    const FlatFaces round = flat_faces(nodes, triangles);
+    CHECK(round.share == Approx(angle * angle / 12).epsilon(0.01));  // next term: a share of angle^2 / 12
+    CHECK(round.angle == Approx(angle));
+    const std::vector<Vec3> corner{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    CHECK(flat_faces(corner, std::vector<std::array<Index, 3>>{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}).share == 0);
+}
+
 TEST_CASE("wrong settings of a study are refused by name") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
@@ -402,6 +421,28 @@ TEST_CASE("the budget leaves out the costly runs, which are the less important o
     CHECK(made == std::vector<bool>{true, true, true, true, false, true});
     CHECK(plan[4].reason ==
           "with it the study would take about 21 times as long as one run, more than the budget of 10");
+}
+
+TEST_CASE("a study names the tractions that act on another area with finer meshes") {
+    const TemporaryFolder folder;
+    const auto sentences = [&](const std::string& upper) {
+        std::string pulled = hanging;
+        pulled.insert(pulled.rfind('}'), R"(, "loads": [{"name": "pull", "kind": "traction", "body": "arm",
+            "traction": [0, 0, -10], "box": {"lower": [-1, -1, -1], "upper": )" +
+                                             upper + "}}]");
+        StudySettings settings = small_study();
+        settings.seconds = 0.02;
+        std::vector<std::string> found = study(folder.write("pulled.json", pulled), settings).sentences;
+        std::erase_if(found, [](const std::string& sentence) { return !sentence.starts_with("Load "); });
+        return found;
+    };
+    // The box ends within the faces of the scene and at edges of the finer ones.
+    const std::vector<std::string> found = sentences("[0.026, 1, -0.099]");
+    REQUIRE(found.size() == 1);
+    CHECK(
+        found[0].starts_with("Load 'pull' acts on 0.005 m^2 in the scene as it is, and on 0.0075 m^2 with the mesh "
+                             "1 level finer"));
+    CHECK(sentences("[0.001, 1, -0.099]").empty());
 }
 
 TEST_CASE("a perturbation moves free nodes by at most 1e-12 m and leaves held nodes") {

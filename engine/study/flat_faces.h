@@ -1,0 +1,39 @@
+// Error of flat faces that stand for a curved surface (docs/methods/study.md 2).
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene_file.h"
+#include "skerry/scene.h"
+
+namespace skerry {
+
+/// Flat faces of a mesh that stand for a curved surface.
+struct FlatFaces {
+    // Mean distance of the flat faces from a smooth surface through their nodes, divided by its radius of curvature. 0
+    // if no part of the surface is curved.
+    Real share = 0;
+    Real angle = 0;  // largest angle between neighbouring faces of the curved surface [rad]
+};
+
+/// Measures closed or open triangles, of which neighbours that meet at a larger angle than 40 degrees form an edge.
+FlatFaces flat_faces(std::span<const Vec3> nodes, std::span<const std::array<Index, 3>> triangles);
+
+/// A deformable body whose refined meshes keep the flat faces of a file.
+struct FlatBody {
+    std::string name;
+    FlatFaces faces;
+    bool is_held = false;  // true if its displacements are deformations: it is pinned, and no pin moves
+
+    /// Relative error of displacements and stresses of the body; 0 unless it is held.
+    Real error() const;
+};
+/// Returns the bodies of the scene file that have curved surfaces. Bodies of included scenes are omitted.
+std::vector<FlatBody> flat_bodies(const SceneFile& file, const World& world);
+
+/// Returns the remark of a study on a body.
+std::string flat_text(const FlatBody& body);
+
+}  // namespace skerry
