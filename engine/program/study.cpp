@@ -23,7 +23,8 @@ struct StudyFiles {
     std::filesystem::path json, csv, page, cheapest;
 };
 
-/// Returns the paths of the result files. Throws SceneError if one of them cannot be written, or is a file of the scene.
+/// Returns the paths of the result files. Throws SceneError if one of them cannot be written, or is a file of the
+/// scene.
 StudyFiles study_files(const StudyOptions& options, const std::filesystem::path& folder) {
     const StudyFiles files{folder / "study.json", folder / "study.csv", folder / "study.html",
                            folder / "cheapest.json"};
@@ -100,8 +101,9 @@ int study(const StudyOptions& options) {
     const StudyResult result = run_study(options, folder);
     if (result.stopped) {
         if (!options.quiet)
-            std::cout << "The study was stopped. Run the same command again to continue it: the runs that ended are in "
-                      << folder.string() << "." << std::endl;
+            std::cout << "The study was stopped. Run the same command again"
+                      << (options.settings.redo ? ", without --redo," : "")
+                      << " to continue it: the runs that ended are in " << folder.string() << "." << std::endl;
         return exit_signal + caught_signal;
     }
     try {

@@ -75,7 +75,7 @@ std::vector<RecordedProbe> joined(std::vector<RecordedProbe> probes, const auto&
     return probes;
 }
 
-/// The recorded probes of a scene, and the largest stress at the nodes of each probe of contacts. Rigid bodies have no
+/// The recorded probes of a scene, and the stresses at the nodes of each probe of contacts. Rigid bodies have no
 /// stress.
 std::vector<RecordedProbe> probes_of(const Scene& scene) {
     std::vector<RecordedProbe> probes = scene.recorded;
@@ -122,7 +122,9 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
 }
 
 StudyRecorder::StudyRecorder(Scene& scene)
-    : world_(scene.world), defaults_(default_probes(scene)), recorder_(scene.world, joined(probes_of(scene), defaults_)) {
+    : world_(scene.world),
+      defaults_(default_probes(scene)),
+      recorder_(scene.world, joined(probes_of(scene), defaults_)) {
     const std::vector<BodyHandle> bodies = world_.bodies();
     size_ = diagonal(world_, bodies);
     many_bodies_ = bodies.size() > most_reported;
