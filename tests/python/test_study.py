@@ -1,7 +1,6 @@
 """Studies: error bars of the results of a scene."""
 
 import dataclasses
-import dataclasses
 import json
 import math
 from pathlib import Path
@@ -46,15 +45,6 @@ def test_a_study_has_error_bars_runs_and_a_cheapest_scene(scene: Path, tmp_path:
     found.to_html(tmp_path / "study.html")
     assert (tmp_path / "study.html").read_text().lstrip().lower().startswith("<!doctype html>")
     assert "ball.displacement_z_end" in str(found) and math.isinf(found.agree_until)
-
-
-def test_a_singular_stress_has_an_infinite_error() -> None:
-    from skerry._study import _quantity
-
-    absent = {field.name: None for field in dataclasses.fields(sk.StudyQuantity)}
-    singular = _quantity({**absent, "verdict": "singular"})
-    assert math.isinf(singular.error) and math.isinf(singular.mesh) and math.isnan(singular.best)
-    assert math.isnan(_quantity({**absent, "verdict": "chaotic"}).error)
 
 
 def test_probes_choose_quantities(scene: Path) -> None:
