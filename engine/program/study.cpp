@@ -101,8 +101,9 @@ int study(const StudyOptions& options) {
     const StudyResult result = run_study(options, folder);
     if (result.stopped) {
         if (!options.quiet)
-            std::cout << "The study was stopped. Run the same command again to continue it: the runs that ended are in "
-                      << folder.string() << "." << std::endl;
+            std::cout << "The study was stopped. Run the same command again"
+                      << (options.settings.redo ? ", without --redo," : "")
+                      << " to continue it: the runs that ended are in " << folder.string() << "." << std::endl;
         return exit_signal + caught_signal;
     }
     try {

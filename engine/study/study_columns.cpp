@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -74,7 +75,7 @@ std::vector<RecordedProbe> joined(std::vector<RecordedProbe> probes, const auto&
     return probes;
 }
 
-/// The recorded probes of a scene, and the largest stress at the nodes of each probe of contacts. Rigid bodies have no
+/// The recorded probes of a scene, and the stresses at the nodes of each probe of contacts. Rigid bodies have no
 /// stress.
 std::vector<RecordedProbe> probes_of(const Scene& scene) {
     std::vector<RecordedProbe> probes = scene.recorded;
@@ -91,15 +92,20 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
     std::vector<DefaultProbe> probes;
     std::vector<BodyHandle> attached;
     for (const AttachmentHandle attachment : world.attachments()) attached.push_back(world.body(attachment));
+    std::set<std::string> probe_names;
+    for (const RecordedProbe& probe : scene.recorded) probe_names.insert(probe.name);
+    for (const Probe& probe : scene.probes) probe_names.insert(probe.name);
+    std::set<std::string> names = probe_names;  // names of probes and bodies
+    for (const BodyHandle body : world.bodies()) names.insert(world.name(body));
     for (const BodyHandle body : bodies_in_order(world)) {
-        // Columns of all bodies have the name "bodies".
-        const bool taken =
-            world.name(body) == "bodies" ||
-            std::ranges::find(scene.recorded, world.name(body), &RecordedProbe::name) != scene.recorded.end() ||
-            std::ranges::find(scene.probes, world.name(body), &Probe::name) != scene.probes.end();
+        std::string shown = world.name(body);
+        if (shown == "bodies" || probe_names.contains(shown)) {  // columns of all bodies have the name "bodies"
+            do shown = "body " + shown;
+            while (!names.insert(shown).second);
+        }
         const auto add = [&](decltype(RecordedProbe::what) what) {
             probes.push_back({{"default probe " + std::to_string(probes.size()), std::move(what)},
-                              (taken ? "body " : "") + world.name(body),
+                              shown,
                               body,
                               std::ranges::find(attached, body) == attached.end()});
         };

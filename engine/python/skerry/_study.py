@@ -23,13 +23,26 @@ from ._scene import Json, Path, assignments_of, scene_file
 class StudyQuantity:
     """A number with its error bar. Values that were not measured are NaN.
 
-    name, unit: name and SI unit. value: value of the scene as it is. error: half width of its error bar, infinite for a
-    singular stress. mesh, step, contact: parts of the error from the mesh, the step length and the contact solver.
-    noise: difference of runs whose start differs by 1e-12 m. best, best_error: extrapolated value and its error. scale:
-    size to which relative errors refer. mesh_order, step_order: observed orders of convergence, and those of the
-    theory, `expected`. agree_until: time until which runs with a start 1e-12 m apart agree, infinite if they agree to
-    the end [s]. run_values, run_errors: value of each run and half width of its error bar, in the order of Study.runs.
-    verdict: "known", "irregular", "singular", "chaotic" or "not_measured". sentence: the verdict in words.
+    name: name.
+    unit: SI unit.
+    value: value of the scene as it is.
+    error: half width of its error bar, infinite for a singular stress.
+    mesh: part of the error from the mesh.
+    step: part of the error from the step length.
+    contact: part of the error from the contact solver.
+    noise: difference of runs whose start differs by 1e-12 m.
+    best: extrapolated value.
+    best_error: error of the extrapolated value.
+    scale: size to which relative errors refer.
+    mesh_order: observed order of convergence of the mesh.
+    expected_mesh_order: its order in theory.
+    step_order: observed order of convergence of the steps.
+    expected_step_order: its order in theory.
+    agree_until: time until which runs with a start 1e-12 m apart agree, infinite if they agree to the end [s].
+    run_values: value of each run, in the order of Study.runs.
+    run_errors: half width of the error bar of each run.
+    verdict: "known", "irregular", "singular", "chaotic" or "not_measured".
+    sentence: the verdict in words.
     """
 
     name: str
@@ -58,11 +71,17 @@ class StudyQuantity:
 class StudyRun:
     """A run of a study.
 
-    name: "scene" for the scene as it is, or names such as "refine_1" and "step_0.5". overrides: assignments
-    PLACE=VALUE of `skerry run --set`. status: "ok", "failed" (a step was refused), "refused" (the scene cannot be
-    changed like this) or "left_out". message: the reason. warnings: reasons not to rely on the run. cpu_seconds: CPU
-    time, predicted if the run was left out [s]. steps, tetrahedra: their numbers. state_hash: hash of the world at the
-    end. time: times of the rows, shape (T,) [s]. columns: time series by "PROBE.QUANTITY", shape (T,).
+    name: "scene" for the scene as it is, or names such as "refine_1" and "step_0.5".
+    overrides: assignments PLACE=VALUE of `skerry run --set`.
+    status: "ok", "failed" (a step was refused), "refused" (the scene cannot be changed like this) or "left_out".
+    message: the reason.
+    warnings: reasons not to rely on the run.
+    cpu_seconds: CPU time, predicted if the run was left out [s].
+    steps: number of steps.
+    tetrahedra: number of tetrahedra.
+    state_hash: hash of the world at the end.
+    time: times of the rows, shape (T,) [s].
+    columns: time series by "PROBE.QUANTITY", shape (T,).
     """
 
     name: str
@@ -82,9 +101,11 @@ class StudyRun:
 class CheapestSettings:
     """The cheapest settings for the wanted error.
 
-    overrides: assignments PLACE=VALUE of `skerry run --set`. reaches: False if no settings reach the wanted error, and
-    these come nearest. error: predicted largest relative error. cpu_seconds: predicted CPU time [s]. sentence: the
-    reason in words.
+    overrides: assignments PLACE=VALUE of `skerry run --set`.
+    reaches: False if no settings reach the wanted error, and these come nearest.
+    error: predicted largest relative error.
+    cpu_seconds: predicted CPU time [s].
+    sentence: the reason in words.
     """
 
     overrides: tuple[str, ...]

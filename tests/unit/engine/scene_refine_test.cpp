@@ -250,7 +250,7 @@ TEST_CASE("the levels of a scene are those that all its meshes allow", "[unit]")
     };
     const SceneLevels own = levels("");
     CHECK(own.coarsest == -1);
-    CHECK_THAT(own.why_not_coarser, Contains("colliders[0].shape.mesh: its numbers of cells can be halved"));
+    CHECK_THAT(own.why_not_coarser, Contains("colliders[0].shape.mesh: resolution 4 cannot be halved 2 times"));
     CHECK(own.finest == 5);
     CHECK_THAT(own.why_not_finer, Contains("bodies[0].mesh: values are limited to 6 refinements"));
     CHECK(own.assignments(1) ==

@@ -306,6 +306,22 @@ TEST_CASE("a study has the largest stress at a probe of contacts") {
     CHECK(quantity(result, "end.largest_von_mises_end").value > 0);
 }
 
+TEST_CASE("two bodies of a study never share a name") {
+    const TemporaryFolder folder;
+    std::string two = bar;
+    const std::string second = R"({"name": "body tip", "shape": {"sphere": {"radius": 0.01}}, "material": "rubber",
+        "dynamics": "rigid", "position": [0, 0, 1]}, )";
+    two.insert(two.find("[{\"name\": \"arm\"") + 1, second);
+    two.replace(two.find("\"arm\""), 5, "\"tip\"");
+    two.replace(two.find("\"arm\""), 5, "\"tip\"");
+    Scene scene = load_scene(folder.write("two.json", two));
+    std::vector<std::string> names;
+    for (const StudyColumn& column : StudyRecorder(scene).columns())
+        names.push_back(column.what.probe + "." + column.what.quantity);
+    std::ranges::sort(names);
+    CHECK(std::ranges::adjacent_find(names) == names.end());
+}
+
 TEST_CASE("the name of a body with a dot chooses no other body") {
     std::vector<StudyColumn> columns{{.what = {"a.b", "force_x", "N"}}, {.what = {"a.b_1", "force_x", "N"}}};
     choose_columns_by_name({"a.b"}, "scene.json", columns);
