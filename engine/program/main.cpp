@@ -384,14 +384,14 @@ void add_study(CLI::App& app, StudyOptions& options) {
         .add_option(
             "--threads,--jobs", options.settings.threads,
             "number of threads of the study; 0: one per core. The runs have one thread each, except very long ones")
-        ->check(CLI::Range(0, 1024));
+        ->check(within(0, 1024));
     add_number(
         command, "--budget", options.settings.budget,
         "largest wall time of the study, divided by that of one run with one thread; finer meshes and other runs "
         "that do not fit are left out; default: 15, or more as long as the study takes less than 5 s");
     command.add_option("--out", options.out, "folder for the results; default: out/NAME_study, if SCENE is NAME.json");
     command.add_flag("--redo", options.settings.redo,
-                     "replace runs in the folder that belong to another version of the scene or to other settings");
+                     "make all runs again, and replace those in the folder");
     command.add_flag("--quiet", options.quiet, "print no progress and no report");
 }
 

@@ -11,6 +11,7 @@
 #include "engine/program/require_writable.h"
 #include "engine/program/signal_guard.h"
 #include "engine/program/sweep/case_progress.h"
+#include "engine/scene/case_hash.h"
 #include "skerry/error.h"
 #include "skerry/study.h"
 
@@ -22,32 +23,38 @@ struct StudyFiles {
     std::filesystem::path json, csv, page, cheapest;
 };
 
-/// Returns the paths of the result files. Throws SceneError if one of them cannot be written, or is the scene.
+/// Returns the paths of the result files. Throws SceneError if one of them cannot be written, or is a file of the scene.
 StudyFiles study_files(const StudyOptions& options, const std::filesystem::path& folder) {
     const StudyFiles files{folder / "study.json", folder / "study.csv", folder / "study.html",
                            folder / "cheapest.json"};
     require_writable_folder(folder);
     for (const std::filesystem::path& file : {files.json, files.csv, files.page, files.cheapest})
         require_writable_file(file);
-    require_distinct(std::array<NamedFile, 5>{{{"SCENE", options.scene},
-                                               {"study.json", files.json},
-                                               {"study.csv", files.csv},
-                                               {"study.html", files.page},
-                                               {"cheapest.json", files.cheapest}}});
+    const auto require_output = [&](const char* name, const std::filesystem::path& input) {
+        require_distinct(std::array<NamedFile, 5>{{{name, input},
+                                                   {"study.json", files.json},
+                                                   {"study.csv", files.csv},
+                                                   {"study.html", files.page},
+                                                   {"cheapest.json", files.cheapest}}});
+    };
+    require_output("SCENE", options.scene);
+    CaseHasher hasher(options.scene);
+    hasher.hash(options.settings.assignments);
+    for (const std::filesystem::path& input : hasher.files()) require_output("a file of SCENE", input);
     return files;
 }
 
 std::string quantities_csv(const StudyResult& result) {
     std::string csv;
-    add_csv_line({"quantity", "unit", "value", "error", "mesh", "step", "contact", "noise", "scale", "best", "best_error",
-                  "mesh_order", "expected_mesh_order", "step_order", "expected_step_order", "agree_until", "verdict",
-                  "sentence"},
+    add_csv_line({"quantity", "unit", "value", "error", "mesh", "step", "contact", "noise", "scale", "best",
+                  "best_error", "mesh_order", "expected_mesh_order", "step_order", "expected_step_order", "agree_until",
+                  "verdict", "sentence"},
                  csv);
     for (const StudyQuantity& q : result.quantities) {
         std::vector<std::string> cells{q.name, q.unit};
-        for (const Real number : {q.value, q.error, q.mesh, q.step, q.contact, q.noise, q.scale, q.best, q.best_error,
-                                  q.mesh_order, q.expected_mesh_order, q.step_order, q.expected_step_order,
-                                  q.agree_until})
+        for (const Real number :
+             {q.value, q.error, q.mesh, q.step, q.contact, q.noise, q.scale, q.best, q.best_error, q.mesh_order,
+              q.expected_mesh_order, q.step_order, q.expected_step_order, q.agree_until})
             cells.push_back(csv_number(number));
         cells.insert(cells.end(), {std::string(name_of(q.verdict)), q.sentence});
         add_csv_line(cells, csv);
@@ -58,15 +65,16 @@ std::string quantities_csv(const StudyResult& result) {
 std::vector<std::filesystem::path> write_results(const StudyOptions& options, const StudyFiles& files,
                                                  const StudyResult& result) {
     std::vector<std::filesystem::path> written{files.json, files.csv, files.page};
+    std::error_code ignored;
+    const bool earlier_study = std::filesystem::exists(files.json, ignored);
     write_file(files.json, [&](std::ostream& out) { out << study_json(result); });
     write_file(files.csv, [&](std::ostream& out) { out << quantities_csv(result); });
     write_file(files.page, [&](std::ostream& out) { out << study_page(result); });
     if (result.cheapest) {
         write_cheapest_scene(options.scene, result, files.cheapest);
         written.push_back(files.cheapest);
-    } else {
-        std::error_code ignored;
-        std::filesystem::remove(files.cheapest, ignored);  // a file of an earlier study
+    } else if (earlier_study) {
+        std::filesystem::remove(files.cheapest, ignored);  // its cheapest settings are not those of this study
     }
     return written;
 }

@@ -36,6 +36,12 @@ std::string CaseHasher::hash(std::span<const std::string> assignments) {
     return hash_text(all.value());
 }
 
+std::vector<std::filesystem::path> CaseHasher::files() const {
+    std::vector<std::filesystem::path> files;
+    for (const auto& [file, hash] : files_) files.push_back(file);
+    return files;
+}
+
 std::uint64_t CaseHasher::hash_of_file(const std::filesystem::path& file) {
     const auto known = files_.find(file);
     if (known != files_.end()) return known->second;

@@ -6,6 +6,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/scene/place.h"
 
@@ -23,6 +24,8 @@ public:
     /// assignments.
     std::string hash(std::span<const std::string> assignments);
     const Json& scene() const { return scene_; }
+    /// Returns the files of all cases so far: included scenes, meshes and surfaces, without the scene itself.
+    std::vector<std::filesystem::path> files() const;
 
 private:
     std::uint64_t hash_of_file(const std::filesystem::path& file);

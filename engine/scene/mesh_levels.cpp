@@ -26,6 +26,22 @@ int halvings_of(const MeshEntry& mesh) {
     return most_refinements;
 }
 
+/// Name and value of the numbers of cells of a mesh, for messages. Surfaces and files have none.
+std::string numbers_of(const MeshEntry& mesh) {
+    if (mesh.box) {
+        const std::array<int, 3>& cells = mesh.box->cells;
+        return "cells [" + std::to_string(cells[0]) + ", " + std::to_string(cells[1]) + ", " +
+               std::to_string(cells[2]) + "]";
+    }
+    if (mesh.table) return "cells_per_leg " + std::to_string(mesh.table->cells_per_leg);
+    const int resolution = mesh.ball       ? mesh.ball->resolution
+                           : mesh.cylinder ? mesh.cylinder->resolution
+                           : mesh.lathe    ? mesh.lathe->resolution
+                           : mesh.skittle  ? mesh.skittle->resolution
+                                           : 0;
+    return "resolution " + std::to_string(resolution);
+}
+
 /// Finds the entries of a scene that name parts of the mesh of a body.
 class NamedParts {
 public:
@@ -100,8 +116,8 @@ std::string why_not(const MeshEntry& mesh, int refine, bool rigid, NamedParts* p
     if (std::abs(refine) > most_refinements)
         return "values are limited to " + std::to_string(most_refinements) + " refinements";
     if (const int most = halvings_of(mesh); refine < -most)
-        return "its numbers of cells can be halved without remainder only for values of at least " +
-               std::to_string(-most);
+        return numbers_of(mesh) + " cannot be halved " + (most == 0 ? "" : std::to_string(-refine) + " times ") +
+               "without remainder";
     if (rigid && mesh.file && refine < 0) return "only deformable bodies get coarser meshes in place of a file";
     const bool divides = (mesh.file || mesh.surface || mesh.table) && refine > 0;
     if (refine == 0 || divides || parts == nullptr) return {};

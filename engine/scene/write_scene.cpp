@@ -30,10 +30,11 @@ void for_each_path(const SceneFile& scene, auto use) {
 }  // namespace
 
 std::string path_in_scene(const std::filesystem::path& file, const std::filesystem::path& scene) {
-    const auto normal = [](const std::filesystem::path& path) {
-        return std::filesystem::absolute(path).lexically_normal();
+    // ".." in a path leads out of the folder that a symbolic link names, not out of the folder of the link.
+    const auto folder_of = [](const std::filesystem::path& path) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(path).parent_path());
     };
-    return normal(file).lexically_relative(normal(scene).parent_path()).string();
+    return (folder_of(file) / file.filename()).lexically_relative(folder_of(scene)).string();
 }
 
 void write_scene(const std::filesystem::path& to, const std::filesystem::path& from,

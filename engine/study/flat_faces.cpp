@@ -12,8 +12,8 @@ namespace skerry {
 
 namespace {
 
-// Cosine of the largest angle between neighbouring faces of one smooth surface, 40 degrees: less than that of a cylinder
-// of 8 faces.
+// Cosine of the largest angle between neighbouring faces of one smooth surface, 40 degrees: less than that of a
+// cylinder of 8 faces.
 constexpr Real least_cosine = 0.766;
 
 /// Unit normal of each triangle; zero if it has no area.
@@ -26,11 +26,20 @@ std::vector<Vec3> normals_of(std::span<const Vec3> nodes, std::span<const std::a
     return normals;
 }
 
-/// Normals of the smooth surface of each triangle at its three nodes.
-std::vector<std::array<Vec3, 3>> corner_normals(std::size_t node_count,
+/// Angle of a triangle at one of its nodes [rad].
+Real angle_at(Index node, const std::array<Index, 3>& triangle, std::span<const Vec3> nodes) {
+    const auto i = static_cast<std::size_t>(std::ranges::find(triangle, node) - triangle.begin());
+    const auto side = [&](std::size_t to) {
+        return Vec3(nodes[static_cast<std::size_t>(triangle[(i + to) % 3])] - nodes[static_cast<std::size_t>(node)]);
+    };
+    return std::atan2(side(1).cross(side(2)).norm(), side(1).dot(side(2)));
+}
+
+/// Normals of the smooth surface of each triangle at its three nodes: means of the faces, weighted with their angles.
+std::vector<std::array<Vec3, 3>> corner_normals(std::span<const Vec3> nodes,
                                                 std::span<const std::array<Index, 3>> triangles,
                                                 std::span<const Vec3> normals) {
-    std::vector<std::vector<std::size_t>> around(node_count);
+    std::vector<std::vector<std::size_t>> around(nodes.size());
     for (std::size_t t = 0; t < triangles.size(); ++t)
         for (const Index node : triangles[t]) around[static_cast<std::size_t>(node)].push_back(t);
     std::vector<std::array<Vec3, 3>> corners(triangles.size());
@@ -38,7 +47,8 @@ std::vector<std::array<Vec3, 3>> corner_normals(std::size_t node_count,
         for (std::size_t i = 0; i < 3; ++i) {
             Vec3 sum = Vec3::Zero();
             for (const std::size_t other : around[static_cast<std::size_t>(triangles[t][i])])
-                if (normals[other].dot(normals[t]) > least_cosine) sum += normals[other];
+                if (normals[other].dot(normals[t]) > least_cosine)
+                    sum += angle_at(triangles[t][i], triangles[other], nodes) * normals[other];
             corners[t][i] = sum.normalized();
         }
     return corners;
@@ -75,11 +85,11 @@ Real FlatBody::error() const {
 FlatFaces flat_faces(std::span<const Vec3> nodes, std::span<const std::array<Index, 3>> triangles) {
     constexpr Real least_angle = 0.01;  // of a surface that is curved, and not flat but for rounding [rad]
     const std::vector<Vec3> normals = normals_of(nodes, triangles);
-    const std::vector<std::array<Vec3, 3>> corners = corner_normals(nodes.size(), triangles, normals);
+    const std::vector<std::array<Vec3, 3>> corners = corner_normals(nodes, triangles, normals);
     Real curved = 0, sum = 0;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-        // An edge of length L in a surface of curvature k is off by k L^2/8. The mean of the three edges is the mean over
-        // the triangle. The largest curvature of the edges gives the radius.
+        // An edge of length L in a surface of curvature k is off by k L^2/8. The mean of the three edges is the mean
+        // over the triangle. The largest curvature of the edges gives the radius.
         Real offsets = 0, curvature = 0, most = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3 edge = nodes[static_cast<std::size_t>(triangles[t][(i + 1) % 3])] -
@@ -107,10 +117,9 @@ std::vector<FlatBody> flat_bodies(const SceneFile& file, const World& world) {
         const BodyEntry& entry = file.bodies[b];
         if (!entry.mesh || !(entry.mesh->file || entry.mesh->surface)) continue;
         const std::string name = entry.name.empty() ? "body_" + std::to_string(b) : entry.name;
-        const bool is_held =
-            !entry.pin.items.empty() && std::ranges::all_of(entry.pin.items, [](const PinEntry& pin) {
-                return pin.motion.keys.empty() && pin.motion.velocity.isZero() && pin.motion.angular_velocity.isZero();
-            });
+        const bool is_held = !entry.pin.items.empty() && std::ranges::all_of(entry.pin.items, [](const PinEntry& pin) {
+            return pin.motion.keys.empty() && pin.motion.velocity.isZero() && pin.motion.angular_velocity.isZero();
+        });
         FlatFaces faces;
         bool is_measured = false;
         for (const BodyHandle body : world.bodies()) {

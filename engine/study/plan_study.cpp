@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "engine/scene/run_plan.h"
@@ -45,22 +46,32 @@ void add_level_run(const StudiedScene& scene, int level, std::vector<PlannedRun>
     if (level > scene.levels.finest) plan.back().reason = "no finer meshes: " + scene.levels.why_not_finer;
 }
 
+/// Mean step of the implicit bodies [s]. Each call of advance is divided into equal implicit steps, which are shorter
+/// than the setting unless it divides the call. Only explicit bodies divide an implicit step further.
+Real mean_implicit_step(const StudiedScene& scene, Real mean_step) {
+    if (!scene.has_explicit) return mean_step;
+    constexpr Real rounding = 1e-9;
+    return scene.longest_call / std::ceil(scene.longest_call / scene.settings.implicit_step - rounding);
+}
+
 }  // namespace
 
 StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySettings& settings) {
+    std::vector<std::string> assignments = settings.assignments;
+    if (settings.seconds) assignments.push_back("seconds=" + number_json(*settings.seconds));
     StudiedScene studied{.path = path,
-                         .file = read_scene_file(path, settings.assignments),
-                         .assignments = settings.assignments,
+                         .file = read_scene_file(path, assignments),
+                         .assignments = assignments,
                          .levels = {},
                          .settings = {},
                          .flat = {}};
     studied.levels = levels_of(studied.file, path);
     SceneOverrides overrides{.threads = 1};
-    overrides.assignments = settings.assignments;
+    overrides.assignments = assignments;
     overrides.fill_python = settings.fill_python;
     Scene scene = load_scene(path, overrides);
     studied.settings = scene.world.settings();
-    studied.longest_call = plan_run(scene, path, settings.seconds).longest_call();
+    studied.longest_call = plan_run(scene, path, {}).longest_call();
     for (const BodyHandle body : scene.world.bodies())
         studied.has_explicit |= scene.world.dynamics(body) == BodyDynamics::explicit_elastic;
     const StudyRecorder recorder(scene);
@@ -126,13 +137,14 @@ std::vector<std::string> variant_assignments(const StudiedScene& scene, const St
         assignments.push_back("settings.step_size=" + number_json(mean_step * variant.step * slack));
         if (scene.settings.implicit_step > 0)
             assignments.push_back("settings.implicit_step=" +
-                                  number_json(scene.settings.implicit_step * variant.step * slack));
+                                  number_json(mean_implicit_step(scene, mean_step) * variant.step * slack));
     }
     if (variant.tolerance != 1) {
         assignments.push_back("settings.tolerance=" + number_json(scene.settings.tolerance * variant.tolerance));
-        constexpr int more = 10;
+        constexpr int more = 10, most = std::numeric_limits<int>::max() / more;
         if (variant.tolerance < 1)
-            assignments.push_back("settings.max_iterations=" + std::to_string(scene.settings.max_iterations * more));
+            assignments.push_back("settings.max_iterations=" +
+                                  std::to_string(std::min(scene.settings.max_iterations, most) * more));
     }
     const auto add = [&](std::vector<std::string> more) { std::ranges::move(more, std::back_inserter(assignments)); };
     if (variant.refine != 0) add(scene.levels.assignments(variant.refine));

@@ -23,7 +23,7 @@ struct StudiedScene {
     bool has_explicit = false;         // true with deformable bodies that are integrated explicitly
     std::vector<FlatBody> flat;        // bodies whose refined meshes keep the flat faces of a file
     std::vector<Real> shape_errors{};  // StudyColumn::shape_error of each column
-    double longest_call = 0;                          // longest simulated time of a call of advance [s]
+    double longest_call = 0;           // longest simulated time of a call of advance [s]
 };
 
 /// Reads and builds the scene, and checks the names of the probes. Throws SceneError.

@@ -1,13 +1,21 @@
 #include "engine/study/run_file.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <ostream>
 #include <stdexcept>
+#include <system_error>
 
 #include "engine/output/write_file.h"
 #include "engine/program/number_text.h"
+#include "skerry/error.h"
 
 namespace skerry {
 
@@ -47,6 +55,13 @@ StudyColumn column_from(const Json& json) {
     return column;
 }
 
+/// True if every column has a value for each row, and a run that ended well has rows.
+bool is_whole(const StudyRun& run) {
+    if (run.status == StudyRunStatus::ok && (run.time.empty() || run.columns.empty())) return false;
+    return std::ranges::all_of(run.columns,
+                               [&](const StudyColumn& column) { return column.values.size() == run.time.size(); });
+}
+
 /// Reads a run from the document of write_run(). Throws an exception for any other document.
 StudyRun run_from(const Json& json, const StudyVariant& variant) {
     StudyRun run;
@@ -63,10 +78,8 @@ StudyRun run_from(const Json& json, const StudyVariant& variant) {
     json.at("max_contacts").get_to(run.max_contacts);
     for (const auto& [name, area] : json.at("loaded_areas").items()) run.loads.push_back({name, area.get<Real>()});
     json.at("time").get_to(run.time);
-    for (const Json& column : json.at("columns")) {
-        run.columns.push_back(column_from(column));
-        if (run.columns.back().values.size() != run.time.size()) throw std::length_error("a column lacks values");
-    }
+    for (const Json& column : json.at("columns")) run.columns.push_back(column_from(column));
+    if (!is_whole(run)) throw std::invalid_argument("columns of different lengths");
     return run;
 }
 
@@ -110,6 +123,27 @@ Json run_json(const StudyRun& run) {
             {"loaded_areas", areas}};
 }
 
+FolderLock::FolderLock(const std::filesystem::path& folder) {
+    if (folder.empty()) return;
+    make_folder(folder);
+    file_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    // File systems without locks have other errors, and are used without a lock.
+    if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        close(file_);
+        Complaint{.file = folder.string(),
+                  .object = "study",
+                  .field = "folder",
+                  .found = "a folder in which another study runs",
+                  .expected = "a folder of one study at a time",
+                  .hint = "wait for the other study, or choose another folder"}
+            .raise();
+    }
+}
+
+FolderLock::~FolderLock() {
+    if (file_ >= 0) close(file_);
+}
+
 void write_run(const std::filesystem::path& folder, const std::string& inputs, const StudyRun& run) {
     Json json = {{"schema", run_schema}, {"inputs", inputs}};
     json.update(run_json(run));
@@ -132,6 +166,25 @@ StoredRun read_run(const std::filesystem::path& folder, const std::string& input
     } catch (const std::exception&) {  // no valid JSON, or a key is missing or has another type
         return {{}, name + " is no run of a study"};
     }
+}
+
+void remove_run(const std::filesystem::path& folder, const StudyVariant& variant) {
+    const std::filesystem::path file = run_file(folder, variant);
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return;
+    const Json json = Json::parse(stream, nullptr, false);
+    const auto schema = json.is_object() ? json.find("schema") : json.end();
+    if (schema == json.end() || !schema->is_string() ||
+        !schema->get_ref<const std::string&>().starts_with("skerry.study_run/"))
+        Complaint{.file = file.string(),
+                  .object = "study",
+                  .field = "folder",
+                  .found = "a file that is no run of a study",
+                  .expected = "runs of a study, which are replaced",
+                  .hint = "choose another folder"}
+            .raise();
+    std::error_code ignored;  // a file that remains is refused when it is read
+    std::filesystem::remove(file, ignored);
 }
 
 }  // namespace skerry

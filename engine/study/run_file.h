@@ -13,6 +13,19 @@ namespace skerry {
 /// Short name of a variant, for messages and files: scene, refine_1, step_0.5, tolerance_0.01, element_linear, draw_1.
 std::string variant_name(const StudyVariant& variant);
 
+/// Reserves a folder for one study, until the object is destroyed. The folder is created if it is missing.
+class FolderLock {
+public:
+    /// An empty path reserves nothing. Throws SceneError if another study, in any process, has the folder.
+    explicit FolderLock(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+private:
+    int file_ = -1;
+};
+
 /// Writes the result of a run, completely or not at all. `inputs`: text that identifies all inputs of the run. Throws
 /// SceneError.
 void write_run(const std::filesystem::path& folder, const std::string& inputs, const StudyRun& run);
@@ -23,6 +36,9 @@ struct StoredRun {
     std::string found;            // content of the file, if it exists but has other inputs; else empty
 };
 StoredRun read_run(const std::filesystem::path& folder, const std::string& inputs, const StudyVariant& variant);
+
+/// Removes the file of a run, if there is one. Throws SceneError if the file holds anything else than a run of a study.
+void remove_run(const std::filesystem::path& folder, const StudyVariant& variant);
 
 Json variant_json(const StudyVariant& variant);
 /// JSON document of a run without its time series.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <new>
 #include <random>
 #include <utility>
 #include <variant>
@@ -47,7 +48,7 @@ class VariantRun {
 public:
     VariantRun(const VariantJob& job, const std::atomic<bool>& stop, std::atomic<double>& share, StudyRun& run)
         : scene_(load_scene(job.scene, job.overrides)),
-          plan_(plan_run(scene_, job.scene, job.seconds)),
+          plan_(plan_run(scene_, job.scene, {})),
           recorder_(scene_),
           one_thread_(job.overrides.threads == 1),
           stop_(stop),
@@ -146,8 +147,13 @@ bool run_variant(const VariantJob& job, const std::atomic<bool>& stop, std::atom
     } catch (const SceneError& error) {
         run.status = StudyRunStatus::refused;
         run.message = error.what();
-        return true;
+    } catch (const std::bad_alloc&) {
+        run.status = StudyRunStatus::refused;
+        run.message = "there is not enough memory for it";
+        run.time.clear();
+        run.columns.clear();
     }
+    return true;
 }
 
 }  // namespace skerry

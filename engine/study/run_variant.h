@@ -12,8 +12,7 @@ namespace skerry {
 /// A run that is to be made.
 struct VariantJob {
     std::filesystem::path scene;
-    std::optional<Real> seconds;  // duration; empty: that of the scene [s]
-    SceneOverrides overrides;     // assignments of the variant, and the number of threads
+    SceneOverrides overrides;  // assignments of the variant, and the number of threads
     StudyVariant variant;
 };
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <mutex>
 #include <utility>
 
 #include "engine/scene/case_hash.h"
@@ -46,12 +47,13 @@ void check_settings(const StudySettings& settings) {
             .raise();
     if (settings.budget) require_positive("budget", *settings.budget, "a number > 0");
     if (settings.seconds) require_positive("seconds", *settings.seconds, "a time > 0 (s)");
-    if (settings.threads < 0)
+    constexpr int most_threads = 1024;
+    if (settings.threads < 0 || settings.threads > most_threads)
         Complaint{.file = {},
                   .object = "study",
                   .field = "threads",
                   .found = std::to_string(settings.threads),
-                  .expected = "a number of threads >= 0 (0: the number of cores)",
+                  .expected = "a number of threads from 0 to 1024 (0: the number of cores)",
                   .hint = {}}
             .raise();
 }
@@ -80,15 +82,18 @@ public:
         : settings_(settings),
           threads_(settings.threads > 0 ? settings.threads : core_count()),
           budget_(settings.budget.value_or(usual_budget)),
+          hasher_(path),
           scene_(read_studied_scene(path, settings)),
           plan_(plan_study(scene_)),
-          hasher_(path) {
+          lock_(settings.folder) {
         runs_.resize(plan_.size());
         inputs_.resize(plan_.size());
         shares_ = std::vector<std::atomic<double>>(plan_.size());
     }
 
     StudyResult run() {
+        if (settings_.redo && !settings_.folder.empty())
+            for (const PlannedRun& planned : plan_) remove_run(settings_.folder, planned.variant);
         make_runs(0, independent_runs);
         if (!stop_ && runs_[0].status == StudyRunStatus::ok) {
             drop_pointless();
@@ -103,6 +108,7 @@ public:
                                        ". Correct it first; no errors were determined.");
             result.runs.assign(runs_.begin(), runs_.begin() + independent_runs);
         }
+        if (!lost_.empty()) result.sentences.insert(result.sentences.begin(), lost_);
         result.scene = scene_.file.name;
         return result;
     }
@@ -132,6 +138,7 @@ private:
                             .status = StudyRunStatus::left_out,
                             .message = plan_[i].reason,
                             .cpu_seconds = plan_[i].cost * runs_[0].cpu_seconds};
+        refuse_other_columns();
         choose_columns();
         for (std::size_t c = 0; c < scene_.shape_errors.size() && c < runs_[0].columns.size(); ++c)
             if (runs_[0].columns[c].what.unit == "m" || runs_[0].columns[c].what.unit == "Pa")
@@ -146,55 +153,58 @@ private:
         return result;
     }
 
-    /// Selects the reported columns. Without names of probes, columns that are zero throughout are left out, such as
+    /// Refuses runs whose columns are not those of the scene, because no values of them can be compared.
+    void refuse_other_columns() {
+        const auto same = [](const StudyColumn& a, const StudyColumn& b) {
+            return a.what.probe == b.what.probe && a.what.quantity == b.what.quantity && a.what.unit == b.what.unit;
+        };
+        for (StudyRun& run : runs_) {
+            if (run.status != StudyRunStatus::ok || std::ranges::equal(run.columns, runs_[0].columns, same)) continue;
+            run.status = StudyRunStatus::refused;
+            run.message = "it has other columns than the run of the scene as it is";
+            run.columns.clear();
+            run.time.clear();
+        }
+    }
+
+    /// True if a run has a value other than zero in the column.
+    bool has_values(std::size_t column) const {
+        return std::ranges::any_of(runs_, [&](const StudyRun& run) {
+            return run.columns.size() == runs_[0].columns.size() &&
+                   std::ranges::any_of(run.columns[column].values,
+                                       [](Real value) { return std::isfinite(value) && value != 0; });
+        });
+    }
+
+    /// Selects the reported columns. Without names of probes, columns that are zero in all runs are left out, such as
     /// contact forces of bodies that touch nothing.
     void choose_columns() {
         for (StudyRun& run : runs_) {
             if (run.columns.size() != runs_[0].columns.size()) continue;  // the run is left out or was refused
             choose_columns_by_name(settings_.probes, scene_.path, run.columns);
             for (std::size_t c = 0; c < run.columns.size() && settings_.probes.empty(); ++c)
-                run.columns[c].reported &= std::ranges::any_of(
-                    runs_[0].columns[c].values, [](Real value) { return std::isfinite(value) && value != 0; });
+                run.columns[c].reported &= has_values(c);
         }
     }
 
-    /// Part of a text of inputs_of() that is the hash of the scene and its files.
-    static std::string hash_of(const std::string& inputs) { return inputs.substr(0, inputs.find(' ')); }
-
-    std::string inputs_of(std::size_t i) {
-        std::string inputs = hasher_.hash(runs_[i].assignments);
-        if (settings_.seconds) inputs += " seconds " + Json(*settings_.seconds).dump();
+    std::string inputs_of(std::size_t i, CaseHasher& hasher) const {
+        std::string inputs = hasher.hash(runs_[i].assignments) + " version " + SKERRY_VERSION;
         if (plan_[i].variant.draw != 0) inputs += " draw " + std::to_string(plan_[i].variant.draw);
         return inputs;
     }
 
-    /// Throws SceneError if the scene or one of its files changed while the study ran.
-    void require_unchanged(std::size_t i) const {
-        if (CaseHasher(scene_.path).hash(runs_[i].assignments) == hash_of(inputs_[i])) return;
-        Complaint{.file = scene_.path.string(),
-                  .object = "study",
-                  .field = "scene",
-                  .found = "a scene or mesh file that changed while the study ran",
-                  .expected = "the files with which the study began",
-                  .hint = "start the study again; the runs that had ended before are kept, and --redo replaces those of "
-                          "the old scene"}
-            .raise();
-    }
-
-    /// Reads the run from the folder. Returns true if the folder has it. Throws SceneError if the file has another run,
-    /// unless it may be replaced.
+    /// Reads the run from the folder. Returns true if the folder has it. Throws SceneError if the file has another run.
     bool read_stored(std::size_t i) {
         if (settings_.folder.empty()) return false;
         StoredRun stored = read_run(settings_.folder, inputs_[i], plan_[i].variant);
-        if (!stored.found.empty() && !settings_.redo)
+        if (!stored.found.empty())
             Complaint{.file = settings_.folder.string(),
                       .object = "study",
                       .field = "folder",
                       .found = stored.found,
                       .expected = "runs of " + scene_.path.string() + " in its present version, with these settings",
-                      .hint = "add --redo to replace these runs, or choose another folder with --out"}
+                      .hint = "choose another folder, or redo to replace runs of studies"}
                 .raise();
-        // The reason of a refused run may be gone, for example a mesher that was not found.
         if (!stored.run || stored.run->status == StudyRunStatus::refused) return false;
         runs_[i] = std::move(*stored.run);
         return true;
@@ -206,7 +216,7 @@ private:
         for (std::size_t i = first; i < end; ++i) {
             if (!plan_[i].reason.empty()) continue;
             runs_[i].assignments = variant_assignments(scene_, plan_[i].variant, mean_step_);
-            inputs_[i] = inputs_of(i);
+            inputs_[i] = inputs_of(i, hasher_);
             if (read_stored(i))
                 finish(i);
             else
@@ -238,22 +248,48 @@ private:
             watch_period, [&] { watch(); });
     }
 
+    /// Throws SceneError if the files of the scene are not those with which the study began.
+    void require_unchanged(std::size_t i) const {
+        CaseHasher now(scene_.path);
+        if (inputs_of(i, now) == inputs_[i]) return;
+        Complaint{.file = scene_.path.string(),
+                  .object = "study",
+                  .field = "scene",
+                  .found = "that the scene or one of its files changed while the study ran",
+                  .expected = "the same content for all runs",
+                  .hint = "runs that ended before the change are kept; undo the change to continue, or begin again"}
+            .raise();
+    }
+
     void make_run(std::size_t i, int threads_of_run) {
         if (stop_) return;
         ++running_;
         VariantJob job{.scene = scene_.path,
-                       .seconds = settings_.seconds,
                        .overrides = {.threads = threads_of_run},
                        .variant = plan_[i].variant};
         if (threads_of_run == 1) job.overrides.backend = Backend::serial;
         job.overrides.assignments = runs_[i].assignments;
         job.overrides.fill_python = settings_.fill_python;
+        require_unchanged(i);
         const bool whole = run_variant(job, stop_, shares_[i], runs_[i]);
         --running_;
         if (!whole) return;
         require_unchanged(i);
-        if (!settings_.folder.empty()) write_run(settings_.folder, inputs_[i], runs_[i]);
+        store(i);
         finish(i);
+    }
+
+    /// Writes the run into the folder. The study goes on if this is impossible, because its results do not need the
+    /// files.
+    void store(std::size_t i) {
+        // A refused scene is not stored: the reason may be a missing program or too little memory at the moment.
+        if (settings_.folder.empty() || runs_[i].status == StudyRunStatus::refused) return;
+        try {
+            write_run(settings_.folder, inputs_[i], runs_[i]);
+        } catch (const SceneError& error) {
+            const std::lock_guard lock(lost_mutex_);
+            if (lost_.empty()) lost_ = std::string("Not all runs could be kept in the folder: ") + error.what() + ".";
+        }
     }
 
     void finish(std::size_t i) {
@@ -284,14 +320,17 @@ private:
     const StudySettings& settings_;
     const int threads_;
     double budget_;
+    CaseHasher hasher_;  // before `scene_`, so that each change since the scene was read is found
     const StudiedScene scene_;
     std::vector<PlannedRun> plan_;
-    CaseHasher hasher_;
+    const FolderLock lock_;  // after `scene_`, so that an invalid scene creates no folder
     Real mean_step_ = 0;  // of the scene as it is [s]
     // The following are indexed as the plan.
     std::vector<StudyRun> runs_;
     std::vector<std::string> inputs_;          // texts that identify all inputs of a run
     std::vector<std::atomic<double>> shares_;  // simulated shares of the durations
+    std::mutex lost_mutex_;
+    std::string lost_;  // sentence on the first run that could not be written; else empty
     std::atomic<int> done_{0}, running_{0};
     std::atomic<bool> stop_{false};
 };

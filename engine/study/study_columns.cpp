@@ -74,6 +74,16 @@ std::vector<RecordedProbe> joined(std::vector<RecordedProbe> probes, const auto&
     return probes;
 }
 
+/// The recorded probes of a scene, and the largest stress at the nodes of each probe of contacts. Rigid bodies have no
+/// stress.
+std::vector<RecordedProbe> probes_of(const Scene& scene) {
+    std::vector<RecordedProbe> probes = scene.recorded;
+    for (const Probe& probe : scene.probes)
+        if (scene.world.dynamics(probe.body) != BodyDynamics::rigid)
+            probes.push_back({probe.name, StressProbe{probe.body, probe.nodes}});
+    return probes;
+}
+
 }  // namespace
 
 std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Scene& scene) {
@@ -85,7 +95,8 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
         // Columns of all bodies have the name "bodies".
         const bool taken =
             world.name(body) == "bodies" ||
-            std::ranges::find(scene.recorded, world.name(body), &RecordedProbe::name) != scene.recorded.end();
+            std::ranges::find(scene.recorded, world.name(body), &RecordedProbe::name) != scene.recorded.end() ||
+            std::ranges::find(scene.probes, world.name(body), &Probe::name) != scene.probes.end();
         const auto add = [&](decltype(RecordedProbe::what) what) {
             probes.push_back({{"default probe " + std::to_string(probes.size()), std::move(what)},
                               (taken ? "body " : "") + world.name(body),
@@ -105,11 +116,11 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
 }
 
 StudyRecorder::StudyRecorder(Scene& scene)
-    : world_(scene.world), defaults_(default_probes(scene)), recorder_(scene.world, joined(scene.recorded, defaults_)) {
+    : world_(scene.world), defaults_(default_probes(scene)), recorder_(scene.world, joined(probes_of(scene), defaults_)) {
     const std::vector<BodyHandle> bodies = world_.bodies();
     size_ = diagonal(world_, bodies);
     many_bodies_ = bodies.size() > most_reported;
-    add_sources(scene.recorded);
+    add_sources(probes_of(scene));
 }
 
 void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
@@ -223,7 +234,7 @@ void choose_columns_by_name(const std::vector<std::string>& names, const std::fi
         for (StudyColumn& column : columns) {
             const std::string full = column.what.probe + "." + column.what.quantity;
             const bool chosen = column.what.probe == name || full == name ||
-                                (name.find('.') != std::string::npos && full.starts_with(name + "_"));
+                                (name.starts_with(column.what.probe + ".") && full.starts_with(name + "_"));
             column.reported |= chosen;
             found |= chosen;
         }

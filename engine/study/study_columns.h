@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// Records the probes of a scene and the default quantities: displacement, contact force and largest stress of each
+/// Records the probes of a scene, of those of contacts only the largest stress, and the default quantities: displacement, contact force and largest stress of each
 /// body, and the energies. Each call of sample() after a step records a row.
 class StudyRecorder {
 public:

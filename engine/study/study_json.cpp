@@ -35,10 +35,8 @@ Json bands_json(const StudyResult& result) {
     for (std::size_t c = 0; c < result.bands.size(); ++c) {
         if (result.bands[c].empty()) continue;
         const SeriesColumn& what = result.runs.front().columns[c].what;
-        bands.push_back({{"probe", what.probe},
-                         {"quantity", what.quantity},
-                         {"unit", what.unit},
-                         {"errors", result.bands[c]}});
+        bands.push_back(
+            {{"probe", what.probe}, {"quantity", what.quantity}, {"unit", what.unit}, {"errors", result.bands[c]}});
     }
     return bands;
 }

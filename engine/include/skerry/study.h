@@ -169,7 +169,7 @@ struct StudySettings {
     std::optional<double> budget{};
     // Folder that keeps the results of the runs. A later study of the same scene continues with them. Empty: none.
     std::filesystem::path folder{};
-    bool redo = false;  // true: results in the folder that belong to another scene or other settings are replaced
+    bool redo = false;          // true: the runs in the folder are removed and made again
     std::string fill_python{};  // see SceneOverrides::fill_python
     // If given, called about every 20 ms on the thread that called study(). If it returns false or throws, all runs
     // stop before their next step. An exception is rethrown.

@@ -23,13 +23,13 @@ from ._scene import Json, Path, assignments_of, scene_file
 class StudyQuantity:
     """A number with its error bar. Values that were not measured are NaN.
 
-    name, unit: name and SI unit. value: value of the scene as it is. error: half width of its error bar. mesh, step,
-    contact: parts of the error from the mesh, the step length and the contact solver. noise: difference of runs whose
-    start differs by 1e-12 m. best, best_error: extrapolated value and its error. scale: size to which relative errors
-    refer. mesh_order, step_order: observed orders of convergence, and those of the theory, `expected`. agree_until:
-    time until which runs with a start 1e-12 m apart agree, infinite if they agree to the end [s]. run_values, run_errors:
-    value of each run and half width of its error bar, in the order of Study.runs. verdict: "known",
-    "irregular", "singular", "chaotic" or "not_measured". sentence: the verdict in words.
+    name, unit: name and SI unit. value: value of the scene as it is. error: half width of its error bar, infinite for a
+    singular stress. mesh, step, contact: parts of the error from the mesh, the step length and the contact solver.
+    noise: difference of runs whose start differs by 1e-12 m. best, best_error: extrapolated value and its error. scale:
+    size to which relative errors refer. mesh_order, step_order: observed orders of convergence, and those of the
+    theory, `expected`. agree_until: time until which runs with a start 1e-12 m apart agree, infinite if they agree to
+    the end [s]. run_values, run_errors: value of each run and half width of its error bar, in the order of Study.runs.
+    verdict: "known", "irregular", "singular", "chaotic" or "not_measured". sentence: the verdict in words.
     """
 
     name: str
@@ -169,9 +169,9 @@ def study(
     [s]. overrides: as for load_scene(). threads: number of threads, 0: all cores. budget: largest time of the study,
     divided by that of one run with one thread; finer meshes and other runs that do not fit are left out, default: 15,
     or more as long as the study takes less than 5 s. folder: keeps the runs; a later study of the same scene continues
-    with them. redo: True replaces runs of another scene in the folder. progress: True writes the share that is done to
-    the standard error output; a function is called with this share and the numbers of the runs that are done and of all
-    runs.
+    with them. redo: True makes all runs again and replaces those in the folder. progress: True writes the share that is
+    done to the standard error output; a function is called with this share and the numbers of the runs that are done
+    and of all runs.
 
     The numbers do not depend on the number of threads, except through the budget. A run that fails is a result. Ctrl-C
     ends the study; runs that have ended stay in the folder. SceneError: the scene or a setting is wrong."""
@@ -195,17 +195,18 @@ def study(
             called,
         )
     if called is _show:
-        print("\r100 %".ljust(40), file=sys.stderr)  # covers the line of _show
+        print("\r\033[K100 %", file=sys.stderr)
     return Study(core, deepcopy(scene))
 
 
 def _show(share: float, done: int, total: int) -> None:
-    print(f"\r{100 * share:.0f} %, {done} of {total} runs", end="", file=sys.stderr, flush=True)
+    print(f"\r\033[K{100 * share:.0f} %, {done} of {total} runs", end="", file=sys.stderr, flush=True)
 
 
 def _quantity(values: dict[str, Any]) -> StudyQuantity:
-    """A number that is not finite is None in JSON."""
-    absent = {key: math.inf if key == "agree_until" else math.nan for key, value in values.items() if value is None}
+    """A number that is not finite is None in JSON: an infinite one in the following keys, else an unknown one."""
+    infinite = ("agree_until", "error", "mesh") if values["verdict"] == "singular" else ("agree_until",)
+    absent = {key: math.inf if key in infinite else math.nan for key, value in values.items() if value is None}
     runs = {
         key: tuple(math.nan if number is None else number for number in values[key])
         for key in ("run_values", "run_errors")

@@ -25,7 +25,7 @@ std::vector<Option> mesh_options(const StudyFamily& family) {
     for (const StudyRun* run : family.comparable) {
         const StudyVariant& v = run->variant;
         if (v.draw == 0 && v.step == 1 && v.tolerance == 1)
-            options.push_back({v, run->cpu_seconds / family.scene->cpu_seconds});
+            options.push_back({v, std::max(run->cpu_seconds / family.scene->cpu_seconds, v.refine > 0 ? 1.0 : 0.0)});
     }
     const auto plain = [](const Option& option) { return option.variant.element ? -1000 : option.variant.refine; };
     const Option finest = *std::ranges::max_element(options, {}, plain);
@@ -43,7 +43,10 @@ std::vector<Option> factor_options(const StudyFamily& family, Real StudyVariant:
     for (const StudyRun* run : family.comparable) {
         StudyVariant rest = run->variant;
         rest.*member = 1;
-        if (rest.is_scene()) options.push_back({run->variant, run->cpu_seconds / family.scene->cpu_seconds});
+        if (!rest.is_scene()) continue;
+        // Shorter steps and lower tolerances never save time; clocks are not exact.
+        const double cost = run->cpu_seconds / family.scene->cpu_seconds;
+        options.push_back({run->variant, run->variant.*member < 1 ? std::max(cost, 1.0) : cost});
     }
     return options;
 }
@@ -58,11 +61,12 @@ bool counts(const MeasuredQuantity& quantity) {
 struct Candidate {
     CheapestSettings settings;
     std::string worst{};
-    bool may_be_nearest = true;  // false for a mesh that was not run, and for cruder elements
+    std::size_t within = 0, counted = 0;  // numbers of quantities within the wanted error, and of all with an error
+    bool may_be_nearest = true;           // false for a mesh that was not run, and for cruder elements
 };
 
 Candidate predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,
-                  const Option& step, const Option& tolerance) {
+                  const Option& step, const Option& tolerance, double wanted) {
     Candidate found;
     found.may_be_nearest = !mesh.predicted && mesh.variant.element != ElementKind::linear;
     CheapestSettings& settings = found.settings;
@@ -74,6 +78,8 @@ Candidate predict(const StudyFamily& family, std::span<const MeasuredQuantity> q
         if (!counts(quantity)) continue;
         Real error = error_with(quantity, settings.variant) / quantity.result.scale;
         if (std::isnan(error)) error = infinity;
+        ++found.counted;
+        if (error <= wanted) ++found.within;
         if (!found.worst.empty() && error <= settings.error) continue;
         settings.error = error;
         found.worst = quantity.result.name;
@@ -93,7 +99,7 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
     for (const Option& mesh : meshes)
         for (const Option& step : steps)
             for (const Option& tolerance : tolerances) {
-                candidates.push_back(predict(family, quantities, mesh, step, tolerance));
+                candidates.push_back(predict(family, quantities, mesh, step, tolerance, wanted));
                 const double error = candidates.back().settings.error;
                 least_error = std::min(least_error, error);
                 if (candidates.back().may_be_nearest) least_measured = std::min(least_measured, error);
@@ -111,7 +117,12 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
     result.reaches = reaches;
     result.sentence = reaches ? "the largest error is that of " + best->worst
                               : "no settings reach " + percent(wanted) + ", because " + best->worst +
-                                    " still has an error of " + percent(result.error);
+                                    " still has an error of " + percent(result.error) + "; " +
+                                    std::to_string(best->within) + " of " + std::to_string(best->counted) +
+                                    " quantities are within it";
+    if (const std::size_t others = quantities.size() - best->counted; others > 0)
+        result.sentence += "; " + std::to_string(others) + (others > 1 ? " quantities" : " quantity") +
+                           " without a finite error do" + (others > 1 ? "" : "es") + " not count";
     return result;
 }
 

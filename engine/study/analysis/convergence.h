@@ -62,8 +62,8 @@ private:
     std::vector<ConvergenceLevel> levels_{};  // from coarse to fine
     ConvergenceShape shape_ = ConvergenceShape::unmeasured;
     Real order_ = std::numeric_limits<Real>::quiet_NaN();
-    Real used_order_ = 1;  // order with which errors are predicted
-    Real remainder_ = 0;   // estimated error of the finest level
+    Real used_order_ = 1;   // order with which errors are predicted
+    Real remainder_ = 0;    // estimated error of the finest level
     Real least_error_ = 0;  // error bounds of all levels are at least this large
 };
 

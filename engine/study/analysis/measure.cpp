@@ -219,6 +219,9 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     };
     check("mesh", quantity.mesh, r.mesh);
     check("step", quantity.step, r.step);
+    for (const StudyRun& run : *family.all)
+        if (run.variant.draw != 0 && run.status == StudyRunStatus::failed && r.sentence.empty())
+            decide(StudyVerdict::irregular, "a run begun 1e-12 m apart failed, so this scene may fail by chance");
     for (const auto& [variant, value] : quantity.elements)
         if (variant.element == ElementKind::smoothed &&
             std::abs(value - r.value) > std::max(r.error, share_of_wanted * wanted * r.scale))
@@ -265,8 +268,7 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
     };
     r.mesh = error(quantity.mesh, is_mesh);
     // Lengths may have an offset, which has no error.
-    quantity.shape =
-        family.scene->columns[column].shape_error * std::min(std::abs(r.value), family.sizes[column]);
+    quantity.shape = family.scene->columns[column].shape_error * std::min(std::abs(r.value), family.sizes[column]);
     r.mesh += quantity.shape;
     r.step = error(quantity.step, is_step);
     r.contact = error(quantity.contact, is_contact);
@@ -277,7 +279,8 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
 
 }  // namespace
 
-StudyFamily::StudyFamily(const std::vector<StudyRun>& runs) : all(&runs), scene(&runs.front()), sizes(column_sizes(runs.front())) {
+StudyFamily::StudyFamily(const std::vector<StudyRun>& runs)
+    : all(&runs), scene(&runs.front()), sizes(column_sizes(runs.front())) {
     const auto same_column = [](const StudyColumn& a, const StudyColumn& b) {
         return a.what.probe == b.what.probe && a.what.quantity == b.what.quantity && a.values.size() == b.values.size();
     };
@@ -393,8 +396,8 @@ Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant) {
     } else {
         mesh = std::max(mesh, quantity.least_mesh * std::exp2(Real{-1} * std::max(variant.refine, 0)));
     }
-    return mesh + quantity.shape + at(quantity.step, variant.step, r.step) + at(quantity.contact, variant.tolerance, r.contact) +
-           quantity.noise;
+    return mesh + quantity.shape + at(quantity.step, variant.step, r.step) +
+           at(quantity.contact, variant.tolerance, r.contact) + quantity.noise;
 }
 
 std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real scale, Real agree_until) {

@@ -38,9 +38,8 @@ struct MeasuredQuantity {
     Real least_mesh = 0;  // mesh error that linear elements have at least, by comparison with smoothed ones
 };
 
-/// Returns the largest absolute value of each column over the run, for lengths and energies the largest change since the
-/// start. The components of a vector have the same size, and so have the energies and the forces of a
-/// probe.
+/// Returns the largest absolute value of each column over the run, for lengths and energies the largest change since
+/// the start. The components of a vector have the same size, and so have the energies and the forces of a probe.
 std::vector<Real> column_sizes(const StudyRun& run);
 
 /// Returns the scale of each column, to which its errors are relative: its size, but at least

@@ -23,6 +23,12 @@ std::string error_heading(const StudyQuantity& q) {
     return "error of " + heading(q);
 }
 
+/// True for a component that is zero except for rounding.
+bool is_zero(const StudyQuantity& q) {
+    constexpr Real rounding = 1e-9;
+    return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error <= rounding * q.scale;
+}
+
 PageJson run_rows(const StudyResult& result) {
     PageJson rows = PageJson::array();
     for (std::size_t i = 0; i < result.runs.size(); ++i) {
@@ -54,6 +60,7 @@ PageJson summary_table(const StudyResult& result) {
     PageJson rows = {{"quantity", "value", "error bar", "relative", "verdict", "mesh", "step", "contacts", "start",
                       "best value", "orders", "remark"}};
     for (const StudyQuantity& q : result.quantities) {
+        if (is_zero(q)) continue;
         const QuantityText text = quantity_text(q);
         const auto bar = [](const std::string& error) { return error.empty() ? error : "\u00b1 " + error; };
         rows.push_back({q.name, text.value + " " + text.unit, bar(text.error), text.share, name_of(q.verdict),
@@ -96,9 +103,14 @@ std::string study_page(const StudyResult& result) {
     for (const StudyQuantity& q : result.quantities) {
         figures.push_back(heading(q));
         figures.push_back(error_heading(q));
-        if (first_error.empty() && q.error > 0 && std::isfinite(q.error)) first_error = error_heading(q);
+        // A small component of a vector is no good start.
+        constexpr Real main_share = 0.1;
+        if (first_error.empty() && q.error > 0 && std::isfinite(q.error) && std::abs(q.value) > main_share * q.scale)
+            first_error = error_heading(q);
     }
     std::vector<std::string> notes = result.sentences;
+    for (const std::vector<std::string>& lines : {verdict_lines(result), missing_lines(result)})
+        notes.insert(notes.end(), lines.begin(), lines.end());
     if (result.cheapest) {
         const CheapestSettings& cheapest = *result.cheapest;
         notes.push_back((cheapest.reaches ? "Cheapest settings for an error of " : "Nearest to an error of ") +

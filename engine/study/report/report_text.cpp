@@ -29,7 +29,8 @@ std::string quantity_line(const StudyQuantity& q, std::size_t width) {
     for (const auto& [name, error, part] :
          {BarPart{"mesh", q.mesh, text.mesh}, BarPart{"step", q.step, text.step},
           BarPart{"contacts", q.contact, text.contact}, BarPart{"start", q.noise, text.noise}})
-        if (error > shown_share * q.error && !part.empty()) parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
+        if (error > shown_share * q.error && !part.empty())
+            parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
     if (!parts.empty()) line += " (" + (text.share.empty() ? "" : text.share + ": ") + parts + ")";
     // The extrapolated value is shown if it is much more exact.
     constexpr double much = 0.7;
@@ -44,6 +45,12 @@ bool is_negligible(const StudyQuantity& q, double wanted) {
     return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error <= wanted * q.scale;
 }
 
+/// True for a quantity that mostly repeats another one: means over time, and sizes of forces.
+bool is_minor(const StudyQuantity& q) {
+    return q.name.ends_with("_mean") || q.name.find(".largest_force_") != std::string::npos ||
+           q.name.find(".pressing_force_") != std::string::npos;
+}
+
 std::string quantities_text(const StudyResult& result) {
     std::vector<const StudyQuantity*> shown;
     std::size_t negligible = 0, width = 0;
@@ -53,6 +60,7 @@ std::string quantities_text(const StudyResult& result) {
         else
             shown.push_back(&q);
     }
+    std::ranges::stable_partition(shown, [](const StudyQuantity* q) { return !is_minor(*q); });
     // Statistics of all bodies come first: they are reported if there are too many bodies, or if they move chaotically.
     std::ranges::stable_partition(shown, [](const StudyQuantity* q) { return q->name.starts_with("bodies."); });
     const std::size_t left = shown.size() > most_quantities ? shown.size() - most_quantities : 0;
@@ -67,51 +75,12 @@ std::string quantities_text(const StudyResult& result) {
     return text;
 }
 
-/// One line for all quantities with the same verdict and sentence.
-std::string verdicts_text(const StudyResult& result) {
-    struct Remark {
-        const StudyQuantity* first;
-        std::size_t count;
-    };
-    std::vector<Remark> remarks;
-    for (const StudyQuantity& q : result.quantities) {
-        if (q.verdict == StudyVerdict::known) continue;
-        const auto same = std::ranges::find_if(remarks, [&q](const Remark& remark) {
-            return remark.first->verdict == q.verdict && remark.first->sentence == q.sentence;
-        });
-        if (same == remarks.end())
-            remarks.push_back({&q, 1});
-        else
-            ++same->count;
-    }
+/// Text of at most `most_remarks` lines, each with an indent.
+std::string some_lines(const std::vector<std::string>& lines) {
     std::string text;
-    for (std::size_t i = 0; i < std::min(most_remarks, remarks.size()); ++i) {
-        const StudyQuantity& q = *remarks[i].first;
-        text += "  " + std::string(name_of(q.verdict)) + ": " + q.name +
-                (remarks[i].count > 1 ? " and " + std::to_string(remarks[i].count - 1) + " more" : "") + ": " +
-                q.sentence + "\n";
-    }
-    if (remarks.size() > most_remarks)
-        text += "  ... and " + std::to_string(remarks.size() - most_remarks) + " more remarks, in the page\n";
-    return text;
-}
-
-/// One line for all runs that have no result for the same reason.
-std::string missing_text(const StudyResult& result) {
-    std::vector<std::pair<std::string, std::string>> lines;  // status and settings, reason
-    for (const StudyRun& run : result.runs) {
-        if (run.status == StudyRunStatus::ok) continue;
-        const auto same = std::ranges::find(lines, run.message, &std::pair<std::string, std::string>::second);
-        if (same != lines.end())
-            same->first += "; " + variant_text(run.variant);
-        else
-            lines.emplace_back(
-                (run.status == StudyRunStatus::left_out ? "left out" : std::string(name_of(run.status))) + ": " +
-                    variant_text(run.variant),
-                run.message);
-    }
-    std::string text;
-    for (const auto& [runs, reason] : lines) text += runs + ": " + reason + "\n";
+    for (std::size_t i = 0; i < std::min(most_remarks, lines.size()); ++i) text += "  " + lines[i] + "\n";
+    if (lines.size() > most_remarks)
+        text += "  ... and " + std::to_string(lines.size() - most_remarks) + " more remarks, in the page\n";
     return text;
 }
 
@@ -130,6 +99,47 @@ std::string cheapest_text(const StudyResult& result) {
 
 }  // namespace
 
+std::vector<std::string> verdict_lines(const StudyResult& result) {
+    struct Remark {
+        const StudyQuantity* first;
+        std::size_t count;
+    };
+    std::vector<Remark> remarks;
+    for (const StudyQuantity& q : result.quantities) {
+        if (q.verdict == StudyVerdict::known) continue;
+        const auto same = std::ranges::find_if(remarks, [&q](const Remark& remark) {
+            return remark.first->verdict == q.verdict && remark.first->sentence == q.sentence;
+        });
+        if (same == remarks.end())
+            remarks.push_back({&q, 1});
+        else
+            ++same->count;
+    }
+    std::vector<std::string> lines;
+    for (const auto& [first, count] : remarks)
+        lines.push_back(std::string(name_of(first->verdict)) + ": " + first->name +
+                        (count > 1 ? " and " + std::to_string(count - 1) + " more" : "") + ": " + first->sentence);
+    return lines;
+}
+
+std::vector<std::string> missing_lines(const StudyResult& result) {
+    std::vector<std::pair<std::string, std::string>> reasons;  // status and settings, reason
+    for (const StudyRun& run : result.runs) {
+        if (run.status == StudyRunStatus::ok) continue;
+        const auto same = std::ranges::find(reasons, run.message, &std::pair<std::string, std::string>::second);
+        if (same != reasons.end())
+            same->first += "; " + variant_text(run.variant);
+        else
+            reasons.emplace_back(
+                (run.status == StudyRunStatus::left_out ? "left out" : std::string(name_of(run.status))) + ": " +
+                    variant_text(run.variant),
+                run.message);
+    }
+    std::vector<std::string> lines;
+    for (const auto& [runs, reason] : reasons) lines.push_back(runs + ": " + reason);
+    return lines;
+}
+
 std::string study_text(const StudyResult& result) {
     double cpu = 0;
     std::size_t left_out = 0, failed = 0;
@@ -145,8 +155,8 @@ std::string study_text(const StudyResult& result) {
                        duration_text(cpu) + " of CPU time";
     if (failed > 0) text += ", " + std::to_string(failed) + " without a result";
     if (left_out > 0) text += ", " + std::to_string(left_out) + " left out";
-    text += "\n" + quantities_text(result) + verdicts_text(result);
-    text += missing_text(result);
+    text += "\n" + quantities_text(result) + some_lines(verdict_lines(result));
+    for (const std::string& line : missing_lines(result)) text += line + "\n";
     for (std::size_t i = 0; i < std::min(most_remarks, result.sentences.size()); ++i)
         text += result.sentences[i] + "\n";
     if (result.sentences.size() > most_remarks)

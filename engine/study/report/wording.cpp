@@ -45,8 +45,10 @@ std::string share_text(Real share) {
 }
 
 std::string order_text(const char* name, Real order, Real expected) {
-    if (std::isnan(order)) return {};
-    return std::string(name) + " " + short_number(order, 2) + " (" + short_number(expected, 2) + " expected)";
+    if (!std::isfinite(order)) return {};
+    // Where the theory has a lowest and a highest order, `expected` is the lowest one.
+    return std::string(name) + " " + short_number(order, 2) + " (" + (expected < 2 ? "at least " : "") +
+           short_number(expected, 2) + " expected)";
 }
 
 }  // namespace
@@ -87,7 +89,16 @@ QuantityText quantity_text(const StudyQuantity& q) {
         text.best = to_digit_of(in_unit(q.best), in_unit(q.best_error));
         text.best_error = in_unit(q.best_error) > 0 ? part(q.best_error) : "0";
     }
-    if (has_error && in_unit(q.error) > 0 && q.scale > 0) text.share = share_text(q.error / q.scale);
+    if (has_error && in_unit(q.error) > 0 && q.scale > 0) {
+        text.share = share_text(q.error / q.scale);
+        // The share is that of the scale, which a reader must know if it is not about the value.
+        constexpr Real near = 0.1;
+        if (std::abs(std::abs(q.value) - q.scale) > near * q.scale) {
+            const auto [scale_factor, scale_prefix] = prefix_of(q.scale, q.unit);
+            text.share +=
+                " of " + short_number(q.scale / scale_factor) + (q.unit == "1" ? "" : " " + scale_prefix + q.unit);
+        }
+    }
     text.orders = order_text("order", q.mesh_order, q.expected_mesh_order);
     // The order of the steps is of interest if the steps have a good part of the error.
     constexpr Real share = 0.2;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "skerry/study.h"
 
@@ -15,9 +16,14 @@ struct QuantityText {
     std::string value, error, unit;          // error: empty if unknown
     std::string mesh, step, contact, noise;  // parts of the error; empty if zero or unknown
     std::string best, best_error;            // empty if unknown
-    std::string share;                       // error relative to the scale [%]
+    std::string share;                       // error relative to the scale [%], with the scale if it is not the value
     std::string orders;                      // for example "order 1.9 (2 expected)"; empty if unknown
 };
 QuantityText quantity_text(const StudyQuantity& quantity);
+
+/// One line for all quantities with the same verdict and sentence; known quantities have none.
+std::vector<std::string> verdict_lines(const StudyResult& result);
+/// One line for all runs that have no result for the same reason.
+std::vector<std::string> missing_lines(const StudyResult& result);
 
 }  // namespace skerry

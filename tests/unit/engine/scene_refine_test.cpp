@@ -214,7 +214,9 @@ TEST_CASE("impossible refinements are refused with the reason", "[unit]") {
                Contains("bodies[0].mesh.refine: found 7, expected a whole number") && Contains("-6") && Contains("6"));
     CHECK_THAT(refusal(box + "0.5}"), Contains("refine: found the number 0.5, expected a whole number"));
     CHECK_THAT(refusal(box + "-2}"), Contains("body \"b\": bodies[0].mesh.refine: found -2") &&
-                                         Contains("halved without remainder only for values of at least -1"));
+                                         Contains("cells [4, 2, 2] cannot be halved 2 times without remainder"));
+    CHECK_THAT(refusal(R"({"ball": {"radius": 1, "resolution": 6}, "refine": -1})"),
+               Contains("resolution 6 cannot be halved without remainder"));
     CHECK(refusal(box + "-1}").empty());
     CHECK_THAT(refusal(box + "1}", R"(, "pin": {"nodes": [0]})"),
                Contains("bodies[0].pin.nodes names nodes by number, and the mesh would have other nodes"));

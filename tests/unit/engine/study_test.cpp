@@ -3,14 +3,17 @@
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <fstream>
 #include <numbers>
-#include <utility>
+#include <ostream>
 
+#include "engine/output/write_file.h"
+#include "engine/scene/parse_json.h"
 #include "engine/scene/scene_plan.h"
+#include "engine/scene/write_scene.h"
 #include "engine/study/plan_study.h"
 #include "engine/study/run_file.h"
 #include "engine/study/run_variant.h"
+#include "engine/study/study_columns.h"
 #include "skerry/error.h"
 #include "skerry/study.h"
 #include "tests/support/temporary_folder.h"
@@ -154,6 +157,164 @@ TEST_CASE("a study continues with the runs in its folder, and has the numbers of
     CHECK(std::filesystem::exists(file_of("refine_1")));
 }
 
+TEST_CASE("a stored run is refused if its columns are shorter than its times") {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "run_step_0.5.json";
+    StudyRun run{.variant = {.step = 0.5}, .assignments = {}, .time = {0, 1}};
+    run.columns = {{.what = {"tip", "displacement_x", "m"}, .values = {0, 1}}};
+    write_run(folder.path(), "inputs", run);
+    CHECK(read_run(folder.path(), "inputs", run.variant).run);
+    run.columns[0].values.pop_back();
+    write_run(folder.path(), "inputs", run);
+    const StoredRun stored = read_run(folder.path(), "inputs", run.variant);
+    CHECK_FALSE(stored.run);
+    CHECK(stored.found == "run_step_0.5.json is no run of a study");
+}
+
+TEST_CASE("a stored run without some of the columns is refused, and the others are compared") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 6, .folder = folder.path() / "runs"};
+    settings.seconds = 0.02;
+    study(scene, settings);
+    const std::filesystem::path file = settings.folder / "run_draw_1.json";
+    Json json = read_json(file);
+    json["columns"].erase(json["columns"].size() - 1);
+    write_file(file, [&](std::ostream& out) { out << json.dump(); });
+    const StudyResult result = study(scene, settings);
+    CHECK(names_of_runs(result, StudyRunStatus::refused) == std::vector<std::string>{"draw_1"});
+    CHECK(names_of_runs(result, StudyRunStatus::ok).size() >= 2);
+}
+
+TEST_CASE("a scene that changes while its study runs ends the study") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
+    settings.seconds = 2;  // long enough for a call of go_on between the runs
+    bool changed = false;
+    settings.go_on = [&](const StudyProgress& progress) {
+        if (progress.runs_done > 0 && !changed) {
+            std::string other = bar;
+            folder.write("bar.json", other.replace(other.find("1e5"), 3, "3e5"));
+            changed = true;
+        }
+        return true;
+    };
+    CHECK(message_of(scene, settings).find("changed while the study ran") != std::string::npos);
+    for (const auto& file : std::filesystem::directory_iterator(settings.folder))
+        CHECK(file.path().filename() != "run_draw_2.json");
+}
+
+TEST_CASE("a study that is made again replaces runs only, and all of them") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
+    settings.seconds = 0.02;
+    const StudyResult whole = study(scene, settings);
+    Json json = read_json(settings.folder / "run_scene.json");
+    json["steps"] = 1;
+    const auto write_json = [&](const Json& content) {
+        write_file(settings.folder / "run_scene.json", [&](std::ostream& out) { out << content.dump(); });
+    };
+    write_json(json);
+    settings.redo = true;
+    CHECK(study(scene, settings).runs[0].steps == whole.runs[0].steps);
+    write_json({{"name", "a scene of the user"}});
+    CHECK(message_of(scene, settings).find("run_scene.json: study: folder: found a file that is no run of a study") !=
+          std::string::npos);
+    CHECK(read_json(settings.folder / "run_scene.json").contains("name"));
+}
+
+TEST_CASE("a refused run is made again by the next study") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
+    settings.seconds = 0.02;
+    study(scene, settings);
+    Json json = read_json(settings.folder / "run_draw_1.json");
+    json["status"] = "refused";
+    write_file(settings.folder / "run_draw_1.json", [&](std::ostream& out) { out << json.dump(); });
+    CHECK(study(scene, settings).runs[1].status == StudyRunStatus::ok);
+}
+
+TEST_CASE("the runs with other steps have as many steps as their names say") {
+    const TemporaryFolder folder;
+    std::string implicit = bar;
+    implicit.insert(implicit.find("\"pin\""), R"("dynamics": "implicit", )");
+    // The steps are shorter than implicit_step, because 0.01 s are no multiple of it.
+    StudySettings settings{.probes = {"tip"}, .assignments = {"settings.implicit_step=0.0011"}, .threads = 1};
+    settings.seconds = 0.02;
+    settings.budget = 15;
+    const StudyResult result = study(folder.write("implicit.json", implicit), settings);
+    REQUIRE(result.runs[0].steps == 20);
+    for (const StudyRun& run : result.runs)
+        if (run.status == StudyRunStatus::ok)
+            CHECK(static_cast<Real>(run.steps) * run.variant.step == 20);
+}
+
+TEST_CASE("a scene that is written through a symbolic link names the same files") {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder.path() / "deep" / "real");
+    std::filesystem::create_directory_symlink(folder.path() / "deep" / "real", folder.path() / "link");
+    folder.write("m.msh", "mesh");
+    const std::filesystem::path scene = folder.path() / "link" / "cheapest.json";
+    CHECK(path_in_scene(folder.path() / "m.msh", scene) == "../../m.msh");
+    CHECK(std::filesystem::equivalent(scene.parent_path() / path_in_scene(folder.path() / "m.msh", scene),
+                                      folder.path() / "m.msh"));
+}
+
+TEST_CASE("a folder has one study at a time") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
+    settings.seconds = 0.02;
+    {
+        const FolderLock other(settings.folder);
+        CHECK(message_of(scene, settings).find("runs: study: folder: found a folder in which another study runs") !=
+              std::string::npos);
+    }
+    CHECK(message_of(scene, settings).empty());
+}
+
+TEST_CASE("the largest number of iterations of a study is a valid number") {
+    StudiedScene scene{.path = {}, .file = {}, .assignments = {}, .levels = {}, .settings = {}};
+    scene.settings.max_iterations = 300'000'000;
+    CHECK(variant_assignments(scene, {.tolerance = 0.01}, 1e-3).back() == "settings.max_iterations=2147483640");
+}
+
+TEST_CASE("a study whose runs cannot be written has results all the same") {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.write("bar.json", bar);
+    StudySettings settings{.threads = 1, .budget = 4, .folder = folder.path() / "runs"};
+    settings.seconds = 0.02;
+    std::filesystem::create_directories(settings.folder);
+    std::filesystem::create_symlink(scene / "run.json", settings.folder / "run_draw_1.json");  // `scene` is no folder
+    const StudyResult result = study(scene, settings);
+    CHECK_FALSE(result.quantities.empty());
+    CHECK(std::ranges::any_of(result.sentences, [](const std::string& sentence) {
+        return sentence.starts_with("Not all runs could be kept in the folder: ");
+    }));
+}
+
+TEST_CASE("a study has the largest stress at a probe of contacts") {
+    const TemporaryFolder folder;
+    std::string probed = bar;
+    probed.insert(probed.rfind("]}"), R"(, {"name": "end", "body": "arm", "quantity": "contacts",
+        "box": {"lower": [0.099, -1, -1], "upper": [1, 1, 1]}})");
+    StudySettings settings{.probes = {"end"}, .threads = 1, .budget = 4};
+    settings.seconds = 0.02;
+    const StudyResult result = study(folder.write("bar.json", probed), settings);
+    CHECK(quantity(result, "end.largest_von_mises_end").value > 0);
+}
+
+TEST_CASE("the name of a body with a dot chooses no other body") {
+    std::vector<StudyColumn> columns{{.what = {"a.b", "force_x", "N"}}, {.what = {"a.b_1", "force_x", "N"}}};
+    choose_columns_by_name({"a.b"}, "scene.json", columns);
+    CHECK((columns[0].reported && !columns[1].reported));
+    choose_columns_by_name({"a.b_1.force"}, "scene.json", columns);
+    CHECK((!columns[0].reported && columns[1].reported));
+}
+
 TEST_CASE("runs of another scene are refused unless they may be replaced") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
@@ -166,43 +327,10 @@ TEST_CASE("runs of another scene are refused unless they may be replaced") {
           std::string::npos);
     settings.seconds = 0.02;
     settings.assignments = {"materials.rubber.E=2e5"};
-    CHECK(message_of(scene, settings).find("--redo") != std::string::npos);
+    CHECK(message_of(scene, settings).find("redo") != std::string::npos);
     settings.redo = true;
-    CHECK(study(scene, settings).runs[0].assignments == settings.assignments);
-}
-
-TEST_CASE("a study ends if its scene changes while it runs") {
-    const TemporaryFolder folder;
-    const std::filesystem::path scene = folder.write("bar.json", bar);
-    StudySettings settings = small_study();
-    bool changed = false;
-    settings.go_on = [&](const StudyProgress&) {
-        if (!std::exchange(changed, true)) {
-            std::string other = bar;
-            folder.write("bar.json", other.replace(other.find("1e5"), 3, "3e5"));
-        }
-        return true;
-    };
-    CHECK(message_of(scene, settings).find("changed while the study ran") != std::string::npos);
-}
-
-TEST_CASE("stored runs that were refused are made again, and damaged ones are named") {
-    const TemporaryFolder folder;
-    const std::filesystem::path scene = folder.write("bar.json", bar);
-    StudySettings settings = small_study(folder.path() / "runs");
-    settings.budget = 5;
-    settings.seconds = 0.02;
-    study(scene, settings);
-    const std::filesystem::path file = settings.folder / "run_draw_1.json";
-    const auto change = [&file](auto edit) {
-        Json run = Json::parse(std::ifstream(file));
-        edit(run);
-        std::ofstream(file) << run;
-    };
-    change([](Json& run) { run["status"] = "refused"; });
-    CHECK(study(scene, settings).runs[1].status == StudyRunStatus::ok);
-    change([](Json& run) { run["columns"][0]["values"].erase(0); });
-    CHECK(message_of(scene, settings).find("run_draw_1.json is no run of a study") != std::string::npos);
+    CHECK(study(scene, settings).runs[0].assignments ==
+          std::vector<std::string>{"materials.rubber.E=2e5", "seconds=0.02"});
 }
 
 TEST_CASE("flat faces of a cylinder are off by a twelfth of the square of their angle, those of a box are not") {
@@ -231,8 +359,10 @@ TEST_CASE("wrong settings of a study are refused by name") {
     CHECK(message_of(scene, settings).find("error") != std::string::npos);
     settings = {.budget = -1};
     CHECK(message_of(scene, settings).find("budget") != std::string::npos);
-    settings = {.threads = -1};
-    CHECK(message_of(scene, settings).find("threads") != std::string::npos);
+    for (const int threads : {-1, 1'000'000'000}) {
+        settings = {.threads = threads};
+        CHECK(message_of(scene, settings).find("threads: found " + std::to_string(threads)) != std::string::npos);
+    }
     settings = {};
     settings.seconds = 0;
     CHECK(message_of(scene, settings).find("seconds") != std::string::npos);

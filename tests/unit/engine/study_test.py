@@ -37,9 +37,11 @@ class StudyTest(ProgramCase):
         stats = self.folder / "stats.json"
         finer = next(run for run in study["runs"] if run["name"] == "step_0.5")
         options = [option for text in finer["set"] for option in ("--set", text)]
-        self.skerry("run", self.scene, "--seconds", 0.05, *options, "--quiet", "--stats", stats)
+        self.assertIn("seconds=0.05", finer["set"])
+        self.skerry("run", self.scene, *options, "--quiet", "--stats", stats)
         self.assertEqual(json.loads(stats.read_text())["state_hash"], finer["state_hash"])
-        self.skerry("run", self.out / "cheapest.json", "--quiet", "--seconds", 0.05)
+        self.assertEqual(json.loads((self.out / "cheapest.json").read_text())["seconds"], 0.05)
+        self.skerry("run", self.out / "cheapest.json", "--quiet")
         again = self.study("--error", "0.5", "--probe", "block.displacement_z", "--seconds", 0.05, "--quiet")
         self.assertEqual((again.stdout, again.stderr), ("", ""))
 
@@ -63,10 +65,18 @@ class StudyTest(ProgramCase):
         scene = self.write("study.json", SCENE)
         self.assert_refused("study", scene, "--out", self.folder, said=["study.json", "SCENE"])
 
+    def test_files_that_the_scene_includes_are_no_outputs(self):
+        self.out.mkdir()
+        included = self.out / "cheapest.json"
+        included.write_text(json.dumps(SCENE))
+        scene = self.write("whole.json", {"include": ["results/cheapest.json"]})
+        self.assert_refused("study", scene, "--out", self.out, said=["cheapest.json", "a file of SCENE"])
+        self.assertEqual(json.loads(included.read_text()), SCENE)
+
     def test_runs_of_another_scene_are_replaced_only_on_request(self):
         self.study("--seconds", 0.01, "--budget", 4)
         refused = self.study("--seconds", 0.02, "--budget", 4, code=2)
-        self.assertIn("--redo", refused.stderr)
+        self.assertIn("redo", refused.stderr)
         self.study("--seconds", 0.02, "--budget", 4, "--redo")
 
     def test_a_scene_that_fails_has_exit_code_1(self):
