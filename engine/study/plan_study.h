@@ -21,7 +21,7 @@ struct StudiedScene {
     SceneLevels levels;
     Settings settings;
     bool has_explicit = false;         // true with deformable bodies that are integrated explicitly
-    std::vector<FlatBody> flat;        // bodies whose refined meshes keep the flat faces of a file
+    std::vector<FlatBody> flat{};      // bodies whose refined meshes keep the flat faces of a file
     std::vector<Real> shape_errors{};  // StudyColumn::shape_error of each column
     double longest_call = 0;           // longest simulated time of a call of advance [s]
 };
