@@ -9,12 +9,12 @@
 namespace skerry {
 
 /// Averages the error e_nat of the contact regions of each body (docs/methods/errors.md 2), and finds its largest
-/// overlap.
+/// overlap and gap.
 class ContactError {
 public:
     /// Takes a sample from the contacts of the last step.
     void sample(const World& world);
-    /// Sets ErrorEstimate::contact and overlap of the bodies that were touched.
+    /// Sets ErrorEstimate::contact, overlap and gap of the bodies that were touched.
     void add_to(std::vector<ErrorEstimate>& bodies) const;
 
 private:
@@ -22,6 +22,7 @@ private:
         Real impulse = 0;  // sum of the impulses of its contacts [N s]
         Real error = 0;    // sum of these impulses times the error of their region [N s]
         Real overlap = 0;  // largest overlap [m]
+        Real gap = 0;      // largest distance of a contact that carried a force [m]
     };
 
     std::map<BodyHandle, Touched> touched_;

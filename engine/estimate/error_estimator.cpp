@@ -67,11 +67,12 @@ private:
 
     void add(const MeshError& error, BodyHandle body, bool yields, Real time) {
         if (!(error.stored > (found_.contains(body) ? found_[body].stored : 0))) return;
+        const std::vector<Real> relative = error.relative_errors();
         found_[body] = {.stored = error.stored,
                         .mesh = error.mesh(),
                         .deflection = yields ? not_estimated : error.deflection(),
                         .stress = error.stress,
-                        .worst = static_cast<Index>(std::ranges::max_element(error.error) - error.error.begin()),
+                        .worst = static_cast<Index>(std::ranges::max_element(relative) - relative.begin()),
                         .time = time};
     }
 
@@ -89,8 +90,7 @@ Pace pace_of(const World& world) {
     constexpr Pace explicit_pace{8000, 2000, 200}, implicit_pace{250, 100, 20};
     const Model& model = WorldAccess::state_of(world).model;
     // Worlds without explicit bodies take few, long steps.
-    return model.implicit_nodes.displacement.size() > 0 || model.all_blocks().size() == 0 ? implicit_pace
-                                                                                          : explicit_pace;
+    return model.all_blocks().size() == 0 ? implicit_pace : explicit_pace;
 }
 
 }  // namespace

@@ -46,8 +46,15 @@ public:
             }
     }
 
+    /// Mean over the corners of a tetrahedron. In bodies of one material it includes extrapolated values.
+    Mat3 mean(std::size_t tetrahedron) const {
+        Mat3 sum = Mat3::Zero();
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            sum += materials_.size() > 1 ? of(tetrahedron, corner) : nodes_.stress[node_at(tetrahedron, corner)];
+        return sum / 4;
+    }
     Mat3 of(std::size_t tetrahedron, std::size_t corner) const {
-        const auto n = static_cast<std::size_t>(record_.tetrahedra[tetrahedron][corner]);
+        const std::size_t n = node_at(tetrahedron, corner);
         if (!nodes_.extrapolated[n]) return nodes_.stress[n];
         const Sum& sum = sums_[place(tetrahedron, corner)];
         return sum.stress / sum.volume;
@@ -59,8 +66,11 @@ private:
         Real volume = 0;
     };
 
+    std::size_t node_at(std::size_t tetrahedron, std::size_t corner) const {
+        return static_cast<std::size_t>(record_.tetrahedra[tetrahedron][corner]);
+    }
     std::size_t place(std::size_t tetrahedron, std::size_t corner) const {
-        const auto n = static_cast<std::size_t>(record_.tetrahedra[tetrahedron][corner]);
+        const std::size_t n = node_at(tetrahedron, corner);
         if (materials_.empty()) return n;
         const auto material = std::ranges::lower_bound(materials_, record_.tetrahedron_material[tetrahedron]);
         return n + nodes_.stress.size() * static_cast<std::size_t>(material - materials_.begin());
@@ -85,7 +95,7 @@ Real share_of(Real error, Real energy) {
 ///
 /// Smoothed elements solve for a stress s that is constant in each element and for displacements with the strain e in
 /// the tetrahedra. Both are stationary for the functional of Hellinger and Reissner, so its error is of second order:
-/// the missing energy is 2 (S - e) : (s* - s) - (s* - s) : (S* - S), summed over the body, with the exact stress s* and
+/// the missing energy is 2 (S - e) : (s* - s) + (s* - s) : (S* - S), summed over the body, with the exact stress s* and
 /// the strains S and S* of both stresses. The recovered stress stands for the exact one. For linear tetrahedra S = e,
 /// and the missing energy is the squared norm of the error.
 class MeshErrorSum {
@@ -120,7 +130,7 @@ private:
         // The exact stress is balanced: its product with the strain of the displacements is the stored energy. So the
         // recovered stress is scaled.
         if (mixed_ > 0) error_.missing = error_.stored * (error_.stored * recovered_ / (mixed_ * mixed_) - 1);
-        find_peak(error_.nodes);
+        find_peak(of_tetrahedra, recovered);
         find_errors_of_nodes();
     }
     std::size_t block_at(std::size_t place) const {
@@ -238,25 +248,26 @@ private:
                     .dot(total);
     }
 
-    /// The error of the recovered stress is of second order in the length of the edges, that of the tetrahedra of first
-    /// order. The former is therefore estimated by the square of the relative error of the tetrahedra around the node.
-    /// Where the stress is extrapolated over two rings of tetrahedra, lengths are twice as large.
-    void find_peak(const NodeFields& nodes) {
+    /// At the centroids of the tetrahedra their stress and the recovered stress both have errors of second order in the
+    /// length of the edges. The difference of the two stresses there, over the tetrahedra around the node, stands for
+    /// the error of the recovered stress.
+    void find_peak(std::span<const Mat3> of_tetrahedra, const CornerStress& recovered) {
         Index peak = 0;
-        for (std::size_t n = 0; n < nodes.stress.size(); ++n) {
-            const Real stress = von_mises(nodes.stress[n]);
+        for (std::size_t n = 0; n < error_.nodes.stress.size(); ++n) {
+            const Real stress = von_mises(error_.nodes.stress[n]);
             if (!(stress > error_.largest_stress)) continue;
             error_.largest_stress = stress;
             peak = static_cast<Index>(n);
         }
-        Real energy = 0, error = 0;
-        for (std::size_t t = 0; t < error_.energy.size(); ++t) {
+        if (!(error_.largest_stress > 0)) return;
+        Real squares = 0, volume = 0;
+        for (std::size_t t = 0; t < of_tetrahedra.size(); ++t) {
             if (std::ranges::count(record_.tetrahedra[t], peak) == 0) continue;
-            energy += error_.energy[t];
-            error += error_.error[t];
+            const Real difference = von_mises(recovered.mean(t) - of_tetrahedra[t]);
+            squares += error_.volume[t] * difference * difference;
+            volume += error_.volume[t];
         }
-        const Real longer = nodes.extrapolated[static_cast<std::size_t>(peak)] ? 2 : 1;
-        error_.stress = std::min<Real>(1, longer * longer * share_of(error, energy));
+        error_.stress = std::min<Real>(1, std::sqrt(squares / volume) / error_.largest_stress);
     }
 
     void find_errors_of_nodes() {

@@ -42,6 +42,10 @@ std::size_t row_of(const World& world, BodyHandle body) {
     return static_cast<std::size_t>(model_of(world).row(body, "sample"));
 }
 
+Real dissipated_by(const World& world) {
+    return WorldAccess::state_of(world).record.counters.dissipated;
+}
+
 /// Root mean square over the nodes of a body, weighted by mass. `of_node` returns the vector of a local node.
 Real mean_size(const World& world, BodyHandle body, auto&& of_node) {
     const Model& model = model_of(world);
@@ -77,6 +81,11 @@ Real frequency_error(Real z, bool implicit, Real theta) {
     return z * z * (implicit ? 1.0 / 12 + (theta - 0.5) * (theta - 0.5) : 1.0 / 24);
 }
 
+/// Time by which symplectic Euler takes given velocities for older than they are [s].
+Real start_shift(const World& world, Real first_step) {
+    return world.settings().integrator == Integrator::leapfrog ? 0 : first_step / 2;
+}
+
 std::map<BodyHandle, AttachmentHandle> holders_of(const World& world) {
     std::map<BodyHandle, AttachmentHandle> holders;
     for (const AttachmentHandle attachment : world.attachments()) holders.emplace(world.body(attachment), attachment);
@@ -89,12 +98,26 @@ Vec3 spin_momentum(const World& world, BodyHandle body) {
     return model.rigid_bodies.angular_momentum[static_cast<std::size_t>(model.bodies.rigid[row_of(world, body)].begin)];
 }
 
+/// Rate of the error of the rotation of a free rigid body [rad/s]: the size of the second-order terms of the splitting
+/// into rotations about the principal axes (docs/methods/rigid_bodies.md), with the angular velocity w and its free
+/// change: h^2/24 |w| |dw/dt|.
+Real tumbling_error(const World& world, BodyHandle body, Real step) {
+    const Model& model = model_of(world);
+    const auto r = static_cast<std::size_t>(model.bodies.rigid[row_of(world, body)].begin);
+    const RigidBodyTable& table = model.rigid_bodies;
+    const Vec3& moments = table.moments[r];
+    const Vec3 momentum = table.rotation[r].transpose() * table.angular_momentum[r];
+    const Vec3 spin = momentum.cwiseQuotient(moments);
+    return step * step / 24 * spin.norm() * momentum.cross(spin).cwiseQuotient(moments).norm();
+}
+
 bool has_restitution(const World& world) {
-    return std::ranges::any_of(world.materials(),
-                               [&](MaterialHandle m) { return world.material(m).restitution > 0; }) ||
-           std::ranges::any_of(world.colliders(), [&](ColliderHandle c) {
-               return world.surface_properties(c).restitution.value_or(0) > 0;
-           });
+    const auto any = [](std::span<const SurfaceProperties> surfaces) {
+        return std::ranges::any_of(surfaces, [](const SurfaceProperties& of) { return of.restitution > 0; });
+    };
+    const Model& model = model_of(world);
+    return any(model.materials.surface) || any(model.material_pairs.surface) || any(model.surface_sets.surface) ||
+           any(model.bodies.surface) || any(model.colliders.surface);
 }
 
 /// Bodies that touch another body.
@@ -141,6 +164,7 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
                   .velocity = world.velocity(body).velocity,
                   .holder = holder,
                   .mesh = {Vec3::Zero(), Mat3::Identity()},
+                  .dissipated = dissipated_by(world),
                   .still = least_motion * world.mean_edge(body)};
     if (holder) {
         const RigidPose& added = model_of(world).body_records[row_of(world, body)].start;
@@ -159,20 +183,22 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
 /// error of the place into an error of the direction in which a body continues.
 Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
                             Motion& motion) {
-    if (motion.holder || world.settings().integrator == Integrator::leapfrog) return 0;
+    if (motion.holder) return 0;
     const std::span<const Vec3> position = world.positions(body);
     const Real radius = mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - frame.center); });
     const Twist &now = frame.motion, &start = motion.start_velocity;
-    // A free rigid body tumbles with errors of second order, so only torques count.
+    // Free rotation has errors of second order only, so at the start only torques count.
+    const bool is_rigid = motion.deformation.displacement.empty();
     const Real turned =
-        motion.deformation.displacement.empty()
-            ? (spin_momentum(world, body) - motion.start_spin).norm() / (world.mass(body) * radius * radius)
-            : (now.angular_velocity - start.angular_velocity).norm();
-    const Real change = (now.velocity - start.velocity).norm() + radius * turned;
+        is_rigid ? (spin_momentum(world, body) - motion.start_spin).norm() / (world.mass(body) * radius * radius)
+                 : (now.angular_velocity - start.angular_velocity).norm();
+    const Real change = std::hypot((now.velocity - start.velocity).norm(), radius * turned);
     if (motion.acceleration < 0) motion.acceleration = change / interval.seconds;
     // Impacts change the velocity without such an error.
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
-    const Real error = std::min(change, accelerated) * motion.first_step / 2 + motion.deflected;
+    const Real start_error = std::min(change, accelerated) * start_shift(world, motion.first_step);
+    if (is_rigid) motion.tumbled += interval.seconds * radius * tumbling_error(world, body, interval.step);
+    const Real error = start_error + motion.deflected + motion.tumbled;
     const Vec3 sudden = now.velocity - motion.velocity;
     if (interval.collided.contains(body))
         motion.deflection_rate += sudden.norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
@@ -203,8 +229,7 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     const Real step = implicit && !motion.holder ? std::max(interval.step, settings.implicit_step) : interval.step;
     motion.lead += interval.seconds * frequency_error(frequency * step, implicit, settings.theta);
     if (!implicit) {
-        const Real shift = settings.integrator == Integrator::leapfrog ? 0 : motion.first_step / 2;
-        return (motion.lead + shift) * speed;
+        return (motion.lead + start_shift(world, motion.first_step)) * speed;
     }
     // The part of the change between the samples that the velocities at the samples do not explain belongs to
     // vibrations that began in between.
@@ -215,8 +240,14 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     const Real decay = interval.seconds * damping_rate(frequency * step, settings.theta, step);
     motion.lost += -std::expm1(-decay) * begun;
     if (frequency > 0) motion.lost += decay * std::numbers::sqrt2 * speed / frequency;
+    // A vibration that loses an amplitude also dissipates its energy. Slow loads dissipate little.
+    const Real stiffness = motion.stiffness * world.mass(body) / motion.inertia;  // [N/m]
+    const Real dissipated = dissipated_by(world) - motion.dissipated;
+    if (stiffness > 0) motion.lost = std::min(motion.lost, std::sqrt(2 * std::max(Real{0}, dissipated) / stiffness));
     motion.lost = std::min(motion.lost, motion.largest);
-    return motion.lead * speed + motion.lost;
+    // A wrong phase displaces by at most twice the amplitude.
+    const Real phase = frequency > 0 ? std::min(motion.lead, 2 * std::numbers::sqrt2 / frequency) : motion.lead;
+    return phase * speed + motion.lost;
 }
 
 void StepError::go_on(const World& world, BodyHandle body, const Interval& interval, Motion& motion) {

@@ -39,15 +39,17 @@ private:
         Real acceleration = -1;                    // mean acceleration of the rigid motion in these steps [m/s^2]
         // Error of the place because of collisions in a wrong place [m], and its rate [m/s].
         Real deflected = 0, deflection_rate = 0;
+        Real tumbled = 0;  // error of the place because of free rotation [m]
         // Sums over the samples for the Rayleigh quotient of the deformation: twice the elastic energy [J], and the
         // squared displacements times the masses [kg m^2].
         Real stiffness = 0, inertia = 0;
-        Real lead = 0;     // sum of the errors of the phase of vibrations, as a time [s]
-        Real lost = 0;     // amplitude of the vibrations that the theta method has damped [m]
-        Real largest = 0;  // largest displacement by deformation so far [m]
-        Real error = 0;    // largest error so far [m]
-        Real moved = 0;    // largest displacement from the start so far [m]
-        Real still = 0;    // largest displacement that counts as rest [m]
+        Real lead = 0;        // sum of the errors of the phase of vibrations, as a time [s]
+        Real dissipated = 0;  // energy that the world had dissipated at the start [J]
+        Real lost = 0;        // amplitude of the vibrations that the theta method has damped [m]
+        Real largest = 0;     // largest displacement by deformation so far [m]
+        Real error = 0;       // largest error so far [m]
+        Real moved = 0;       // largest displacement from the start so far [m]
+        Real still = 0;       // largest displacement that counts as rest [m]
     };
     struct Interval;
     struct Frame;

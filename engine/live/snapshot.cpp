@@ -9,7 +9,7 @@ namespace skerry {
 
 void SnapshotTaker::take(const World& world, bool stresses, Snapshot& snapshot) {
     const Model& model = WorldAccess::state_of(world).model;
-    snapshot.frame = collect_frame(world, stresses ? FrameContent::node_values : FrameContent::motion);
+    snapshot.frame = collect_frame(world, stresses ? FrameContent::node_errors : FrameContent::motion);
     Frame& frame = snapshot.frame;
     const auto now = std::chrono::steady_clock::now();
     if (stresses) {

@@ -5,6 +5,7 @@
 #include "engine/estimate/mesh_error.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/objects.h"
+#include "engine/world/elements_of_body.h"
 #include "engine/world/world_state.h"
 #include "jobs/parallel_for.h"
 
@@ -25,6 +26,15 @@ std::vector<Index> materials_of(const World& world, BodyHandle body) {
 const BoundVisual* visual_of(const World& world, BodyHandle body) {
     const Model& model = WorldAccess::state_of(world).model;
     return model.body_records[static_cast<std::size_t>(model.row(body, "frame"))].visual.get();
+}
+
+/// Returns the fields at the nodes of a body, and if `errors` is true also their error that is due to the mesh.
+MeshError fields_at_nodes(const World& world, BodyHandle body, bool errors) {
+    if (errors) return measure_mesh_error(world, body);
+    const Model& model = WorldAccess::state_of(world).model;
+    MeshError fields;
+    fields.nodes = fields_of_nodes(model, static_cast<std::size_t>(model.row(body, "frame")));
+    return fields;
 }
 
 /// Returns a value for each cell of a body, given those of its tetrahedra. A body without tetrahedra is rigid, and its
@@ -51,7 +61,8 @@ Frame collect_frame(const World& world, FrameContent content) {
     std::vector<MeshError> fields(bodies.size());
     if (content >= FrameContent::node_values)
         parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t b = begin; b < end; ++b) fields[b] = measure_mesh_error(world, bodies[b]);
+            for (std::size_t b = begin; b < end; ++b)
+                fields[b] = fields_at_nodes(world, bodies[b], content >= FrameContent::node_errors);
         });
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const BodyHandle body = bodies[b];

@@ -12,6 +12,7 @@ namespace skerry {
 enum class FrameContent {
     motion,       // positions, velocities, contacts and lines
     node_values,  // stress and strain by node, and the energy of the world
+    node_errors,  // error of the stress that is due to the mesh, by node; takes as long again as node_values
     cell_values,  // values by cell
 };
 /// Values that the content does not include are left empty.

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "skerry/report.h"
 
 namespace skerry {

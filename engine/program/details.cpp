@@ -3,9 +3,9 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "engine/output/number_text.h"
 #include "engine/program/cluster_text.h"
 #include "engine/program/dynamics_text.h"
-#include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
 
 namespace skerry {

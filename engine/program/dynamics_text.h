@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "engine/scene/place.h"
 #include "skerry/report.h"
 

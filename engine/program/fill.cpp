@@ -5,10 +5,10 @@
 #include <iostream>
 
 #include "engine/mesh/repair/surface_measures.h"
+#include "engine/output/number_text.h"
 #include "engine/output/write_file.h"
 #include "engine/program/commands.h"
 #include "engine/program/inspect_mesh.h"
-#include "engine/program/number_text.h"
 #include "engine/program/progress.h"
 #include "engine/program/require_writable.h"
 #include "engine/scene/write_scene.h"

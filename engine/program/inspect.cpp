@@ -5,13 +5,13 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/output/number_text.h"
 #include "engine/program/cluster_text.h"
 #include "engine/program/commands.h"
 #include "engine/program/dynamics_text.h"
 #include "engine/program/inspect_mesh.h"
 #include "engine/program/inspect_repair.h"
 #include "engine/program/mesh_text.h"
-#include "engine/program/number_text.h"
 #include "engine/program/plan_warnings.h"
 #include "engine/program/progress.h"
 #include "engine/program/run_plan.h"

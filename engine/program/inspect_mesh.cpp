@@ -8,8 +8,8 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 #include "engine/mesh/repair/surface_measures.h"
+#include "engine/output/number_text.h"
 #include "engine/program/inspect_repair.h"
-#include "engine/program/number_text.h"
 #include "engine/program/start_text.h"
 #include "engine/program/thin_part_text.h"
 #include "skerry/error.h"

@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "engine/fill/meshers.h"
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "engine/program/progress.h"
 #include "engine/program/repair.h"
 #include "engine/program/require_writable.h"

@@ -13,9 +13,9 @@
 #include <malloc.h>
 #endif
 
+#include "engine/output/number_text.h"
 #include "engine/program/commands.h"
 #include "engine/program/examples.h"
-#include "engine/program/number_text.h"
 #include "engine/program/output_formats.h"
 #include "engine/program/sweep/cases/sweep_file.h"
 #include "engine/scene/place.h"
@@ -390,8 +390,7 @@ void add_study(CLI::App& app, StudyOptions& options) {
         "largest wall time of the study, divided by that of one run with one thread; finer meshes and other runs "
         "that do not fit are left out; default: 15, or more as long as the study takes less than 5 s");
     command.add_option("--out", options.out, "folder for the results; default: out/NAME_study, if SCENE is NAME.json");
-    command.add_flag("--redo", options.settings.redo,
-                     "make all runs again, and replace those in the folder");
+    command.add_flag("--redo", options.settings.redo, "make all runs again, and replace those in the folder");
     command.add_flag("--quiet", options.quiet, "print no progress and no report");
 }
 

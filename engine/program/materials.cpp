@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/output/number_text.h"
 #include "engine/program/commands.h"
-#include "engine/program/number_text.h"
 
 namespace skerry {
 

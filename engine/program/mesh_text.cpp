@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "engine/program/start_text.h"
 
 namespace skerry {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 
 namespace skerry {
 

@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "engine/mesh/manifold_fault.h"
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "engine/scene/scene_plan.h"
 
 namespace skerry {

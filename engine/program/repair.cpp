@@ -8,7 +8,7 @@
 #include "engine/mesh/repair/part_fans.h"
 #include "engine/mesh/repair/surface_distance.h"
 #include "engine/mesh/repair/surface_measures.h"
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "skerry/error.h"
 #include "systems/collision/build_surface.h"
 

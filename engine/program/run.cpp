@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "engine/mesh/manifold_fault.h"
+#include "engine/output/number_text.h"
 #include "engine/program/checkpoint.h"
 #include "engine/program/commands.h"
 #include "engine/program/contact_area_text.h"
 #include "engine/program/nearest_text.h"
-#include "engine/program/number_text.h"
 #include "engine/program/plan_warnings.h"
 #include "engine/program/progress.h"
 #include "engine/program/run_outputs.h"

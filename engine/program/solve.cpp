@@ -5,9 +5,9 @@
 #include <ostream>
 #include <string>
 
+#include "engine/output/number_text.h"
 #include "engine/output/write_file.h"
 #include "engine/program/commands.h"
-#include "engine/program/number_text.h"
 #include "engine/program/require_writable.h"
 #include "engine/scene/place.h"
 

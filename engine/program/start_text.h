@@ -1,7 +1,7 @@
 // Text and JSON about bodies that overlap at the start of a run.
 #pragma once
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "engine/scene/place.h"
 #include "skerry/report.h"
 

@@ -1,9 +1,9 @@
 #include <cmath>
 #include <ostream>
 
+#include "engine/output/number_text.h"
 #include "engine/output/write_file.h"
 #include "engine/program/dynamics_text.h"
-#include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
 #include "engine/program/start_text.h"
 #include "skerry/instruction_set.h"
@@ -27,6 +27,7 @@ Json errors_of(const RunResult& result) {
                           {"contact", number_or_null(of.contact)},
                           {"deformation", number_or_null(of.deformation)},
                           {"overlap", number_or_null(of.overlap)},
+                          {"gap", number_or_null(of.gap)},
                           {"contact_radius", number_or_null(of.contact_radius)},
                           {"contact_edge", number_or_null(of.contact_edge)},
                           {"worst_tetrahedron", of.worst_tetrahedron},

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "engine/output/number_text.h"
 #include "engine/program/mesh_text.h"
-#include "engine/program/number_text.h"
 #include "engine/world/step/step.h"
 #include "engine/world/world_state.h"
 

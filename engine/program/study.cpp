@@ -23,7 +23,8 @@ struct StudyFiles {
     std::filesystem::path json, csv, page, cheapest;
 };
 
-/// Returns the paths of the result files. Throws SceneError if one of them cannot be written, or is a file of the scene.
+/// Returns the paths of the result files. Throws SceneError if one of them cannot be written, or is a file of the
+/// scene.
 StudyFiles study_files(const StudyOptions& options, const std::filesystem::path& folder) {
     const StudyFiles files{folder / "study.json", folder / "study.csv", folder / "study.html",
                            folder / "cheapest.json"};

@@ -1,8 +1,8 @@
 // Summary that is printed at the end of a run, for people who do not know the methods of the engine.
 #include <cmath>
 
+#include "engine/output/number_text.h"
 #include "engine/program/dynamics_text.h"
-#include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
 #include "engine/program/start_text.h"
 
@@ -14,7 +14,8 @@ std::string count_of(std::size_t count, const std::string& noun, const std::stri
     return grouped(count) + " " + (count == 1 ? noun : nouns);
 }
 
-/// Returns the numbers of bodies and colliders, for example "11 deformable (2 of them implicit), 1 rigid, 1 collider".
+/// Returns the numbers of bodies, colliders, tetrahedra and nodes, for example "11 deformable (2 of them implicit), 1
+/// rigid, 1 collider, 1,536 tetrahedra, 560 nodes".
 std::string bodies_text(const RunResult& result) {
     const WorldReport& r = result.report;
     const std::size_t deformable = r.bodies - result.rigid_bodies;
@@ -24,6 +25,8 @@ std::string bodies_text(const RunResult& result) {
     if (result.implicit_bodies > 0) text += " (" + grouped(result.implicit_bodies) + " of them implicit)";
     if (result.rigid_bodies > 0) add(grouped(result.rigid_bodies) + " rigid");
     add(count_of(r.colliders, "collider", "colliders"));
+    add(count_of(r.elements, "tetrahedron", "tetrahedra"));
+    add(count_of(r.nodes, "node", "nodes"));
     if (r.asleep > 0) text += "; " + count_of(r.asleep, "body", "bodies") + " at rest at the end";
     return text;
 }
@@ -78,9 +81,11 @@ std::string balance_text(const WorldReport& r) {
                                                 : percent(r.momentum_error_share));
 }
 
-/// Returns the largest estimated errors of all bodies, for example "mesh about 3 % of the motion (body 'arm') and about
-/// 12 % of the largest stress (body 'arm'), steps about 0.1 % of the motion (body 'ball')".
+/// Returns the largest estimated errors of all bodies, with their names if there are several, for example "mesh about 3
+/// % of the motion (body 'arm') and about 12 % of the largest stress (body 'arm'), steps about 0.1 % of the motion
+/// (body 'ball')".
 std::string errors_text(const std::vector<ErrorEstimate>& errors) {
+    constexpr Real least = 1e-4;  // smaller estimates are mostly rounding errors
     std::string text;
     const auto add = [&](const char* between, const std::string& before, const std::string& after, auto&& error_of) {
         const ErrorEstimate* worst = nullptr;
@@ -90,9 +95,12 @@ std::string errors_text(const std::vector<ErrorEstimate>& errors) {
                 worst = &of;
                 largest = error;
             }
-        if (worst)
-            text += (text.empty() ? "" : between) + before + "about " + percent(largest) + " of " + after + " (body '" +
-                    worst->name + "')";
+        if (!worst) return;
+        const std::string size = largest >= 1      ? "100 % or more"
+                                 : largest < least ? "less than " + percent(least)
+                                                   : "about " + percent(largest);
+        text += (text.empty() ? "" : between) + before + size + " of " + after +
+                (errors.size() > 1 ? " (body '" + worst->name + "')" : "");
     };
     // The mesh changes only the displacements by deformation.
     add("", "mesh ", "the motion", [](const ErrorEstimate& of) { return of.deflection * of.deformation; });
@@ -135,8 +143,7 @@ std::string warning_lines(const RunResult& result) {
     std::string text;
     for (const std::string& warning : warnings_of(result)) text += summary_line("WARNING", warning);
     if (!text.empty()) return text;
-    return summary_line("warnings", result.status == "ok" ? "none: all error estimates are within their limits"
-                                                          : "none for the simulated part of the run");
+    return summary_line("warnings", result.status == "ok" ? "none" : "none for the simulated part of the run");
 }
 
 /// Lines with statistics of the steps. Empty if no step was made.
@@ -174,8 +181,6 @@ std::string summary_of(const RunResult& result) {
     if (result.restarted_at) text += summary_line("restarted", "at " + with_unit(*result.restarted_at, "s"));
     text += summary_line("bodies", bodies_text(result));
     if (const std::string choices = choices_text(r); !choices.empty()) text += summary_line("dynamics", choices);
-    text += summary_line("elements",
-                         count_of(r.elements, "tetrahedron", "tetrahedra") + ", " + count_of(r.nodes, "node", "nodes"));
     return text + start_lines(result) + step_lines(result) + warning_lines(result) + tie_lines(result) +
            probe_lines(result) + file_lines(result);
 }

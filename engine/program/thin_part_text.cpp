@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "engine/mesh/thin/thin_parts.h"
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 
 namespace skerry {
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <string>
 
+#include "engine/output/number_text.h"
 #include "engine/program/commands.h"
-#include "engine/program/number_text.h"
 #include "engine/program/plan_warnings.h"
 #include "engine/program/progress.h"
 #include "engine/program/signal_guard.h"

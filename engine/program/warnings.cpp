@@ -1,7 +1,7 @@
 // Warnings: reasons not to rely on the result of a run. Each warning includes a remedy.
 #include <algorithm>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "engine/program/run_result.h"
 #include "engine/program/start_text.h"
 

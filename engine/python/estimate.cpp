@@ -12,13 +12,14 @@ namespace {
 /// Columns by name, each with one value for each body.
 nb::dict table_of(const ErrorEstimator& estimator) {
     using Column = std::pair<const char*, Real ErrorEstimate::*>;
-    constexpr std::array<Column, 10> columns{{{"mesh", &ErrorEstimate::mesh},
+    constexpr std::array<Column, 11> columns{{{"mesh", &ErrorEstimate::mesh},
                                               {"deflection", &ErrorEstimate::deflection},
                                               {"stress", &ErrorEstimate::stress},
                                               {"step", &ErrorEstimate::step},
                                               {"deformation", &ErrorEstimate::deformation},
                                               {"contact", &ErrorEstimate::contact},
                                               {"overlap", &ErrorEstimate::overlap},
+                                              {"gap", &ErrorEstimate::gap},
                                               {"contact_radius", &ErrorEstimate::contact_radius},
                                               {"contact_edge", &ErrorEstimate::contact_edge},
                                               {"time", &ErrorEstimate::time}}};

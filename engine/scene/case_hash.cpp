@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "components/hash.h"
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "engine/scene/assign.h"
 #include "engine/scene/parse_json.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 
 namespace skerry {
 

@@ -63,8 +63,7 @@ StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySe
                          .file = read_scene_file(path, assignments),
                          .assignments = assignments,
                          .levels = {},
-                         .settings = {},
-                         .flat = {}};
+                         .settings = {}};
     studied.levels = levels_of(studied.file, path);
     SceneOverrides overrides{.threads = 1};
     overrides.assignments = assignments;

@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "engine/output/number_text.h"
 #include "engine/output/write_file.h"
-#include "engine/program/number_text.h"
 #include "skerry/error.h"
 
 namespace skerry {

@@ -264,9 +264,7 @@ private:
     void make_run(std::size_t i, int threads_of_run) {
         if (stop_) return;
         ++running_;
-        VariantJob job{.scene = scene_.path,
-                       .overrides = {.threads = threads_of_run},
-                       .variant = plan_[i].variant};
+        VariantJob job{.scene = scene_.path, .overrides = {.threads = threads_of_run}, .variant = plan_[i].variant};
         if (threads_of_run == 1) job.overrides.backend = Backend::serial;
         job.overrides.assignments = runs_[i].assignments;
         job.overrides.fill_python = settings_.fill_python;
@@ -324,7 +322,7 @@ private:
     const StudiedScene scene_;
     std::vector<PlannedRun> plan_;
     const FolderLock lock_;  // after `scene_`, so that an invalid scene creates no folder
-    Real mean_step_ = 0;  // of the scene as it is [s]
+    Real mean_step_ = 0;     // of the scene as it is [s]
     // The following are indexed as the plan.
     std::vector<StudyRun> runs_;
     std::vector<std::string> inputs_;          // texts that identify all inputs of a run

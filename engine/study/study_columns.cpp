@@ -116,7 +116,9 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
 }
 
 StudyRecorder::StudyRecorder(Scene& scene)
-    : world_(scene.world), defaults_(default_probes(scene)), recorder_(scene.world, joined(probes_of(scene), defaults_)) {
+    : world_(scene.world),
+      defaults_(default_probes(scene)),
+      recorder_(scene.world, joined(probes_of(scene), defaults_)) {
     const std::vector<BodyHandle> bodies = world_.bodies();
     size_ = diagonal(world_, bodies);
     many_bodies_ = bodies.size() > most_reported;

@@ -9,8 +9,9 @@
 
 namespace skerry {
 
-/// Records the probes of a scene, of those of contacts only the largest stress, and the default quantities: displacement, contact force and largest stress of each
-/// body, and the energies. Each call of sample() after a step records a row.
+/// Records the probes of a scene, of those of contacts only the largest stress, and the default quantities:
+/// displacement, contact force and largest stress of each body, and the energies. Each call of sample() after a step
+/// records a row.
 class StudyRecorder {
 public:
     /// `scene` must be as it was read, and must outlive the object.

@@ -39,11 +39,11 @@ NodeFields fields_of_nodes(const Model& model, std::size_t row, std::span<const 
     return fields;
 }
 
+}  // namespace
+
 NodeFields fields_of_nodes(const Model& model, std::size_t row) {
     return fields_of_nodes(model, row, all_nodes(model, row));
 }
-
-}  // namespace
 
 ElementsOfBody::ElementsOfBody(const Model& model, std::size_t row)
     : model_(model), row_(row), is_implicit_(model.dynamics_of(row) == BodyDynamics::implicit_elastic) {

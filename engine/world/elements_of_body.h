@@ -42,6 +42,9 @@ private:
     std::vector<Vec3> shape_;
 };
 
+/// Stress and strain at all nodes of a body, in world axes.
+NodeFields fields_of_nodes(const Model& model, std::size_t row);
+
 /// Numbers of all nodes of a body: 0, 1, and so on.
 std::vector<Index> all_nodes(const Model& model, std::size_t row);
 

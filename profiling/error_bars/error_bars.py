@@ -27,15 +27,18 @@ def number(value):
 
 
 def estimated_error(item, body, scale):
-    """Error of the item by the estimates of a body: of its stress, of a deflection at rest, or of a motion."""
-    keys = "stress", "deflection", "deformation", "step"
-    stress, deflection, deformation, step = (number(body[key]) for key in keys)
+    """Error of the item by the estimates of a body: of its stress, of a deflection at rest, of a force or a motion."""
+    keys = "stress", "deflection", "deformation", "step", "contact", "gap"
+    stress, deflection, deformation, step, contact, gap = (number(body[key]) for key in keys)
     if item.probe.startswith("all."):
         return abs(stress * item.truth)
+    if not item.at_rest and "force" in item.probe:
+        return abs(contact * item.truth)
+    offset = gap if gap > 0 and ".displacement_" in item.probe else 0
     if item.at_rest:
-        return abs(deflection * item.truth)
+        return abs(deflection * item.truth) + offset
     # The deflection is that of the deformation, which is a part of the motion. Rigid bodies have none.
-    return scale * (step + (0 if math.isnan(deflection) else abs(deflection) * deformation))
+    return scale * (step + (0 if math.isnan(deflection) else abs(deflection) * deformation)) + offset
 
 
 def study(program, item, folder, threads):
@@ -69,7 +72,8 @@ def row_of(item, folder):
             "known": item.truth, "doubt": doubt, "value": value, "error": error, "bar": bar,
             **{key: number(found[key]) for key in ("mesh", "step", "contact", "mesh_order", "step_order")},
             "verdict": found["verdict"], "bar_over_error": bar / max(error, rounding), "inside": int(inside),
-            "estimate": estimate, "estimate_over_error": estimate / max(error, rounding), "sentence": found["sentence"]}
+            "estimate": estimate, "estimate_over_error": max(estimate, rounding) / max(error, rounding),
+            "sentence": found["sentence"]}
 
 
 def write_table(rows, file):
@@ -86,9 +90,18 @@ def line(row):
             "{estimate_over_error:.2g}, {verdict} {sentence}").format(**row)
 
 
+def is_judged(row):
+    """Whether the known value is exact enough to judge the estimate of a run."""
+    return row["error"] > row["doubt"]
+
+
+def is_near(row):
+    return 1 / SHARP <= row["estimate_over_error"] <= SHARP
+
+
 # Reasons for which error bars miss a claim.
 REASONS = {
-    "cantilever_one_layer": "one layer of linear elements locks; the finer mesh is as far off",
+    "cantilever_one_layer": "one layer of linear elements locks; the verdict `irregular` says that the error may exceed the bar",
     "hollow_sphere": "refined meshes of a file keep its flat faces; they converge to a polyhedron inside the sphere",
     "hollow_sphere_stress": "stress grows at the edges of the polyhedron",
     "hollow_cylinder": "as `hollow_sphere`",
@@ -99,31 +112,51 @@ REASONS = {
     "incline_stick": "exact on the mesh of the scene, because the block is at rest",
     "toppling": "errors of steps and of the contact distance cancel; the study does not vary the latter",
 }
+MEAN = "the mean displacement, which is estimated, is right; that of this one node is not"
+FLAT = "as `hanging_bar`; also flat faces in place of the curved ones"
+# Reasons for which estimates of runs are not within a factor of SHARP of the error.
+ESTIMATE_REASONS = {
+    "hanging_bar": MEAN,
+    "hollow_sphere": FLAT,
+    "hollow_cylinder": FLAT,
+    "balloon": FLAT,
+    "bar_step_implicit": REASONS["bar_step_implicit"],
+    "cantilever_release": REASONS["cantilever_release"],
+    "toppling": "errors of steps and of the contact distance cancel",
+    "bounce": "errors of three impacts cancel, because their times within a step are accidental",
+    "pendulum": "at this time it moves across the measured direction",
+}
 
 PAGE = """# Error bars against known solutions
 
 This page shows how far you can trust the error bars of [`skerry study`](study.md) and the
 [error estimates](methods/error_estimates.md) of every run. `scripts/error_bars` studies {all} items with known
 solutions and writes this page; {count} have results. The scenes have coarse meshes and default settings. They were
-chosen before the first study. Afterwards `incline_slide` got a stiff block and a slow push, because its formula is that
-of a rigid block, and some items other quantities, because studies had no velocities and moments.
-[error_bars.csv](error_bars/error_bars.csv) lists all values, formulas and orders.
+chosen before the first study, except the quantities of some items, and the stiff block and slow push of
+`incline_slide`. [error_bars.csv](error_bars/error_bars.csv) lists values, formulas and orders.
 
 | claim | items |
 |---|---:|
 | the true error lies inside the error bar | {inside} of {count} |
 | the error bar is at most 3 times the true error | {sharp} of {count} |
-| the estimate of the run is within a factor of 3 of the true error | {estimated} of {count} |
+| the estimate of the run is within a factor of 3 of the true error | {estimated} of {judged} |
 
 Errors below 0.001 % of the known value count as 0.001 %. Some known values have errors themselves, up to 7 % for an
-impact after Hertz: the column `doubt`, which the first line adds to the error bar. An item without a finite value
-meets the first two lines if the study names it as {verdicts}.
+impact after Hertz: the column `doubt`, which the first line adds to the error bar. Inside only because of it:
+{doubted}. An item without a finite value meets the first two lines if the study names it as {verdicts}. The third line
+leaves out items with an error below their doubt.
 
 Items that miss one of the first two claims, in % of the known value:
 
 | item | true error | error bar | ratio | reason |
 |---|---:|---:|---:|---|
 {failures}
+
+Items that miss the third claim:
+
+| item | true error | estimate | ratio | reason |
+|---|---:|---:|---:|---|
+{estimates}
 """
 
 
@@ -135,12 +168,19 @@ def write_page(rows):
         f"| `{row['item']}` | {100 * abs(row['error'] / row['known']):.2g} "
         f"| {100 * abs(row['bar'] / row['known']):.2g} | {row['bar_over_error']:.1f} "
         f"| {REASONS.get(row['item'], row['sentence'])} |" for row in missed)
+    judged = [row for row in known if is_judged(row)]
+    estimates = "\n".join(
+        f"| `{row['item']}` | {100 * abs(row['error'] / row['known']):.2g} "
+        f"| {100 * abs(row['estimate'] / row['known']):.2g} | {row['estimate_over_error']:.2g} "
+        f"| {ESTIMATE_REASONS.get(row['item'], '')} |" for row in judged if not is_near(row))
     DOCS.mkdir(exist_ok=True)
     write_table(rows, DOCS / "error_bars.csv")
     DOCS.with_suffix(".md").write_text(PAGE.format(
         all=len(all_items()), count=len(rows), inside=sum(row["inside"] for row in rows),
         sharp=sum(row["bar_over_error"] <= SHARP or math.isnan(row["known"]) and row["inside"] for row in rows),
-        estimated=sum(1 / SHARP <= row["estimate_over_error"] <= SHARP for row in rows),
+        estimated=sum(is_near(row) for row in judged), judged=len(judged), estimates=estimates,
+        doubted=", ".join(f"`{row['item']}` (doubt {100 * row['doubt'] / abs(row['known']):.2g} %, {row['formula']})"
+                          for row in known if row["error"] > row["bar"] + EXACT * abs(row["known"]) and row["inside"]),
         verdicts=" or ".join(sorted({f"`{item.verdict}`" for item in all_items() if item.verdict})), failures=failures))
 
 

@@ -2,6 +2,11 @@
 import dataclasses
 import itertools
 import math
+import pathlib
+import sys
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "scenes" / "meshes"))
+from node_mesh import NodeMesh  # noqa: E402
 
 E, RHO = 1e5, 1000.0  # Young's modulus [Pa] and density [kg/m^3] of most items
 C = math.sqrt(E / RHO)  # speed of waves along a bar [m/s]
@@ -99,24 +104,17 @@ def root(function, low, high):
     return (low + high) / 2
 
 
-class CellMesh:
+class CellMesh(NodeMesh):
     """Cells of a grid, each of six tetrahedra. Nodes at the same place are one."""
 
-    def __init__(self):
-        self.nodes, self.tetrahedra, self.groups, self.number = [], [], {}, {}
-
-    def node(self, point):
-        key = tuple(round(c * 1e9) for c in point)
-        if key not in self.number:
-            self.number[key] = len(self.nodes)
-            self.nodes.append(point)
-        return self.number[key]
+    def node_at(self, point):
+        return self.node(tuple(round(c * 1e9) for c in point), point)
 
     def grid(self, counts, place, **groups):
         """Adds nx * ny * nz cells. `place` maps the unit cube. A group NAME = [(axis, side), ...] contains the faces at
         these sides of the cube, with side 0 or 1."""
         def at(i, j, k):
-            return self.node(place(i / counts[0], j / counts[1], k / counts[2]))
+            return self.node_at(place(i / counts[0], j / counts[1], k / counts[2]))
 
         for corner in itertools.product(*(range(count) for count in counts)):
             for order in itertools.permutations(range(3)):
@@ -131,11 +129,6 @@ class CellMesh:
                     face = [at(*p) for p in path if p[axis] == side * counts[axis]]
                     if len(face) == 3:
                         self.groups.setdefault(name, []).append(self.outward(face, t))
-
-    def volume(self, t):
-        a, b, c, d = (self.nodes[n] for n in t)
-        u, v, w = ([q - r for q, r in zip(p, a)] for p in (b, c, d))
-        return sum(u[i] * (v[(i + 1) % 3] * w[(i + 2) % 3] - v[(i + 2) % 3] * w[(i + 1) % 3]) for i in range(3))
 
     def outward(self, face, t):
         fourth = next(n for n in t if n not in face)

@@ -5,31 +5,21 @@ import collections
 import math
 import pathlib
 
+from node_mesh import NodeMesh
+
 FOLDER = pathlib.Path(__file__).resolve().parent
 # Kuhn's six tetrahedra of a cell; its corners are numbered by bits x + 2 y + 4 z. Neighbouring cells match, also around
 # a ring.
 KUHN = [(0, 1, 3, 7), (0, 1, 5, 7), (0, 2, 3, 7), (0, 2, 6, 7), (0, 4, 5, 7), (0, 4, 6, 7)]
 
 
-class Builder:
-    def __init__(self):
-        self.nodes, self.tetrahedra, self.number, self.groups = [], [], {}, {}
-
-    def node(self, key, point):
-        if key not in self.number:
-            self.number[key] = len(self.nodes)
-            self.nodes.append(point)
-        return self.number[key]
-
+class Builder(NodeMesh):
     def cell(self, node_at, i, j, k, mirror=0):
         """Adds a cell with the lowest node `node_at(i, j, k)`. `mirror` has the bits of the mirrored axes."""
         corners = [node_at(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2)) for bits in range(8)]
         for kuhn in KUHN:
             t = [corners[c ^ mirror] for c in kuhn]
-            a, b, c, d = (self.nodes[n] for n in t)
-            u, v, w = ([p[i] - a[i] for i in range(3)] for p in (b, c, d))
-            volume = sum(u[i] * (v[(i + 1) % 3] * w[(i + 2) % 3] - v[(i + 2) % 3] * w[(i + 1) % 3]) for i in range(3))
-            self.tetrahedra.append(t if volume > 0 else [t[0], t[1], t[3], t[2]])
+            self.tetrahedra.append(t if self.volume(t) > 0 else [t[0], t[1], t[3], t[2]])
 
     def faces(self, is_wanted):
         """Faces of the surface with wanted keys of all nodes, counter-clockwise as seen from outside."""

@@ -1,5 +1,6 @@
 """Studies: error bars of the results of a scene."""
 
+import dataclasses
 import json
 import math
 from pathlib import Path
@@ -10,6 +11,7 @@ import pytest
 
 import skerry as sk
 from scenes import SCENE, changed
+from skerry._study import _quantity
 
 SMALL = {"box": {"size": [0.1, 0.1, 0.1], "cells": [2, 2, 2]}}
 BODY = {**SCENE["bodies"][0], "mesh": SMALL, "element": "linear"}
@@ -56,7 +58,7 @@ def test_probes_choose_quantities(scene: Path) -> None:
 
 def test_an_interrupted_study_continues(scene: Path, tmp_path: Path) -> None:
     def stop(share: float, done: int, total: int) -> None:
-        if done > 2:
+        if done > 0:
             raise KeyboardInterrupt
 
     folder = tmp_path / "runs"
@@ -95,3 +97,13 @@ def test_wrong_settings_are_refused(scene: Path) -> None:
         sk.study(scene, progress=1)  # type: ignore[arg-type]
     with pytest.raises(sk.SceneError, match="missing.json"):
         sk.study("missing.json")
+
+
+def test_the_error_of_a_singular_quantity_is_infinite() -> None:
+    def quantity(verdict: str) -> sk.StudyQuantity:
+        numbers = dict.fromkeys(field.name for field in dataclasses.fields(sk.StudyQuantity))
+        runs: dict[str, list[float]] = {"run_values": [], "run_errors": []}
+        return _quantity({**numbers, **runs, "name": "stress", "unit": "Pa", "verdict": verdict, "sentence": ""})
+
+    assert math.isinf(quantity("singular").error) and math.isinf(quantity("singular").mesh)
+    assert math.isnan(quantity("singular").best) and math.isnan(quantity("not_measured").error)

@@ -7,6 +7,7 @@
 #include "engine/estimate/contact_error.h"
 #include "engine/estimate/step_error.h"
 #include "skerry/problem.h"
+#include "skerry/surface.h"
 #include "tests/support/mapped_box.h"
 #include "tests/support/worlds.h"
 
@@ -26,8 +27,9 @@ struct Case {
     Real slope = 0;     // [degree]
     bool floor = false;
     Settings settings{};
-    int order = 1;       // order of the error in the length of the steps
-    Real within = 1.25;  // largest ratio of estimated and true error
+    Real restitution = 0;  // of the pair of the body and the floor
+    int order = 1;         // order of the error in the length of the steps
+    Real within = 1.25;    // largest ratio of estimated and true error
 };
 
 struct Run {
@@ -50,7 +52,13 @@ Run run(const Case& of, Real factor) {
         for (const Vec3& x : of.mesh.nodes) left = std::min(left, x.x());
         world.attach(body, nodes_where(of.mesh, [&](const Vec3& x) { return x.x() < left + 1e-9; }));
     }
-    if (of.floor) world.add_collider(Plane{});
+    if (of.floor) {
+        const ColliderHandle floor = world.add_collider(Plane{});
+        SurfacePairs pairs(world);
+        pairs.set_material(floor, settings_of_body.material);
+        if (of.restitution > 0)
+            pairs.set(settings_of_body.material, settings_of_body.material, {.restitution = of.restitution});
+    }
     StepError error;
     Run found;
     const auto sample = [&] {
@@ -95,13 +103,26 @@ std::vector<Case> cases() {
         implicit{.dynamics = BodyDynamics::implicit_elastic};
     BodySettings thrown = rigid, pushed = elastic, dropped = rigid;
     dropped.position.z() = 0.2;
+    BodySettings tumbling = rigid;
+    tumbling.angular_velocity = {0.05, 6, 0};
     thrown.velocity = pushed.velocity = {1, 0, 0};
     Settings vibrating;
     vibrating.theta = 0.55;
     Settings undamped;
     undamped.theta = 0.5;
+    Settings leapfrog;
+    leapfrog.integrator = Integrator::leapfrog;
     return {
         {.name = "thrown", .step = 2e-3, .frame = 0.01, .seconds = 0.2, .body = thrown, .mesh = block},
+        {.name = "tumbles freely",
+         .step = 4e-3,
+         .frame = 0.02,
+         .seconds = 2,
+         .body = tumbling,
+         .mesh = mesh::box({0.3, 0.2, 0.1}, {1, 1, 1}),
+         .settings = leapfrog,
+         .order = 2,
+         .within = 4},
         {.name = "stopped by friction",
          .step = 2e-3,
          .frame = 0.01,
@@ -116,6 +137,23 @@ std::vector<Case> cases() {
          .body = dropped,
          .material = {.restitution = 0.8},
          .floor = true,
+         .within = 3},
+        {.name = "bouncing sphere, by a pair of materials",
+         .step = 2e-3,
+         .frame = 0.01,
+         .seconds = 0.7,
+         .body = dropped,
+         .floor = true,
+         .restitution = 0.8,
+         .within = 3},
+        {.name = "bouncing sphere, leapfrog",
+         .step = 2e-3,
+         .frame = 0.01,
+         .seconds = 0.7,
+         .body = dropped,
+         .material = {.restitution = 0.8},
+         .floor = true,
+         .settings = leapfrog,
          .within = 3},
         {.name = "elastic, stopped by friction",
          .step = 2e-4,
@@ -210,6 +248,32 @@ TEST_CASE("the estimated error of the steps is near the true error", "[scene]") 
     }
 }
 
+TEST_CASE("a slow load on an implicit body leaves an error below the share of the energy that its steps dissipate",
+          "[scene]") {
+    constexpr int ramp = 25;  // steps in which the load grows
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    settings.step_size = 0.01;
+    World world(settings);
+    const Mesh bar = mesh::box({0.2, 0.02, 0.02}, {10, 1, 1});
+    const BodyHandle body =
+        world.add_body(bar, {.material = world.add_material(lossless({.young_modulus = 1e9, .poisson_ratio = 0.3})),
+                             .dynamics = BodyDynamics::implicit_elastic});
+    world.attach(body, nodes_where(bar, [](const Vec3& x) { return x.x() < -0.099; }));
+    StepError error;
+    error.sample(world);
+    for (int step = 1; step <= 2 * ramp; ++step) {
+        const Real share = std::min(1.0, static_cast<Real>(step) / ramp);
+        world.set_loads(body, std::vector<Vec3>(bar.nodes.size(), Vec3(0, 0, share)));
+        REQUIRE(world.advance(*settings.step_size).ok());
+        if (step % ramp == 0) error.sample(world);
+    }
+    std::vector<ErrorEstimate> bodies{{.body = body, .name = {}}};
+    error.add_to(bodies);
+    // Each step dissipates about 1/ramp^2 of the elastic energy.
+    CHECK(bodies.front().step < 1.25 * std::sqrt(1.0 / ramp));
+}
+
 TEST_CASE("a body that falls freely with leapfrog has no error of the steps", "[scene]") {
     Case of{.name = {}, .step = 2e-3, .frame = 0.02, .seconds = 0.2, .mesh = mesh::box({0.1, 0.1, 0.05}, {1, 1, 1})};
     of.body.dynamics = BodyDynamics::rigid;
@@ -275,6 +339,38 @@ TEST_CASE("the estimated error of contacts is within a factor of 4 of the error 
         CHECK(found < 4 * truth);
         CHECK(found > truth / 4);
     }
+}
+
+TEST_CASE("errors of contacts can be sampled after the removal of a body and after a load, before the next step",
+          "[scene]") {
+    Stack stack(1e-6, 200);
+    REQUIRE(stack.world.advance(0.02).ok());
+    stack.world.remove(stack.boxes.back());
+    stack.error.sample(stack.world);
+    const World loaded = World::from_bytes(stack.world.to_bytes());
+    stack.error.sample(loaded);
+    CHECK(std::isnan(stack.estimate(stack.boxes.front()).contact));
+    REQUIRE(stack.world.advance(0.02).ok());
+    stack.error.sample(stack.world);
+    CHECK(stack.estimate(stack.boxes.front()).contact >= 0);
+}
+
+TEST_CASE("the gap of a box at rest on a floor is the height at which it rests", "[scene]") {
+    constexpr Real size = 0.1;
+    World world;
+    world.add_collider(Plane{});
+    const BodyHandle box = world.add_body(mesh::box({size, size, size}, {2, 2, 2}),
+                                          {.material = world.add_material({.young_modulus = 1e7}),
+                                           .position = {0, 0, size / 2},
+                                           .dynamics = BodyDynamics::explicit_elastic});
+    ErrorEstimator errors(world);
+    REQUIRE(world.advance(0.1).ok());
+    errors.finish(world);
+    Real lowest = infinity;
+    for (const Vec3& x : world.positions(box)) lowest = std::min(lowest, x.z());
+    REQUIRE(lowest > 0);
+    // Contacts have the distance before the last step.
+    CHECK(errors.bodies().front().gap == Approx(lowest).epsilon(0.01));
 }
 
 TEST_CASE("the contact area of a ball on a floor is that of Hertz, and a cube has none", "[scene]") {

@@ -104,6 +104,30 @@ TEST_CASE("momentum and energy add up on rollers that move and carry weight", "[
     }
 }
 
+TEST_CASE("momentum and energy add up if a moving pin holds nodes that rollers hold too", "[scene]") {
+    const Mesh mesh = mesh::box(bar_size, {4, 2, 2});
+    World world(weightless());
+    const BodyHandle body =
+        world.add_body(mesh, {.material = world.add_material(linear()), .dynamics = BodyDynamics::explicit_elastic});
+    world.attach(body, nodes_at(mesh, 0, -0.1), {.velocity = {0.05, 0, 0}});
+    world.attach(body, nodes_at(mesh, 2, -0.05), {}, Vec3::Zero(), {Vec3::UnitZ()});
+    world.set_loads(body, std::vector<Vec3>(mesh.nodes.size(), Vec3(0.01, 0.02, -0.01)));
+    REQUIRE(world.advance(0.1).ok());
+    const WorldReport report = world.report();
+    CHECK(report.momentum_error_share < 1e-13 * std::sqrt(static_cast<Real>(report.steps)));
+    CHECK(report.energy_error_share < 1e-3);
+}
+
+TEST_CASE("momentum adds up if a pin moves a whole body", "[scene]") {
+    World world(weightless());
+    const Mesh mesh = mesh::box(bar_size, {4, 2, 2});
+    const BodyHandle body = world.add_body(
+        mesh, {.material = world.add_material(linear()), .dynamics = BodyDynamics::explicit_elastic});
+    world.attach(body, nodes_where(mesh, [](const Vec3&) { return true; }), {.velocity = {1, 0, 0}});
+    REQUIRE(world.advance(0.1).ok());
+    CHECK(world.report().momentum_error_share < 1e-9);
+}
+
 TEST_CASE("with leapfrog the balance accounts for the work of a roller that accelerates a loaded block", "[scene]") {
     Motion motion;
     for (int k = 0; k <= 30; ++k) motion.keys.push_back({.time = 0.01 * k, .position = {1e-4 * k * k, 0, 0}});

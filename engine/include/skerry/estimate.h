@@ -37,6 +37,9 @@ struct ErrorEstimate {
     // impulse. Regions that were left unsolved count with their errors.
     Real contact = not_estimated;
     Real overlap = not_estimated;  // largest overlap with another object at a sample, 0 if there is none [m]
+    // Largest distance to another object, at a sample, at which a contact carried a force, because contacts act within
+    // the contact distance. Places have an error of this size [m].
+    Real gap = not_estimated;
     // Radius of the most loaded contact area by the theory of Hertz, and mean edge length of the mesh there [m]. Not
     // estimated where flat faces, edges or corners touch.
     Real contact_radius = not_estimated, contact_edge = not_estimated;

@@ -104,7 +104,7 @@ struct EnumNames<StudyVerdict> {
 
 /// A number with its error bar. Values that were not measured are NaN.
 struct StudyQuantity {
-    std::string name;  // name as in the table of a sweep, for example tip.displacement_z_end
+    std::string name;  // name as in the table of a sweep without its unit, for example tip.displacement_z_end
     std::string unit;  // SI unit; 1 for counts and ratios
     Real value = std::numeric_limits<Real>::quiet_NaN();  // value of the scene as it is
     // Value extrapolated to vanishing edges, steps and tolerance, and its error.

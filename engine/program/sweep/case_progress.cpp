@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 
 namespace skerry {
 

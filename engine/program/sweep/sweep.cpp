@@ -10,9 +10,9 @@
 #include <iostream>
 #include <ostream>
 
+#include "engine/output/number_text.h"
 #include "engine/output/write_file.h"
 #include "engine/program/commands.h"
-#include "engine/program/number_text.h"
 #include "engine/program/require_writable.h"
 #include "engine/program/sweep/case_progress.h"
 #include "engine/program/sweep/process_pool.h"

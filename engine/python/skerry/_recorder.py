@@ -205,7 +205,8 @@ class ErrorEstimator:
         deflection: relative error of a displacement under given loads, due to the mesh; positive if the mesh is too
         stiff. stress: relative error of the largest von Mises stress at the nodes. step: relative error of the motion,
         due to the length of the steps. deformation: displacement by deformation over displacement. contact: relative
-        error of the contact forces, due to the solver. overlap: largest overlap [m]. contact_radius, contact_edge:
+        error of the contact forces, due to the solver. overlap: largest overlap [m]. gap: largest
+        distance of a contact that carried a force [m]. contact_radius, contact_edge:
         radius of the most loaded contact area by the theory of Hertz, and mean edge there [m]. time: of the sample with
         the largest elastic energy [s]. worst_tetrahedron: the one with the largest error of the stress, or -1."""
         table: dict[str, list[str] | NDArray[np.generic]] = self._core.table()
@@ -396,7 +397,9 @@ class WorldOutput:
 
             with world.error_estimator() as errors:
                 world.run(2)
-            errors.table()["deflection"]"""
+            errors.table()["deflection"]
+
+        ErrorEstimator.table() describes the columns."""
         return ErrorEstimator(self)  # type: ignore[arg-type]
 
     def record(self, *, every: float = 1 / 60, title: str = "skerry") -> Film:

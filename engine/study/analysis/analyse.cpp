@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "engine/study/analysis/cheapest.h"
 
 namespace skerry {

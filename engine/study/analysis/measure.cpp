@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 
 namespace skerry {
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "engine/output/number_text.h"
 #include "engine/output/table/table_page.h"
-#include "engine/program/number_text.h"
 #include "engine/study/report/wording.h"
 #include "skerry/study.h"
 

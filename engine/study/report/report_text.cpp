@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 #include "engine/study/report/wording.h"
 #include "skerry/study.h"
 

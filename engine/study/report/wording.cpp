@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/program/number_text.h"
+#include "engine/output/number_text.h"
 
 namespace skerry {
 

@@ -27,11 +27,12 @@ Present measure(const Model& model, Real time, Real lag) {
     const NodeTable& nodes = model.nodes;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
         now.potential -= nodes.mass[n] * model.settings.gravity.dot(nodes.position[n]);
-        if (!(nodes.inverse_mass[n] > 0) || model.node_has_frame(n)) continue;
+        if (model.node_has_frame(n)) continue;
         const Vec3 momentum = nodes.mass[n] * nodes.velocity[n];
+        now.momentum_size += momentum.norm();
+        if (!(nodes.inverse_mass[n] > 0)) continue;
         now.kinetic += momentum.dot(nodes.velocity[n]) / 2;
         now.momentum += momentum;
-        now.momentum_size += momentum.norm();
     }
     Real implicit = 0;  // [J]
     // Momentum of all nodes and bodies whose velocities are changed by kicks [kg m/s]. Nodes of held implicit bodies

@@ -158,6 +158,7 @@ class ProgramInspectTest(ProgramCase):
     def test_a_part_that_is_too_stiff_in_bending_is_a_problem_and_a_warning(self):
         strip = {"name": "strip", "mesh": {"box": {"size": [0.05, 0.01, 0.001], "cells": [20, 4, 1]}}, "material": "m"}
         stone = {**strip, "name": "stone", "position": [0, 0.1, 0], "dynamics": "rigid"}  # does not bend
+        strip["pin"] = {"box": {"lower": [-1, -1, -1], "upper": [-0.024, 1, 1]}}  # a run warns of bodies that deform
         scene = self.write("strip.json", {"seconds": 1e-4, "materials": {"m": {"E": 3e7, "nu": 0, "rho": 1000}},
                                           "bodies": [strip, stone]})
 

@@ -45,7 +45,7 @@ class ProgramRunTest(ProgramCase):
                            "material": "m", "pin": {"box": {"lower": [-1, -1, -1], "upper": [-0.19, 1, 1]}}}]}
         stats = self.folder / "bar_stats.json"
         summary = self.skerry("run", self.write("bar.json", bar), "--stats", stats).stdout
-        self.assertRegex(summary, r"\n  errors +mesh about [0-9.]+ % of .*\(body 'bar'\), steps about [0-9.e-]+ % of")
+        self.assertRegex(summary, r"\n  errors +mesh about [0-9.]+ % of .*, steps about [0-9.e-]+ % of")
         [errors] = json.loads(stats.read_text())["errors"]
         self.assertEqual(errors["body"], "bar")
         self.assertTrue(0.1 < errors["deflection"] < 1, errors)
@@ -163,8 +163,8 @@ class ProgramRunTest(ProgramCase):
         held = {"pin": {"box": {"lower": [-1, -1, -1], "upper": [-0.19, 1, 1]}}}
         thin = {"mesh": {"box": {"size": [0.4, 0.2, 0.04], "cells": [8, 4, 1]}}}
         linear = {"element": "linear"}
-        locks = ["body 'plate': elements of the kind \"linear\" lock at a Poisson ratio of 0.49: in bending they are more "
-                 "than twice as stiff as the material: set \"element\" of the body to \"smoothed\""]
+        locks = ["body 'plate': elements of the kind \"linear\" lock at a Poisson ratio of 0.49: in bending they are "
+                 "more than twice as stiff as the material: set \"element\" of the body to \"smoothed\""]
         self.assertEqual(warnings(0.49, **held, **linear), locks)
         self.assertEqual(warnings(0.4, **held, **linear), [])
         self.assertEqual(warnings(0.49, **held), [])
@@ -188,7 +188,8 @@ class ProgramRunTest(ProgramCase):
         self.assertLess(error["contact_radius"], 0.25 * error["contact_edge"])
         self.assertRegex(text, "^the contact areas of body 'ball' have a radius of up to .* mm by the theory of Hertz, "
                                "less than the edges there, .* mm: impacts take about 0.[56]\\d* times as long as they "
-                               "should, and their forces are too large accordingly: make the cells there .* times smaller$")
+                               "should, and their forces are too large accordingly: make the cells there .* times "
+                               "smaller$")
         self.assertIn("the stress there is wrong", warnings(probes=[stress])[0][0])
         self.assertEqual(warnings()[0], [])
         finer = [{**scene["bodies"][0], "mesh": {"ball": {"radius": 0.05, "resolution": 6}}, "velocity": [0, 0, -0.5]}]

@@ -198,6 +198,9 @@ class ProgramTest(ProgramCase):
                             said=["--rate: found abc, expected a number from 0 to 1000"])
         self.assert_refused("view", self.scene, "--port", "65536",
                             said=["--port: found 65536, expected a whole number from 0 to 65535"])
+        for command in ("run", "study"):
+            self.assert_refused(command, self.scene, "--threads", "2000",
+                                said=["--threads: found 2000, expected a whole number from 0 to 1024"])
 
     def test_a_mesh_that_is_not_one_is_refused(self):
         self.assert_refused("inspect", self.write("broken.msh", "nonsense"), said=["broken.msh"])

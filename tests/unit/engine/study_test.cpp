@@ -248,8 +248,7 @@ TEST_CASE("the runs with other steps have as many steps as their names say") {
     const StudyResult result = study(folder.write("implicit.json", implicit), settings);
     REQUIRE(result.runs[0].steps == 20);
     for (const StudyRun& run : result.runs)
-        if (run.status == StudyRunStatus::ok)
-            CHECK(static_cast<Real>(run.steps) * run.variant.step == 20);
+        if (run.status == StudyRunStatus::ok) CHECK(static_cast<Real>(run.steps) * run.variant.step == 20);
 }
 
 TEST_CASE("a scene that is written through a symbolic link names the same files") {

@@ -150,7 +150,7 @@ TEST_CASE("a file of another kind or version is refused, and the error names it"
     const std::string name = "version 29";
     const auto place = std::search(begin, begin + other.size(), name.begin(), name.end()) - begin;
     other[static_cast<std::size_t>(place) + 8] = std::byte{'1'};
-    CHECK_THAT(saved.refusal(other), Contains("found version 18, expected version 29"));
+    CHECK_THAT(saved.refusal(other), Contains("found version 19, expected version 29"));
     CHECK_THAT(saved.refusal("Skerry world, version 24\nAn HDF5 file of 8000 bytes begins at byte 512.\n"),
                Contains("found version 24, expected version 29"));
     CHECK_THROWS_WITH(World::load(saved.folder.path()), Contains("found a folder or device"));

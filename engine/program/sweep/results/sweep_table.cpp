@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/output/number_text.h"
 #include "engine/program/csv_text.h"
-#include "engine/program/number_text.h"
 
 namespace skerry {
 
