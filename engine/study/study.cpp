@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <mutex>
 #include <utility>
 
 #include "engine/scene/case_hash.h"
@@ -285,8 +284,8 @@ private:
         try {
             write_run(settings_.folder, inputs_[i], runs_[i]);
         } catch (const SceneError& error) {
-            const std::lock_guard lock(lost_mutex_);
-            if (lost_.empty()) lost_ = std::string("Not all runs could be kept in the folder: ") + error.what() + ".";
+            if (!is_lost_.exchange(true))
+                lost_ = std::string("Not all runs could be kept in the folder: ") + error.what() + ".";
         }
     }
 
@@ -327,7 +326,7 @@ private:
     std::vector<StudyRun> runs_;
     std::vector<std::string> inputs_;          // texts that identify all inputs of a run
     std::vector<std::atomic<double>> shares_;  // simulated shares of the durations
-    std::mutex lost_mutex_;
+    std::atomic<bool> is_lost_{false};
     std::string lost_;  // sentence on the first run that could not be written; else empty
     std::atomic<int> done_{0}, running_{0};
     std::atomic<bool> stop_{false};

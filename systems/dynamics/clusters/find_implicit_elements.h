@@ -101,7 +101,7 @@ private:
     /// need() is at least least_need_. Elements whose nodes all belong to implicit elements are candidates as well,
     /// because they enlarge no cluster. If there is no candidate, the function lowers least_need_.
     void give_up(Real step);
-    /// Writes the assumed moduli of the implicit elements, and returns what these elements add.
+    /// Writes the assumed moduli of the implicit elements, and returns their share.
     ImplicitShare add_implicit(const ImplicitGoal& goal);
 
     const ElementInputs elements_;

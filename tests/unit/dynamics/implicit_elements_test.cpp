@@ -374,10 +374,9 @@ TEST_CASE("the search gives up the same elements as a simple one, however many s
         goal.most_moment = found.moment;
         CHECK(search.find(goal).moment == found.moment);
         // The limit on the nodes of a cluster acts likewise.
-        goal.inverse_mass = box.body.inverse_mass;
-        goal.most_nodes =
-            cluster_sizes(box.body.inputs(), box.body.blocks, box.body.elements.implicit_modulus, box.body.inverse_mass)
-                .largest;
+        test::ElasticBody& of = box.body;
+        goal.inverse_mass = of.inverse_mass;
+        goal.most_nodes = cluster_sizes(of.inputs(), of.blocks, of.elements.implicit_modulus, of.inverse_mass).largest;
         CHECK(!search.find(goal).too_many);
         --goal.most_nodes;
         CHECK(search.find(goal).too_many);
@@ -453,9 +452,7 @@ std::vector<Vec3> viscous_forces(SliverBox& box, std::vector<std::uint8_t>& visc
 }
 
 Real largest(const std::vector<Vec3>& of) {
-    Real found = 0;
-    for (const Vec3& one : of) found = std::max(found, one.norm());
-    return found;
+    return std::ranges::max(of, {}, [](const Vec3& one) { return one.norm(); }).norm();
 }
 
 }  // namespace
@@ -468,10 +465,7 @@ TEST_CASE("implicit elements far from rest are viscous: they lose energy, no mom
     const std::vector<Vec3> rest = box.body.position;
     std::mt19937_64 random(3);
     std::vector<std::uint8_t> viscous;
-    const auto stir = [&] {
-        for (Vec3& v : box.body.velocity) v = test::random_vector(random);
-    };
-    stir();
+    for (Vec3& v : box.body.velocity) v = test::random_vector(random);
     CHECK(largest(viscous_forces(box, viscous)) == 0);
     CHECK(std::ranges::count(viscous, 1) == 0);
 
@@ -498,7 +492,6 @@ TEST_CASE("implicit elements far from rest are viscous: they lose energy, no mom
     CHECK(-power < allowed);
     CHECK(momentum.norm() < 1e-12 * sum);
     CHECK(moment.norm() < 1e-12 * sum);
-
     const Vec3 spin(1, -2, 3);
     for (std::size_t n = 0; n < rest.size(); ++n) box.body.velocity[n] = spin.cross(box.body.position[n]);
     CHECK(largest(viscous_forces(box, viscous)) < 1e-9 * largest(added));
