@@ -276,7 +276,7 @@ TEST_CASE("a folder has one study at a time") {
 }
 
 TEST_CASE("the largest number of iterations of a study is a valid number") {
-    StudiedScene scene{.path = {}, .file = {}, .assignments = {}, .levels = {}, .settings = {}};
+    StudiedScene scene;
     scene.settings.max_iterations = 300'000'000;
     CHECK(variant_assignments(scene, {.tolerance = 0.01}, 1e-3).back() == "settings.max_iterations=2147483640");
 }
