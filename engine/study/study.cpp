@@ -7,6 +7,7 @@
 #include <functional>
 #include <utility>
 
+#include "engine/output/number_text.h"
 #include "engine/scene/case_hash.h"
 #include "engine/scene/write_scene.h"
 #include "engine/study/analysis/analyse.h"

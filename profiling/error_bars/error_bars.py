@@ -101,8 +101,8 @@ def is_near(row):
 
 # Reasons for which error bars miss a claim.
 REASONS = {
-    "cantilever_one_layer": "one layer of linear elements locks; the verdict `irregular` says that the error may exceed "
-                            "the bar",
+    "cantilever_one_layer": "one layer of linear elements locks; the verdict `irregular` says that the error may "
+                            "exceed the bar",
     "hollow_sphere": "refined meshes of a file keep its flat faces; they converge to a polyhedron inside the sphere",
     "hollow_sphere_stress": "stress grows at the edges of the polyhedron",
     "hollow_cylinder": "as `hollow_sphere`",
