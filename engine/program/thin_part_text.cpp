@@ -83,7 +83,9 @@ std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3
            coordinate(part.place.x(), part) + ", " + coordinate(part.place.y(), part) + ", " +
            coordinate(part.place.z(), part) + ") m has " + short_number(layers) + (layers > 1 ? " layers" : " layer") +
            " of cells and is about " + short_number(part.stiffness, 2) + " times as stiff in bending as its material" +
-           (parts.size() > 1 ? ", and " + grouped(parts.size() - 1) + " more parts are too stiff" : "") +
+           (parts.size() == 2  ? ", and 1 more part is too stiff"
+            : parts.size() > 2 ? ", and " + grouped(parts.size() - 1) + " more parts are too stiff"
+                               : "") +
            ": to reduce the excess to about " + percent(accepted_excess) + ", make the cells there " +
            short_number(finer, 2) + " times smaller in all directions" +
            (of.body.element == ElementKind::linear ? ", or first set \"element\" of the body to \"smoothed\"" : "");
