@@ -73,7 +73,7 @@ def row_of(item, folder):
             **{key: number(found[key]) for key in ("mesh", "step", "contact", "mesh_order", "step_order")},
             "verdict": found["verdict"], "bar_over_error": bar / max(error, rounding), "inside": int(inside),
             "estimate": estimate, "estimate_over_error": max(estimate, rounding) / max(error, rounding),
-            "sentence": found["sentence"]}
+            "sentence": found["sentence"].replace(f"{folder}/", "")}
 
 
 def write_table(rows, file):

@@ -58,16 +58,16 @@ bool counts(const MeasuredQuantity& quantity) {
 }
 
 /// Settings with their predicted error, and the quantity that has it.
-struct Candidate {
+struct Prediction {
     CheapestSettings settings;
     std::string worst{};
     std::size_t within = 0, counted = 0;  // numbers of quantities within the wanted error, and of all with an error
     bool may_be_nearest = true;           // false for a mesh that was not run, and for cruder elements
 };
 
-Candidate predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,
-                  const Option& step, const Option& tolerance, double wanted) {
-    Candidate found;
+Prediction predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,
+                   const Option& step, const Option& tolerance, double wanted) {
+    Prediction found;
     found.may_be_nearest = !mesh.predicted && mesh.variant.element != ElementKind::linear;
     CheapestSettings& settings = found.settings;
     settings.variant = mesh.variant;
@@ -94,25 +94,25 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
     if (std::ranges::none_of(quantities, counts)) return {};
     const std::vector<Option> meshes = mesh_options(family), steps = factor_options(family, &StudyVariant::step),
                               tolerances = factor_options(family, &StudyVariant::tolerance);
-    std::vector<Candidate> candidates;
+    std::vector<Prediction> predictions;
     double least_error = infinity, least_measured = infinity;
     for (const Option& mesh : meshes)
         for (const Option& step : steps)
             for (const Option& tolerance : tolerances) {
-                candidates.push_back(predict(family, quantities, mesh, step, tolerance, wanted));
-                const double error = candidates.back().settings.error;
+                predictions.push_back(predict(family, quantities, mesh, step, tolerance, wanted));
+                const double error = predictions.back().settings.error;
                 least_error = std::min(least_error, error);
-                if (candidates.back().may_be_nearest) least_measured = std::min(least_measured, error);
+                if (predictions.back().may_be_nearest) least_measured = std::min(least_measured, error);
             }
     // If no settings reach the wanted error, those of the runs with nearly the smallest error come nearest.
     constexpr double nearly = 1.1;
     const bool reaches = least_error <= wanted;
     const double target = reaches ? wanted : nearly * least_measured;
-    const Candidate* best = nullptr;
-    for (const Candidate& candidate : candidates)
-        if (candidate.settings.error <= target && (reaches || candidate.may_be_nearest) &&
-            (!best || candidate.settings.cpu_seconds < best->settings.cpu_seconds))
-            best = &candidate;
+    const Prediction* best = nullptr;
+    for (const Prediction& prediction : predictions)
+        if (prediction.settings.error <= target && (reaches || prediction.may_be_nearest) &&
+            (!best || prediction.settings.cpu_seconds < best->settings.cpu_seconds))
+            best = &prediction;
     CheapestSettings result = best->settings;
     result.reaches = reaches;
     result.sentence = reaches ? "the largest error is that of " + best->worst
