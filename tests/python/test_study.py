@@ -62,17 +62,18 @@ def test_an_interrupted_study_continues(scene: Path, tmp_path: Path) -> None:
             raise KeyboardInterrupt
 
     folder = tmp_path / "runs"
+    settings: dict[str, Any] = {"threads": 1, "budget": 20, "seconds": 3}  # long enough to be interrupted
     with pytest.raises(KeyboardInterrupt):
-        sk.study(scene, threads=1, budget=20, folder=folder, progress=stop)
+        sk.study(scene, folder=folder, progress=stop, **settings)
     kept = {file.name: file.stat().st_mtime_ns for file in folder.iterdir()}
     assert "run_scene.json" in kept
-    found = sk.study(scene, threads=1, budget=20, folder=folder)
+    found = sk.study(scene, folder=folder, **settings)
     assert {name: (folder / name).stat().st_mtime_ns for name in kept} == kept
-    whole = sk.study(scene, threads=1, budget=20)
+    whole = sk.study(scene, **settings)
     for name, quantity in whole.quantities.items():
         np.testing.assert_equal(found.quantities[name].error, quantity.error)
     with pytest.raises(sk.SceneError, match="another scene"):
-        sk.study(scene, threads=1, budget=20, folder=folder, seconds=0.05)
+        sk.study(scene, folder=folder, **{**settings, "seconds": 0.05})
 
 
 def test_a_mapping_is_studied_like_its_file(scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
