@@ -138,18 +138,20 @@ TEST_CASE("the estimated error of a largest stress inside a bar is within a fact
     CHECK(found.stress > exact / 4);
 }
 
-TEST_CASE("the estimated error of the deflection of a cantilever is within a factor of 3.2", "[scene][estimate]") {
+TEST_CASE("the estimated error of the deflection of a cantilever is within a factor of 3", "[scene][estimate]") {
     constexpr Real traction = 1;  // Pa
     struct Case {
         ElementKind kind;
         int layers;
+        Real within = 3;
     };
-    for (const auto& [kind, layers] : {Case{ElementKind::linear, 1},
-                                       {ElementKind::linear, 2},
-                                       {ElementKind::edge_smoothed, 1},
-                                       {ElementKind::edge_smoothed, 2},
-                                       {ElementKind::edge_node_smoothed, 1},
-                                       {ElementKind::edge_node_smoothed, 2}}) {
+    for (const auto& [kind, layers, within] : {Case{ElementKind::linear, 1},
+                                               {ElementKind::linear, 2},
+                                               {ElementKind::edge_smoothed, 1},
+                                               {ElementKind::edge_smoothed, 2},
+                                               {ElementKind::edge_node_smoothed, 1},
+                                               // The estimate, 0.106, is 3.1 times the error, 0.034.
+                                               {ElementKind::edge_node_smoothed, 2, 3.2}}) {
         World world = still_world();
         const Mesh mesh = mesh::box({length, height, height}, {10 * layers, layers, layers});
         const auto body = world.add_body(mesh, {.material = world.add_material(material_of(MaterialModel::linear)),
@@ -169,8 +171,8 @@ TEST_CASE("the estimated error of the deflection of a cantilever is within a fac
         const Real exact = 1 - deflection / exact_deflection(traction * height * height);
         const Real found = measure_mesh_error(world, body).deflection();
         INFO(name_of(kind) << ", " << layers << " layers: estimated " << found << ", exact " << exact);
-        CHECK(found > exact / 3.2);
-        CHECK(found < 3.2 * exact);
+        CHECK(found > exact / within);
+        CHECK(found < within * exact);
     }
 }
 

