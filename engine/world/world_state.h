@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/world/edit/changed_places.h"
+#include "engine/world/ranks/rank_state.h"
 #include "engine/world/state/clock.h"
 #include "engine/world/state/contact_cache.h"
 #include "engine/world/state/model.h"
@@ -38,6 +39,7 @@ struct WorldState {
     ContactCache cache;
     StepScratch scratch;
     RunRecord record;
+    RankState ranks;
     StepTransaction transaction;
     QueryTrees query_trees;
     std::unique_ptr<Executor> executor;

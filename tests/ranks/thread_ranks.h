@@ -1,0 +1,14 @@
+// Ranks that are threads of one process, for tests.
+#pragma once
+
+#include <functional>
+
+#include "jobs/ranks/ranks.h"
+
+namespace skerry::test {
+
+/// Calls run(ranks) on `count` threads at once, each with its own rank. Rethrows the exception of the lowest rank that
+/// threw one; the other ranks then end with an exception, too.
+void run_on_ranks(int count, const std::function<void(Ranks&)>& run);
+
+}  // namespace skerry::test
