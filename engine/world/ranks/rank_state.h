@@ -15,6 +15,7 @@ namespace skerry {
 /// owner.
 struct RankState {
     Ranks* ranks = nullptr;  // null: this process simulates the whole world
+    int rank = 0;            // number of this rank
     std::vector<int> peers;  // ranks that hold a body that this rank holds too, ascending
     // For each row of BodyTable: rank that owns the body. Empty if `ranks` is null.
     Column<std::int32_t> owner;
@@ -22,7 +23,7 @@ struct RankState {
     std::vector<std::vector<int>> holders;
 
     bool on() const { return ranks != nullptr; }
-    bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == ranks->rank(); }
+    bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == rank; }
 };
 
 }  // namespace skerry
