@@ -23,6 +23,7 @@ struct RankChannel {
 /// owner.
 struct RankState {
     Ranks* ranks = nullptr;  // null: this process simulates the whole world
+    int rank = 0;            // number of this rank
     std::vector<int> peers;  // ranks that hold a body that this rank holds too, ascending
     // For each row of BodyTable: rank that owns the body. Empty if `ranks` is null.
     Column<std::int32_t> owner;
@@ -35,7 +36,7 @@ struct RankState {
     RankFindings all;   // combined findings of all ranks in this attempt at a step
 
     bool on() const { return ranks != nullptr; }
-    bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == ranks->rank(); }
+    bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == rank; }
     Index place_of(Index row) const { return on() && row != no_index ? place[row] : row; }
     /// Row of BodyTable of the body at a place of the undivided world; no_index if this rank does not hold it.
     Index row_of(Index of_place) const {

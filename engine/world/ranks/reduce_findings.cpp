@@ -45,7 +45,7 @@ struct NamedBodies {
                 .max_speed = binder.read(body.max_speed),
                 .mean_edge = binder.read(body.mean_edge),
                 .position = binder.read(node.position),
-                .rank = ranks.on() ? ranks.ranks->rank() : 0};
+                .rank = binder.value(ranks.rank)};
     }
     bool owns(Index body) const { return owner[body] == rank; }
     Index place_of(Index body) const { return body == no_index ? RankFindings::nobody : place[body]; }

@@ -21,7 +21,10 @@ void list_search(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     ContactTable& c = w.scratch.contacts;
     const StepParameters& p = w.scratch.parameters;
-    g.stage("collision/find_candidates", kernels().find_candidates, collision_inputs(m), value(p.collision), value(p.h),
+    const auto searched =
+        inputs<CollisionInputs>(m.bodies, m.colliders, m.surface, m.materials, m.bvh, m.bvh_leaves, m.nodes,
+                                m.disabled_pairs, m.material_pairs, w.ranks.owner, w.ranks.rank);
+    g.stage("collision/find_candidates", kernels().find_candidates, searched, value(p.collision), value(p.h),
             write(m.bvh.box), make(w.cache.search), make(w.cache.pairs));
     g.stage("collision/find_contacts", kernels().find_contacts, collision_inputs(m), value(p.collision), value(p.h),
             make(w.cache.pairs), make(w.cache.crossings), make(c));
