@@ -31,6 +31,7 @@ void combine(RankFindings& into, const RankFindings& from) {
     into.labels_open |= from.labels_open;
     into.bodies_missing |= from.bodies_missing;
     into.ghosts_expired |= from.ghosts_expired;
+    into.stop |= from.stop;
     into.moves |= from.moves;
     into.far |= from.far;
     add_counters(from.counters, into.counters);

@@ -35,6 +35,7 @@ struct RankFindings {
     bool labels_open = false;     // the labels of regions had not settled in the last round
     bool bodies_missing = false;  // a rank does not hold all bodies of a region that it has to solve
     bool ghosts_expired = false;  // a body may come near a rank that does not hold it
+    bool stop = false;            // a callback of World::advance has asked to end the call
     // Properties of the next step:
     bool moves = false;    // a body is awake or has a speed
     bool far = false;      // a body may be too far from the origin (check_distance)
