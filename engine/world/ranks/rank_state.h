@@ -19,6 +19,12 @@ struct RankChannel {
     Ranks* ranks = nullptr;
 };
 
+/// Messages to and from the peers of a rank, whose memory is reused in later steps.
+struct RankMail {
+    std::vector<RankMessage> out, in;  // by peer
+    Column<std::size_t> taken;         // by peer: number of bytes of `in` that were read
+};
+
 /// A rank *holds* the bodies that it owns and copies of bodies that other ranks own (*ghosts*). Each body has one
 /// owner.
 struct RankState {
@@ -31,7 +37,12 @@ struct RankState {
     std::vector<std::vector<int>> holders;
     // For each row of BodyTable: place of the body, its row in the undivided world. The places ascend.
     Column<Index> place;
+    // For each place: number of pieces of the stable-step checks of all bodies before it (count_pieces).
+    Column<std::uint64_t> pieces_before;
+    // For each row of BodyTable: 1 if this rank sends the predicted velocities of the body to its holders (note_ghosts).
+    Column<std::uint8_t> leads;
     RankChannel channel;
+    RankMail predictions;
     RankFindings mine;  // findings of this rank in this attempt at a step; complete when reduce_findings runs
     RankFindings all;   // combined findings of all ranks in this attempt at a step
     bool stops = false;  // true if a callback of this rank has asked to end the present call of World::advance

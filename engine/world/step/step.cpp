@@ -61,6 +61,7 @@ void build_step(WorldState& w) {
     of_forces<&ForceElement::add_forces>(w, g);
     of_models<&MotionModel::add_forces>(w, g);
     of_models<&MotionModel::predict>(w, g);
+    list_led_ghosts(w, g);
     g.begin_phase("Find contacts and joint rows");
     of_laws<&ConstraintLaw::find>(w, g);
     g.begin_phase("Separate contact regions");
