@@ -90,8 +90,9 @@ void note_ghosts(WorldState& world) {
 
 void list_led_ghosts(WorldState& w, TaskGraph& g) {
     if (!w.ranks.on()) return;
+    const auto if_led = only_if([](std::span<const GhostKind> ghost) { return !ghost.empty(); }, read(w.model.bodies.ghost));
     g.stage("ranks/send_predictions", send_predictions, inputs<LedBodies>(w.ranks, w.model.bodies),
-            write(w.model.nodes.velocity_next), make(w.ranks.predictions), make(w.ranks.channel));
+            write(w.model.nodes.velocity_next), make(w.ranks.predictions), make(w.ranks.channel), if_led);
 }
 
 }  // namespace skerry

@@ -8,6 +8,7 @@
 
 #include "components/column.h"
 #include "components/types.h"
+#include "components/union_find.h"
 #include "engine/world/ranks/rank_findings.h"
 #include "jobs/ranks/ranks.h"
 
@@ -23,6 +24,25 @@ struct RankChannel {
 struct RankMail {
     std::vector<RankMessage> out, in;  // by peer
     Column<std::size_t> taken;         // by peer: number of bytes of `in` that were read
+};
+
+/// A set of touching bodies that one rank has found, as told to all ranks: a body of the set with several holders.
+struct SetMember {
+    Index place;
+    Index set;           // row of the first body of the set on the rank that has found the set
+    Index must_stay_up;  // nonzero if a body of the set must stay awake
+};
+
+/// Working memory of the sleep of bodies with several holders.
+struct RankSleep {
+    Column<std::uint8_t> asleep, pressed;  // by body
+    Column<Real> still_time;               // by body [s]
+    Column<Index> woken;                   // places of the bodies with several holders that this rank wakes
+    Column<SetMember> members;             // of the sets that this rank has found
+    // By place, and by set of one rank: a node of `joined`, or no_index
+    Column<Index> node_of_place, node_of_set;
+    Column<std::uint8_t> restless;         // by node of `joined`
+    UnionFind joined;                      // sets of all ranks, joined where they share a body
 };
 
 /// A rank *holds* the bodies that it owns and copies of bodies that other ranks own (*ghosts*). Each body has one
@@ -43,6 +63,7 @@ struct RankState {
     Column<std::uint8_t> leads;
     RankChannel channel;
     RankMail predictions;
+    RankSleep sleep;
     RankFindings mine;  // findings of this rank in this attempt at a step; complete when reduce_findings runs
     RankFindings all;   // combined findings of all ranks in this attempt at a step
     bool stops = false;  // true if a callback of this rank has asked to end the present call of World::advance

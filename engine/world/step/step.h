@@ -31,6 +31,13 @@ void note_ghosts(WorldState& world);
 /// Lists the stage that sends the predicted velocities of bodies to the ranks that hold a led ghost of them.
 void list_led_ghosts(WorldState& world, TaskGraph& graph);
 
+// ranks/sleep_over_ranks.cpp
+
+/// Lists the stages by which sets of touching bodies on several ranks fall asleep and wake as in an undivided world.
+void list_wakes(WorldState& world, TaskGraph& graph);         // finds bodies that this rank wakes; before the reduction
+void list_joined_wakes(WorldState& world, TaskGraph& graph);  // joins these bodies of all ranks; before wake_bodies
+void list_joined_sets(WorldState& world, TaskGraph& graph);   // joins the sets of all ranks; before rest_bodies
+
 // ranks/reduce_findings.cpp
 
 /// Lists the stage that combines the findings of all ranks. It has no stage if this process simulates the whole world.
