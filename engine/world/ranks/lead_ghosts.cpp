@@ -62,7 +62,7 @@ void send_predictions(const LedBodies& bodies, std::span<Vec3> velocity_next, Ra
         const auto peer = static_cast<std::size_t>(std::ranges::lower_bound(bodies.peers, bodies.owner[b]) -
                                                    bodies.peers.begin());
         const std::span<Vec3> rows = rows_of(velocity_next, bodies.nodes[b]);
-        std::memcpy(rows.data(), mail.in[peer].data() + mail.taken[peer], rows.size_bytes());
+        std::memcpy(static_cast<void*>(rows.data()), mail.in[peer].data() + mail.taken[peer], rows.size_bytes());
         mail.taken[peer] += rows.size_bytes();
     }
 }

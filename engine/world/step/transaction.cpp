@@ -391,7 +391,7 @@ void StepTransaction::roll_back_try(Model& model) const {
 }
 
 std::span<const std::uint8_t> StepTransaction::rested(const BodyTable& bodies) {
-    for (std::size_t b = 0; b < asleep_.size(); ++b) asleep_[b] |= bodies.asleep[b] | bodies.idle[b];
+    for (std::size_t b = 0; b < asleep_.size(); ++b) asleep_[b] = asleep_[b] || bodies.asleep[b] || bodies.idle[b];
     return asleep_;
 }
 
