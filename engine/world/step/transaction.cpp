@@ -164,6 +164,7 @@ void commit(WorldState& world) {
         keep_frames(world);
         flow(world);
         if (scratch.regions.pushed) forget_unstrained(scratch.contacts, world.model.bodies);
+        for (const Index body : scratch.rank_regions.pushed_bodies) world.model.bodies.unstrained[body] = 0;
         add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     }
     count_step(scratch, world.record.counters);
