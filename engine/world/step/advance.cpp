@@ -81,21 +81,17 @@ void blame(const WorldState& world, StepReport& report) {
     if (verdict.tetrahedron != no_index) report.element = world.model.user_tetrahedron(b, verdict.tetrahedron);
 }
 
-void add_to_report(const WorldState& world, StepReport& report) {
-    const RegionTable& regions = world.scratch.regions;
-    report.contacts = static_cast<Index>(world.scratch.contacts.size());
-    report.regions = static_cast<Index>(regions.size());
-    report.largest_region = 0;
-    for (std::size_t r = 0; r < regions.size(); ++r) {
-        report.largest_region =
-            std::max(report.largest_region, regions.contacts.offset[r + 1] - regions.contacts.offset[r]);
-        report.unconverged += regions.status[r] == RegionStatus::iteration_limit;
-        if (!(regions.error[r] > report.worst_error)) continue;
-        report.worst_error = regions.error[r];
-        report.worst_region = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
+void add_to_report(const RunCounters& step, StepReport& report) {
+    report.contacts = static_cast<Index>(step.contact_sum);
+    report.regions = static_cast<Index>(step.solved);
+    report.largest_region = step.largest_region;
+    report.unconverged += static_cast<Index>(step.unconverged);
+    if (step.worst_error > report.worst_error) {
+        report.worst_error = step.worst_error;
+        report.worst_region = step.worst_region;
     }
-    report.max_penetration = std::max(report.max_penetration, world.scratch.findings.measures.max_penetration);
-    report.max_gap_violation = std::max(report.max_gap_violation, world.scratch.findings.measures.max_gap_violation);
+    report.max_penetration = std::max(report.max_penetration, step.max_penetration);
+    report.max_gap_violation = std::max(report.max_gap_violation, step.max_gap_violation);
     ++report.steps;
 }
 
@@ -277,7 +273,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         world.drawn_behind = world.scratch.parameters.draws_late;
         if (world.scratch.findings.rest.bodies > 0) world.draw(true);
         if (world.scratch.findings.released_ties > 0) release_ties(world);
-        add_to_report(world, report);
+        add_to_report(world.scratch.counters, report);
         note_held(held_in_shapes(world, report.steps == 1), world, report);
         note_inversions(world, report);
         note_limit(world, report);

@@ -9,11 +9,25 @@ namespace skerry {
 
 /// Lists the stages of the step. The task graph derives its edges from the data that the stages read and write.
 void build_step(WorldState& world);
+/// Lists the stages again. Must be called after RankState::ranks was changed.
+void list_step_again(WorldState& world);
 
 // count_step.cpp
 
+/// Counters of a step alone, after the solve. Sums of energy are zero. `unstrained`: see StepFindings.
+RunCounters count_step(const ContactTable& contacts, const RegionTable& regions, const ContactMeasures& measures,
+                       const NewtonCounts& newton, Index unstrained);
+/// Adds the sums of `from` to those of `into`, except for sums of energy, and takes over maxima.
+void add_counters(const RunCounters& from, RunCounters& into);
 /// Adds a committed step to the counters of the run.
-void count_step(const StepScratch& scratch, RunCounters& counters);
+void count_committed_step(const RunCounters& step, RunCounters& run);
+/// Energy that a step dissipated [J].
+Real dissipated_in(const StepFindings& findings);
+
+// ranks/reduce_findings.cpp
+
+/// Lists the stage that combines the findings of all ranks. It has no stage if this process simulates the whole world.
+void list_reduction(WorldState& world, TaskGraph& graph);
 
 // ranks/regions
 

@@ -92,9 +92,9 @@ void find_units(const JoinedBodies& joined, std::size_t bodies, RankRegions& reg
 }
 
 /// Labels of the regions of this rank, which ranks that hold the same bodies make equal.
-class LabelRounds {
+class RegionLabels {
 public:
-    LabelRounds(const SharedBodies& bodies, const RegionGroups& nodes, RankRegions& regions)
+    RegionLabels(const SharedBodies& bodies, const RegionGroups& nodes, RankRegions& regions)
         : bodies_(bodies), nodes_(nodes), regions_(regions) {
         const std::size_t count = nodes.inverse_mass.size();
         regions.sets.start(count);
@@ -376,14 +376,15 @@ private:
     Column<BodyRequest>& requests_;
 };
 
-void exchange_rows(const SharedBodies& bodies, const RegionGroups& nodes, const JoinedBodies& joined, int rounds,
+void exchange_rows(const SharedBodies& bodies, const RegionGroups& nodes, const JoinedBodies& joined, const LabelRounds& rounds,
                    ContactTable& contacts, RankRegions& regions, Column<BodyRequest>& requests, RankFindings& mine,
                    RankChannel& channel) {
     requests.clear();
     find_units(joined, bodies.size(), regions);
-    LabelRounds labels(bodies, nodes, regions);
+    RegionLabels labels(bodies, nodes, regions);
     labels.join_groups(contacts.stencil);
-    mine.label_rounds = labels.settle(channel, rounds);
+    mine.label_rounds = labels.settle(channel, rounds.count);
+    mine.labels_open = mine.label_rounds > rounds.count;
     RowExchange(bodies, contacts, regions, requests).run(channel);
     mine.bodies_missing = !requests.empty();
 }
