@@ -32,6 +32,7 @@ void combine(RankFindings& into, const RankFindings& from) {
     into.label_rounds = std::max(into.label_rounds, from.label_rounds);
     into.bodies_missing |= from.bodies_missing;
     into.ghosts_expired |= from.ghosts_expired;
+    into.stop |= from.stop;
     into.moves |= from.moves;
     into.far |= from.far;
     add_counters(from.counters, into.counters);

@@ -36,6 +36,7 @@ struct RankFindings {
     int label_rounds = 0;         // number of rounds of labels that this attempt needed (LabelRounds)
     bool bodies_missing = false;  // a rank does not hold all bodies of a region that it has to solve
     bool ghosts_expired = false;  // a body may come near a rank that does not hold it
+    bool stop = false;            // a callback of World::advance has asked to end the call
     // Properties of the next step:
     bool moves = false;    // a body is awake or has a speed
     bool far = false;      // a body may be too far from the origin (check_distance)

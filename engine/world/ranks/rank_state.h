@@ -75,6 +75,7 @@ struct RankState {
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
     RankFindings mine;  // findings of this rank in this attempt at a step; complete when reduce_findings runs
     RankFindings all;   // combined findings of all ranks in this attempt at a step
+    bool stops = false;  // true if a callback of this rank has asked to end the present call of World::advance
 
     bool on() const { return ranks != nullptr; }
     bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == rank; }

@@ -45,7 +45,7 @@ struct NamedBodies {
                 .max_speed = binder.read(body.max_speed),
                 .mean_edge = binder.read(body.mean_edge),
                 .position = binder.read(node.position),
-                .rank = ranks.on() ? ranks.ranks->rank() : 0};
+                .rank = binder.value(ranks.rank)};
     }
     bool owns(Index body) const { return owner[body] == rank; }
     Index place_of(Index body) const { return body == no_index ? RankFindings::nobody : place[body]; }
@@ -167,6 +167,32 @@ void list_reduction(WorldState& w, TaskGraph& g) {
             read(w.scratch.contacts), read(w.scratch.regions), value(w.scratch.parameters.h),
             outputs<StageFindings>(w.scratch.findings, w.scratch.inversions, w.cache.crossings), make(w.ranks.mine), make(w.ranks.all),
             make(w.ranks.channel));
+}
+
+void agree_to_start(WorldState& w) {
+    RankState& ranks = w.ranks;
+    if (!ranks.on()) return;
+    const bool possible = !ranks.all.moves || ranks.all.far;
+    bool& left_out = w.scratch.left_out;
+    StepVerdict& verdict = w.scratch.findings.verdict;
+    ranks.mine = {};
+    ranks.mine.stop = ranks.stops;
+    if (!possible) {
+        left_out = false;
+        return;
+    }
+    ranks.all = ranks.mine;
+    ranks.all.moves = !left_out;
+    if (verdict.fault != StepFault::none) {
+        ranks.all.fault = verdict.fault;
+        ranks.all.fault_body = ranks.place_of(verdict.body);
+        ranks.all.fault_value = verdict.value;
+    }
+    reduce(*ranks.ranks, ranks.all, combine_records);
+    left_out = !ranks.all.moves;
+    verdict = {};
+    if (!left_out && ranks.all.fault != StepFault::none)
+        verdict = {.fault = ranks.all.fault, .body = ranks.all.fault_body, .value = ranks.all.fault_value};
 }
 
 }  // namespace skerry

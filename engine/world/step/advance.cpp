@@ -19,7 +19,7 @@ namespace {
 /// the body deforms. The stable step in use is never older than two rounds. With clusters the rounds are shorter,
 /// because steps are several times longer and explicit elements deform more in each step.
 std::uint64_t steps_per_round(const WorldState& world) {
-    return world.model.clusters.empty() ? 128u : 64u;
+    return world.model.clusters.empty() && !world.model.of_ranks.has_clusters ? 128u : 64u;
 }
 
 /// Counts a step of the present round. At the end of a round, the newly evaluated stable steps replace the old ones.
@@ -31,6 +31,7 @@ bool keep_watch(WorldState& world) {
     // The clusters must be updated first, because stable steps depend on them.
     world.record.balance.work += follow_stiffening(world.model);
     world.record.balance.work += use_evaluated_steps(world.model, world.scratch.stiffness_sum);
+    reduce_limits(world);
     watch.second = !watch.second;
     return !watch.second;
 }
@@ -45,8 +46,8 @@ AttemptLimits limits_of_first_attempt(WorldState& world) {
     CheckInputs state = CheckInputs::bind(Binder(), model.node_blocks, model.bodies, model.nodes, model.tetrahedra,
                                           model.elements, model.element_nodes, pushed);
     state.velocity_next = model.nodes.velocity;
-    const StrainRate fastest =
-        kernels().strain_rate(*world.executor, state, max_strain_step / longest, world.scratch.beside_fast);
+    const StrainRate fastest = fastest_of_ranks(
+        world, kernels().strain_rate(*world.executor, state, max_strain_step / longest, world.scratch.beside_fast));
     return {.slow_enough = slow_enough(fastest, max_strain_step, longest), .fastest = fastest.body};
 }
 
@@ -202,6 +203,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     world.settle();
     note_changed_seams(model);
     settle_clusters(model, world.scratch.stiffness_sum);
+    reduce_limits(world);
     require_countable(model, dt);
     StepReport report;
     const Real end = clock.time + dt;
@@ -228,6 +230,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             return false;
         }
     };
+    bool& stops = world.ranks.stops;  // true if a callback has asked to end the call
+    stops = world.ranks.all.stop = false;
     world.transaction.begin_call(model, clock);
     ForceLedger& forces = world.record.forces;
     const Real step_before = clock.step_before;
@@ -238,11 +242,14 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         if (forces.on() && seconds != 0) forces.add_drift(model, seconds, world.scratch);
     };
     while (left > 0) {
-        if (go_on && !call_back([&] { return go_on(std::as_const(report)); })) {
+        if (go_on && !call_back([&] { return go_on(std::as_const(report)); })) stops = true;
+        // Ranks learn in a step that one of them stops, and end the call together after it.
+        if (world.ranks.on() ? world.ranks.all.stop : stops) {
             report.status = StepStatus::stopped;
             break;
         }
         if (model.force_rate_moves) note_force_rates(model);
+        if (model.of_ranks.moves) reduce_limits(world);
         Index stiffest = no_index;
         const Real trusted = trusted_step(model, &stiffest);
         if (!(std::min(trusted, attempt.at_most()) > std::numeric_limits<Real>::epsilon() * end)) {
@@ -295,7 +302,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             if (world.record.step_watch) world.record.step_watch(std::as_const(report));
             return true;
         });
-        if (!heard) break;
+        stops |= !heard;
+        if (!heard && !world.ranks.on()) break;
     }
     clock.long_step = {};                // at the end of a call, implicit bodies have reached the present time
     world.cache.search.end_step(false);  // only has an effect if the last attempt was not committed

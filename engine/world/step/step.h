@@ -28,6 +28,16 @@ Real dissipated_in(const StepFindings& findings);
 
 /// Lists the stage that combines the findings of all ranks. It has no stage if this process simulates the whole world.
 void list_reduction(WorldState& world, TaskGraph& graph);
+/// Makes all ranks agree, before the stages run, on StepScratch::left_out and on a body that is too far from the
+/// origin. Communicates only if the last attempt has found that either is possible. Without ranks it does nothing.
+void agree_to_start(WorldState& world);
+
+// ranks/reduce_limits.cpp
+
+/// Combines Model::of_ranks of all ranks. Without ranks it does nothing.
+void reduce_limits(WorldState& world);
+/// Returns the fastest deformation of all ranks. Without ranks it returns `mine`.
+StrainRate fastest_of_ranks(WorldState& world, const StrainRate& mine);
 
 // ranks/regions
 
@@ -137,6 +147,8 @@ struct StepPlan {
 };
 /// Plans the next step of an interval that ends in `left` seconds. The step is at most `fast_limit` seconds long.
 StepPlan plan_step(const Model& model, Real left, Real fast_limit);
+/// Greatest angular speed of a body with a joint or tie [rad/s]. `body`: set to the row of this body in BodyTable.
+Real fastest_spin(const Model& model, Index* body = nullptr);
 /// Longest step in which no body with a joint rotates by more than a small angle [s]. `fastest`: set to the row in
 /// BodyTable of the fastest of these bodies if this step is shorter than `shorter_than`.
 Real step_of_turns(const Model& model, Real shorter_than, Index& fastest);

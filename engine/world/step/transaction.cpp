@@ -92,11 +92,11 @@ bool run_stages(WorldState& world) {
     }
     scratch.awake_mass = model.note_rest();
     scratch.left_out = nothing_moves(world);
-    if (!scratch.left_out) {
+    if (!scratch.left_out || world.ranks.on())
         scratch.findings.verdict =
             check_distance(*world.executor, model.nodes.position, model.bodies.nodes, model.bodies.mean_edge);
-        if (scratch.findings.verdict.fault != StepFault::none) return false;
-    }
+    agree_to_start(world);
+    if (scratch.findings.verdict.fault != StepFault::none) return false;
     scratch.pressed.clear();
     const bool drivable =
         scratch.parameters.sleep.on() && (model.forced || model.joints.size() > 0 || model.ties.size() > 0);
