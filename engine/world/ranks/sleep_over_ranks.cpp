@@ -42,12 +42,6 @@ struct SleepStep {
     }
 };
 
-/// Row of the body at a place; no_index if this rank does not hold it.
-Index row_of(std::span<const Index> places, Index place) {
-    const auto at = std::ranges::lower_bound(places, place);
-    return at != places.end() && *at == place ? static_cast<Index>(at - places.begin()) : no_index;
-}
-
 template <class Row>
 void copy(std::span<const Row> from, Column<Row>& to) {
     to.resize(from.size());
@@ -92,7 +86,7 @@ void join_wakes(const HeldBodies& bodies, const RankSleep& memory, Column<std::u
     const std::span<const Index> woken = memory.woken;
     for (const RankMessage& message : channel.ranks->gather_everywhere(std::as_bytes(woken)))
         for_each_row<Index>(message, [&](Index place) {
-            if (const Index row = row_of(bodies.place, place); row != no_index) pressed[row] = 1;
+            if (const Index row = row_of_place(bodies.place, place); row != no_index) pressed[row] = 1;
         });
 }
 
