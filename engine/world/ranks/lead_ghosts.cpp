@@ -46,10 +46,8 @@ void append(std::span<const Vec3> rows, RankMessage& message) {
 
 /// Sends the predicted velocities of the bodies that this rank leads, in body order, and receives those of its led
 /// ghosts. Sleeping bodies have no velocity and are left out.
-void send_predictions(const LedBodies& bodies, std::span<Vec3> velocity_next, RankMail& mail, RankChannel& channel) {
-    mail.out.resize(bodies.peers.size());
-    mail.in.resize(bodies.peers.size());
-    for (RankMessage& message : mail.out) message.clear();
+void send_predictions(const LedBodies& bodies, std::span<Vec3> velocity_next, PredictionMail& mail, RankChannel& channel) {
+    mail.start(bodies.peers.size());
     for (std::size_t b = 0; b < bodies.nodes.size(); ++b) {
         if (!bodies.leads[b] || bodies.asleep[b]) continue;
         for (const int peer : bodies.holders[b])

@@ -11,6 +11,7 @@
 #include "components/types.h"
 #include "components/union_find.h"
 #include "engine/world/ranks/rank_findings.h"
+#include "engine/world/ranks/regions/rank_mail.h"
 #include "jobs/ranks/ranks.h"
 
 namespace skerry {
@@ -21,10 +22,9 @@ struct RankChannel {
     Ranks* ranks = nullptr;
 };
 
-/// Messages to and from the peers of a rank, whose memory is reused in later steps.
-struct RankMail {
-    std::vector<RankMessage> out, in;  // by peer
-    Column<std::size_t> taken;         // by peer: number of bytes of `in` that were read
+/// Predicted velocities of bodies that have led ghosts.
+struct PredictionMail : RankMail {
+    Column<std::size_t> taken;  // by peer: number of bytes of `in` that were read
 };
 
 /// A set of touching bodies that one rank has found, as told to all ranks: a body of the set with several holders.
@@ -101,7 +101,7 @@ struct RankState {
     // For each row of BodyTable: 1 if this rank sends the predicted velocities of the body to its holders (note_ghosts).
     Column<std::uint8_t> leads;
     RankChannel channel;
-    RankMail predictions;
+    PredictionMail predictions;
     RankSleep sleep;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
