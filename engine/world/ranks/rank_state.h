@@ -12,6 +12,7 @@
 #include "components/union_find.h"
 #include "engine/world/ranks/rank_findings.h"
 #include "engine/world/ranks/regions/rank_mail.h"
+#include "engine/world/step/balance.h"
 #include "jobs/ranks/ranks.h"
 
 namespace skerry {
@@ -20,6 +21,14 @@ namespace skerry {
 /// call in the same order on all ranks.
 struct RankChannel {
     Ranks* ranks = nullptr;
+};
+
+/// Sums over the steps of this rank alone, since they were last added to the records of the run (join_records).
+struct RankShare {
+    Real dissipated = 0, plastic_work = 0;  // RunCounters [J]
+    Balance balance;                        // only its sums
+    // CrossingTable::tested, hits and let_through after the last join
+    std::uint64_t tested = 0, hits = 0, let_through = 0;
 };
 
 /// Predicted velocities of bodies that have led ghosts.
@@ -103,6 +112,7 @@ struct RankState {
     RankChannel channel;
     PredictionMail predictions;
     RankSleep sleep;
+    RankShare share;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
     RankFindings mine;  // findings of this rank in this attempt at a step; complete when reduce_findings runs

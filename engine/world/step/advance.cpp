@@ -29,8 +29,9 @@ bool keep_watch(WorldState& world) {
     ++watch.steps;
     if (watch.steps < steps_per_round(world)) return false;
     // The clusters must be updated first, because stable steps depend on them.
-    world.record.balance.work += follow_stiffening(world.model);
-    world.record.balance.work += use_evaluated_steps(world.model, world.scratch.stiffness_sum);
+    Balance& balance = world.ranks.on() ? world.ranks.share.balance : world.record.balance;
+    balance.work += follow_stiffening(world.model);
+    balance.work += use_evaluated_steps(world.model, world.scratch.stiffness_sum);
     reduce_limits(world);
     watch.second = !watch.second;
     return !watch.second;
@@ -212,7 +213,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     // The stored crossings belong to an abandoned step, and bodies may have changed since then.
     world.cache.crossings.row.clear();
     if (world.record.counters.steps == 0 && left > 0)
-        check_balance(model, clock.time, lag_between_steps(world), world.record.balance);
+        check_balance(world, clock.time, lag_between_steps(world), world.record.balance);
     world.scratch.self_crossing_places.resize(model.bodies.slot.size());
     // force elements read all nodes in every step, so these nodes must be up to date
     world.scratch.parameters.draws_late = !model.forced;
@@ -230,6 +231,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             return false;
         }
     };
+    // With ranks, the sums of this rank are added to those of all ranks by join_records.
+    Balance& balance = world.ranks.on() ? world.ranks.share.balance : world.record.balance;
     bool& stops = world.ranks.stops;  // true if a callback has asked to end the call
     stops = world.ranks.all.stop = false;
     world.transaction.begin_call(model, clock);
@@ -287,7 +290,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         note_limit(world, report);
         left = plan.steps > 1 || within < left ? left - plan.h : 0;
         move_on_in_long_step(plan, clock.long_step);
-        world.record.balance.work += std::exchange(stiffened, Real(0));
+        balance.work += std::exchange(stiffened, Real(0));
         if (keep_watch(world)) {
             world.draw();
             if (!world.scratch.left_out)
@@ -318,8 +321,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         note_held(held_in_surfaces(world), world, report);
         // Clusters are updated here, because their energy would otherwise be gained by the next call.
         stiffened += follow_stiffening(model);
-        world.record.balance.work += stiffened;
+        balance.work += stiffened;
     }
+    join_reports(world, report);
     world.draw();
     world.query_trees.forget();
     if (left == 0) clock.time = end;

@@ -31,6 +31,14 @@ void note_ghosts(WorldState& world);
 /// Lists the stage that sends the predicted velocities of bodies to the ranks that hold a led ghost of them.
 void list_led_ghosts(WorldState& world, TaskGraph& graph);
 
+// ranks/join_records.cpp
+
+/// Adds the sums of all ranks since the last call to the records of the run. Without ranks it does nothing. The last
+/// digits of sums depend on the number of ranks; the motion does not depend on these sums.
+void join_records(WorldState& world);
+/// Calls join_records, and makes the report of a call of advance equal on all ranks.
+void join_reports(WorldState& world, StepReport& report);
+
 // ranks/sleep_over_ranks.cpp
 
 /// Lists the stages by which sets of touching bodies on several ranks fall asleep and wake as in an undivided world.

@@ -181,9 +181,12 @@ void commit(WorldState& world) {
     }
     scratch.counters = counters_of_step(world);
     count_committed_step(scratch.counters, world.record.counters);
-    world.record.counters.dissipated += dissipated_in(scratch.findings);
-    world.record.counters.plastic_work += scratch.findings.plastic;
-    add_step(scratch, world.record.balance);
+    RankShare& share = world.ranks.share;
+    const bool divided = world.ranks.on();
+    share.balance.open = world.record.balance.open;
+    (divided ? share.dissipated : world.record.counters.dissipated) += dissipated_in(scratch.findings);
+    (divided ? share.plastic_work : world.record.counters.plastic_work) += scratch.findings.plastic;
+    add_step(scratch, divided ? share.balance : world.record.balance);
     world.clock.time += parameters.h;
     world.clock.step_before = parameters.h;
 }
