@@ -1,12 +1,14 @@
 // Division of a world among ranks: the bodies that this rank owns, and copies of bodies of other ranks.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "components/column.h"
 #include "components/types.h"
+#include "engine/world/ranks/whole_world.h"
 #include "jobs/ranks/ranks.h"
 
 namespace skerry {
@@ -15,14 +17,25 @@ namespace skerry {
 /// owner.
 struct RankState {
     Ranks* ranks = nullptr;  // null: this process simulates the whole world
+    int rank = 0;            // number of this rank
     std::vector<int> peers;  // ranks that hold a body that this rank holds too, ascending
     // For each row of BodyTable: rank that owns the body. Empty if `ranks` is null.
     Column<std::int32_t> owner;
     // For each row of BodyTable: the other ranks that hold the body, as indices in `peers`, ascending.
     std::vector<std::vector<int>> holders;
+    // For each row of BodyTable: place of the body, its row in the undivided world. The places ascend.
+    Column<Index> place;
+    WholeWorld whole;  // empty if `ranks` is null
 
     bool on() const { return ranks != nullptr; }
-    bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == ranks->rank(); }
+    bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == rank; }
+    Index place_of(Index row) const { return on() && row != no_index ? place[row] : row; }
+    /// Row of BodyTable of the body at a place of the undivided world; no_index if this rank does not hold it.
+    Index row_of(Index of_place) const {
+        if (!on()) return of_place;
+        const auto at = std::ranges::lower_bound(place, of_place);
+        return at != place.end() && *at == of_place ? static_cast<Index>(at - place.begin()) : no_index;
+    }
 };
 
 }  // namespace skerry
