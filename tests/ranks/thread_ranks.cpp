@@ -1,5 +1,6 @@
 #include "tests/ranks/thread_ranks.h"
 
+#include <chrono>
 #include <condition_variable>
 #include <cstring>
 #include <deque>
@@ -8,6 +9,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -20,25 +22,49 @@ struct OtherRankFailed : std::runtime_error {
     OtherRankFailed() : std::runtime_error("another rank failed") {}
 };
 
-/// Mail of all ranks.
+using Clock = std::chrono::steady_clock;
+
+struct Letter {
+    RankMessage message;
+    const char* call;  // function of Ranks that sent it
+    Clock::time_point arrival;
+};
+
+/// Mail of all ranks. A call that could never return throws an exception.
 class PostOffice {
 public:
-    explicit PostOffice(int count) : count_(count) {}
+    PostOffice(int count, std::chrono::microseconds delay)
+        : count_(count), delay_(delay), sender_awaited_(static_cast<std::size_t>(count), nobody) {}
 
     int count() const { return count_; }
-    void send(int from, int to, RankMessage message) {
+    void send(int from, int to, RankMessage message, const char* call) {
         const std::scoped_lock lock(mutex_);
-        box_[{from, to}].push_back(std::move(message));
+        box_[{from, to}].push_back({std::move(message), call, Clock::now() + delay_});
         changed_.notify_all();
     }
-    RankMessage receive(int from, int to) {
+    RankMessage receive(int from, int to, const char* call) {
         std::unique_lock lock(mutex_);
-        std::deque<RankMessage>& box = box_[{from, to}];
+        std::deque<Letter>& box = box_[{from, to}];
+        int& awaited = sender_awaited_[static_cast<std::size_t>(to)];
+        awaited = from;
+        if (box.empty()) require_no_deadlock(call);
         changed_.wait(lock, [&] { return failed_ || !box.empty(); });
         if (failed_) throw OtherRankFailed();
-        RankMessage message = std::move(box.front());
+        awaited = nobody;
+        const Letter letter = std::move(box.front());
         box.pop_front();
-        return message;
+        if (std::string_view(letter.call) != call)
+            throw std::runtime_error("rank " + std::to_string(to) + " waits in " + call + " for a message of rank " +
+                                     std::to_string(from) + ", which called " + letter.call);
+        lock.unlock();
+        std::this_thread::sleep_until(letter.arrival);
+        return letter.message;
+    }
+    /// Notes that a rank ended.
+    void leave(int rank) {
+        const std::scoped_lock lock(mutex_);
+        sender_awaited_[static_cast<std::size_t>(rank)] = gone;
+        if (!failed_) require_no_deadlock("a call that some rank did not make");
     }
     void fail() {
         const std::scoped_lock lock(mutex_);
@@ -47,10 +73,26 @@ public:
     }
 
 private:
+    static constexpr int nobody = -1, gone = -2;
+
+    /// Throws if each rank has ended or waits for a message that was not sent.
+    void require_no_deadlock(const char* call) {
+        std::string waiting;
+        for (int rank = 0; rank < count_; ++rank) {
+            const int from = sender_awaited_[static_cast<std::size_t>(rank)];
+            if (from == gone) continue;
+            if (from == nobody || !box_[{from, rank}].empty()) return;
+            waiting += ", rank " + std::to_string(rank) + " for rank " + std::to_string(from);
+        }
+        if (!waiting.empty()) throw std::runtime_error(std::string("all ranks wait in ") + call + waiting);
+    }
+
     int count_;
+    std::chrono::microseconds delay_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::map<std::pair<int, int>, std::deque<RankMessage>> box_;  // by sender and receiver
+    std::map<std::pair<int, int>, std::deque<Letter>> box_;  // by sender and receiver
+    std::vector<int> sender_awaited_;                        // by receiver; nobody: it does not wait
     bool failed_ = false;
 };
 
@@ -65,23 +107,23 @@ public:
         for (std::size_t i = 0; i < peers.size(); ++i) {
             ++traffic_.messages;
             traffic_.bytes += out[i].size();
-            office_.send(rank_, peers[i], out[i]);
+            office_.send(rank_, peers[i], out[i], "exchange");
         }
-        for (std::size_t i = 0; i < peers.size(); ++i) in[i] = office_.receive(peers[i], rank_);
+        for (std::size_t i = 0; i < peers.size(); ++i) in[i] = office_.receive(peers[i], rank_, "exchange");
     }
     void reduce(std::span<std::byte> record, void (*combine)(std::byte*, const std::byte*)) override {
         ++traffic_.reductions;
-        const std::vector<RankMessage> all = everything(record);
+        const std::vector<RankMessage> all = everything(record, "reduce");
         std::memcpy(record.data(), all.front().data(), record.size());
         for (std::size_t r = 1; r < all.size(); ++r) combine(record.data(), all[r].data());
     }
     std::vector<RankMessage> gather_everywhere(std::span<const std::byte> mine) override {
         ++traffic_.collectives;
-        return everything(mine);
+        return everything(mine, "gather_everywhere");
     }
     std::vector<RankMessage> gather(std::span<const std::byte> mine) override {
         ++traffic_.collectives;
-        std::vector<RankMessage> all = everything(mine);
+        std::vector<RankMessage> all = everything(mine, "gather");
         if (rank_ != 0) all.clear();
         return all;
     }
@@ -91,10 +133,10 @@ public:
     }
 
 private:
-    std::vector<RankMessage> everything(std::span<const std::byte> mine) {
-        for (int r = 0; r < size(); ++r) office_.send(rank_, r, RankMessage(mine.begin(), mine.end()));
+    std::vector<RankMessage> everything(std::span<const std::byte> mine, const char* call) {
+        for (int r = 0; r < size(); ++r) office_.send(rank_, r, RankMessage(mine.begin(), mine.end()), call);
         std::vector<RankMessage> all;
-        for (int r = 0; r < size(); ++r) all.push_back(office_.receive(r, rank_));
+        for (int r = 0; r < size(); ++r) all.push_back(office_.receive(r, rank_, call));
         return all;
     }
 
@@ -104,13 +146,14 @@ private:
 
 }  // namespace
 
-void run_on_ranks(int count, const std::function<void(Ranks&)>& run) {
-    PostOffice office(count);
+void run_on_ranks(int count, const std::function<void(Ranks&)>& run, std::chrono::microseconds delay) {
+    PostOffice office(count, delay);
     std::vector<std::exception_ptr> failure(static_cast<std::size_t>(count));
     const auto run_rank = [&](int rank) {
         ThreadRanks ranks(office, rank);
         try {
             run(ranks);
+            office.leave(rank);
         } catch (...) {
             failure[static_cast<std::size_t>(rank)] = std::current_exception();
             office.fail();

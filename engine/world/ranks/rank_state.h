@@ -8,10 +8,17 @@
 
 #include "components/column.h"
 #include "components/types.h"
+#include "engine/world/ranks/rank_findings.h"
 #include "engine/world/ranks/whole_world.h"
 #include "jobs/ranks/ranks.h"
 
 namespace skerry {
+
+/// Connection to the other ranks. Every stage that calls a function of Ranks declares a write of it, so that the stages
+/// call in the same order on all ranks.
+struct RankChannel {
+    Ranks* ranks = nullptr;
+};
 
 /// A rank *holds* the bodies that it owns and copies of bodies that other ranks own (*ghosts*). Each body has one
 /// owner.
@@ -25,7 +32,14 @@ struct RankState {
     std::vector<std::vector<int>> holders;
     // For each row of BodyTable: place of the body, its row in the undivided world. The places ascend.
     Column<Index> place;
+    // For each row of BodyTable: SearchMemory::body_travel_bound at which the body leaves the box that was used to find
+    // its holders [m].
+    Column<Real> travel_limit;
     WholeWorld whole;  // empty if `ranks` is null
+    RankChannel channel;
+    RankFindings mine;  // findings of this rank in this attempt at a step; complete when reduce_findings runs
+    RankFindings all;   // combined findings of all ranks in this attempt at a step
+    bool stops = false;  // true if a callback of this rank has asked to end the present call of World::advance
 
     bool on() const { return ranks != nullptr; }
     bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == rank; }

@@ -52,8 +52,6 @@ WholeWorld whole_world_of(Model& model) {
         const bool moves = bodies.kind[b] == BodyKind::deformable;
         if (!moves) own[b] = no_slot;  // a kinematic body has the slot of its collider
         whole.owner.push_back(moves ? 0 : WholeWorld::everywhere);
-        whole.has_frames |= model.has_frame(b);
-        whole.has_implicit |= bodies.implicit[b].size() > 0;
     }
     whole.place_of_slot = rows_by_slot(own);
     model.for_each_joining(

@@ -7,9 +7,19 @@
 #include <vector>
 
 #include "engine/world/state/model.h"
+#include "skerry/ranks.h"
 #include "systems/collision/inputs/contact_key.h"
 
 namespace skerry {
+
+/// A rank that holds a unit because it has to solve a region with a body of the unit.
+struct FetchedUnit {
+    Index unit;  // WholeWorld::unit
+    int rank;
+    int searches;  // number of rank searches after which the rank no longer needs the unit
+
+    bool operator==(const FetchedUnit&) const = default;
+};
 
 /// The *place* of a body is its row in the undivided world. The rows of a rank are in the order of their places.
 struct WholeWorld {
@@ -26,10 +36,11 @@ struct WholeWorld {
     // Row in the undivided world of each row that joins bodies: by table of Model::for_each_joining and handle slot.
     // The last list is that of the attachments.
     std::vector<std::vector<Index>> joining_place;
-
-    // Properties of the undivided world that choose between methods. The rows of one rank cannot show them.
-    bool has_frames = false;    // true if a body is rigid or implicit
-    bool has_implicit = false;  // true if a body is implicit
+    // By place: the ranks that hold the body, ascending.
+    std::vector<std::vector<int>> holders;
+    std::vector<FetchedUnit> fetched;
+    std::uint64_t searched_step = 0;  // number of steps of the run at the last rank search
+    RankSettings settings;
 
     std::size_t size() const { return owner.size(); }
     Index place(std::uint32_t slot_of_body) const { return place_of_slot[slot_of_body]; }

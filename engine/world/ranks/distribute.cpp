@@ -1,0 +1,1 @@
+#include "engine/world/world_state.h"
