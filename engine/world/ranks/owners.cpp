@@ -125,10 +125,12 @@ Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> 
     return total > 0 ? std::ranges::max(cost) * rank_count / total : 1;
 }
 
-std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const BodyExtent> extents) {
+std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const std::int32_t> owner,
+                                           std::span<const BodyExtent> extents) {
+    const auto owner_of = [&](Index place) { return owner[static_cast<std::size_t>(place)]; };
     std::vector<std::vector<int>> of_unit(whole.size());
     const auto hold = [&](Index place, Index other) {
-        of_unit[static_cast<std::size_t>(whole.unit[place])].push_back(whole.owner[other]);
+        of_unit[static_cast<std::size_t>(whole.unit[place])].push_back(owner_of(other));
     };
     Column<Aabb> boxes;
     Column<Index> rows;
@@ -142,7 +144,7 @@ std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<co
     for (const Index row : rows)
         grid.for_each_near(row, [&](Index other) {
             const Index a = extents[static_cast<std::size_t>(row)].place, b = extents[static_cast<std::size_t>(other)].place;
-            if (whole.owner[a] == whole.owner[b] || distance_squared(boxes[row], boxes[other]) > 0) return;
+            if (owner_of(a) == owner_of(b) || distance_squared(boxes[row], boxes[other]) > 0) return;
             hold(a, b);
             hold(b, a);
         });

@@ -14,7 +14,8 @@ namespace skerry {
 struct BodyExtent {
     Index place;
     Real cost;  // computing time of a step, in units of that of an explicit element
-    Aabb box;   // contains the body until its margin is used up [m]
+    Real margin;  // distance by which the body may move inside the box [m]
+    Aabb box;     // [m]
 };
 
 /// Chooses an owner for each body, the same one for all bodies of a unit. `extents`: all bodies that can move, in the
@@ -26,7 +27,8 @@ Column<std::int32_t> choose_owners(const WholeWorld& whole, std::span<const Body
 Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> extents, int rank_count);
 
 /// For each place, the ranks that hold its body, ascending: the ranks that own a body of its unit, or a body whose box
-/// overlaps the box of a body of its unit.
-std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const BodyExtent> extents);
+/// overlaps the box of a body of its unit. `owner`: by place.
+std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const std::int32_t> owner,
+                                           std::span<const BodyExtent> extents);
 
 }  // namespace skerry
