@@ -7,6 +7,7 @@ option(SKERRY_HDF5 "Contact problems in FCLIB files, series in HDF5 files; needs
 option(SKERRY_SCENES "Scenes in files; needs nlohmann-json" ON)
 option(SKERRY_PAGES "Pages that play a run, and glTF files; needs nlohmann-json, zlib and three.js" ON)
 option(SKERRY_LIVE "Live view in a browser; needs SKERRY_PAGES and CivetWeb" ${SKERRY_PAGES})
+option(SKERRY_MPI "The program can simulate one world on several processes (mpirun, srun); needs MPI" OFF)
 option(SKERRY_PYTHON "Build the Python package; needs Python 3.11 with nanobind" OFF)
 option(SKERRY_NO_CHECKS "Leave out SKERRY_CHECK" OFF)
 option(SKERRY_WARNINGS_AS_ERRORS "Stop at warnings" OFF)

@@ -20,6 +20,7 @@ struct RankTraffic {
     std::uint64_t exchanges = 0;    // calls of exchange
     std::uint64_t reductions = 0;   // calls of reduce
     std::uint64_t collectives = 0;  // calls of all other collective functions
+    double seconds = 0;             // wall time within these calls, which is mostly waiting [s]
 };
 
 /// The ranks that simulate one world. All ranks call the collective functions in the same order. Only one thread of a

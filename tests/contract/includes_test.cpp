@@ -111,6 +111,7 @@ std::string threading_objection(const std::string& from, const std::string& head
     static const std::regex library("(tbb|oneapi)/.*|omp\\.h|pthread\\.h|future|execution");
     static const std::regex primitive(
         "thread|mutex|shared_mutex|condition_variable|semaphore|latch|barrier|stop_token");
+    if (header == "mpi.h" && from != "jobs/ranks/mpi_ranks.cpp") return "is for jobs/ranks/mpi_ranks.cpp alone";
     if (place_of(from)->floor >= 70 || from.starts_with("jobs/backend_")) return "";
     if (std::regex_match(header, library)) return "is for jobs/backend_*.cpp alone";
     if (std::regex_match(header, primitive) && !from.starts_with("jobs/") && !from.starts_with("engine/live/"))
@@ -193,6 +194,7 @@ TEST_CASE("the test of includes finds planted faults", "[contract]") {
     CHECK(threading_objection("engine/live/a.cpp", "mutex") == "");
     CHECK(threading_objection("engine/live/a.cpp", "future") != "");
     CHECK(threading_objection("jobs/backend_tbb.cpp", "tbb/task_arena.h") == "");
+    CHECK(threading_objection("engine/world/a.cpp", "mpi.h") != "");
     CHECK(include_of("  #  include <omp.h>  // why")->name == "omp.h");
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "tests/ranks/ranks_cases.h"
 #include "tests/ranks/thread_ranks.h"
 
 namespace skerry::test {
@@ -21,23 +22,10 @@ void take_smaller(std::byte* into, const std::byte* from) {
 }
 
 TEST_CASE("ranks that are threads exchange messages and reduce records") {
-    std::vector<double> least(3);
-    std::vector<std::size_t> received(3);
-    run_on_ranks(3, [&](Ranks& ranks) {
-        const auto r = static_cast<std::size_t>(ranks.rank());
-        std::vector<int> peers;
-        for (int other = 0; other < 3; ++other)
-            if (other != ranks.rank()) peers.push_back(other);
-        const std::vector<RankMessage> out(2, RankMessage(r + 1));
-        std::vector<RankMessage> in(2);
-        ranks.exchange(peers, out, in);
-        received[r] = in[0].size() + in[1].size();
-        double mine = 5.0 - ranks.rank();
-        reduce(ranks, mine, take_smaller);
-        least[r] = mine;
-    });
-    CHECK(received == std::vector<std::size_t>{5, 4, 3});
-    CHECK(least == std::vector<double>{3, 3, 3});
+    for (const RanksCase& test : ranks_cases()) {
+        INFO(test.name);
+        CHECK_NOTHROW(run_on_ranks(3, test.run));
+    }
 }
 
 TEST_CASE("ranks that are threads report calls that do not match, and deadlocks") {

@@ -1,0 +1,186 @@
+#include "jobs/ranks/mpi_ranks.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+// The C++ interface that MPI has removed needs another library.
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
+#include <mpi.h>
+
+namespace skerry {
+
+namespace {
+
+/// Adds the wall time of its own life to a sum.
+class Stopclock {
+public:
+    explicit Stopclock(double& seconds) : seconds_(seconds) {}
+    ~Stopclock() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+    Stopclock(const Stopclock&) = delete;
+    Stopclock& operator=(const Stopclock&) = delete;
+
+private:
+    double& seconds_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// MPI passes no argument of the caller to the function that combines two records, so this pointer is global. It is set
+/// during a reduction.
+void (*combine_in_use)(std::byte*, const std::byte*) = nullptr;
+
+/// Function of the type MPI_User_function.
+void combine_records(void* from, void* into, int* count, MPI_Datatype* type) {
+    MPI_Aint begin = 0, size = 0;
+    MPI_Type_get_extent(*type, &begin, &size);
+    for (int i = 0; i < *count; ++i)
+        combine_in_use(static_cast<std::byte*>(into) + i * size, static_cast<const std::byte*>(from) + i * size);
+}
+
+class MpiRanks final : public Ranks {
+public:
+    MpiRanks() {
+        MPI_Comm_dup(MPI_COMM_WORLD, &world_);
+        MPI_Comm_rank(world_, &rank_);
+        MPI_Comm_size(world_, &size_);
+        MPI_Op_create(combine_records, 1, &combine_);
+    }
+    ~MpiRanks() override {
+        if (record_ != MPI_DATATYPE_NULL) MPI_Type_free(&record_);
+        MPI_Op_free(&combine_);
+        MPI_Comm_free(&world_);
+        MPI_Finalize();
+    }
+    MpiRanks(const MpiRanks&) = delete;
+    MpiRanks& operator=(const MpiRanks&) = delete;
+
+    int rank() const override { return rank_; }
+    int size() const override { return size_; }
+    void exchange(std::span<const int> peers, std::span<const RankMessage> out, std::span<RankMessage> in) override {
+        const Stopclock clock(traffic_.seconds);
+        ++traffic_.exchanges;
+        sends_.resize(peers.size());
+        for (std::size_t i = 0; i < peers.size(); ++i) {
+            ++traffic_.messages;
+            traffic_.bytes += out[i].size();
+            MPI_Isend(out[i].data(), length_of(out[i].size(), "a message to rank " + std::to_string(peers[i])),
+                      MPI_BYTE, peers[i], exchange_tag, world_, &sends_[i]);
+        }
+        for (std::size_t i = 0; i < peers.size(); ++i) {
+            MPI_Message message{};
+            MPI_Status status{};
+            int length = 0;
+            MPI_Mprobe(peers[i], exchange_tag, world_, &message, &status);
+            MPI_Get_count(&status, MPI_BYTE, &length);
+            in[i].resize(static_cast<std::size_t>(length));
+            MPI_Mrecv(in[i].data(), length, MPI_BYTE, &message, MPI_STATUS_IGNORE);
+        }
+        MPI_Waitall(static_cast<int>(sends_.size()), sends_.data(), MPI_STATUSES_IGNORE);
+    }
+    void reduce(std::span<std::byte> record, void (*combine)(std::byte*, const std::byte*)) override {
+        const Stopclock clock(traffic_.seconds);
+        ++traffic_.reductions;
+        if (record.size() != record_bytes_) {
+            if (record_ != MPI_DATATYPE_NULL) MPI_Type_free(&record_);
+            record_bytes_ = record.size();
+            MPI_Type_contiguous(length_of(record_bytes_, "a record"), MPI_BYTE, &record_);
+            MPI_Type_commit(&record_);
+        }
+        combine_in_use = combine;
+        MPI_Allreduce(MPI_IN_PLACE, record.data(), 1, record_, combine_, world_);
+    }
+    std::vector<RankMessage> gather_everywhere(std::span<const std::byte> mine) override {
+        const Stopclock clock(traffic_.seconds);
+        ++traffic_.collectives;
+        const int length = length_of(mine.size(), "a gathered message");
+        std::vector<int> lengths(static_cast<std::size_t>(size_)), begins(static_cast<std::size_t>(size_));
+        MPI_Allgather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, world_);
+        std::size_t total = 0;
+        for (std::size_t r = 0; r < lengths.size(); ++r) {
+            begins[r] = length_of(total, "the gathered messages");
+            total += static_cast<std::size_t>(lengths[r]);
+        }
+        RankMessage joined(total);
+        MPI_Allgatherv(mine.data(), length, MPI_BYTE, joined.data(), lengths.data(), begins.data(), MPI_BYTE, world_);
+        std::vector<RankMessage> all;
+        for (std::size_t r = 0; r < lengths.size(); ++r)
+            all.emplace_back(joined.begin() + begins[r], joined.begin() + begins[r] + lengths[r]);
+        return all;
+    }
+    std::vector<RankMessage> gather(std::span<const std::byte> mine) override {
+        const Stopclock clock(traffic_.seconds);
+        ++traffic_.collectives;
+        const std::uint64_t bytes = mine.size();
+        std::vector<std::uint64_t> lengths(rank_ == 0 ? static_cast<std::size_t>(size_) : 0);
+        MPI_Gather(&bytes, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, 0, world_);
+        std::vector<RankMessage> all;
+        if (rank_ == 0) {
+            all.emplace_back(mine.begin(), mine.end());
+            for (int r = 1; r < size_; ++r) {
+                RankMessage& message = all.emplace_back(lengths[static_cast<std::size_t>(r)]);
+                for_each_piece(message.size(), [&](std::size_t begin, int length) {
+                    MPI_Recv(message.data() + begin, length, MPI_BYTE, r, gather_tag, world_, MPI_STATUS_IGNORE);
+                });
+            }
+        } else {
+            for_each_piece(mine.size(), [&](std::size_t begin, int length) {
+                MPI_Send(mine.data() + begin, length, MPI_BYTE, 0, gather_tag, world_);
+            });
+        }
+        return all;
+    }
+    [[noreturn]] void abort(std::string_view message, int code) override {
+        std::cerr << message << std::endl;
+        MPI_Abort(world_, code);
+        std::exit(code);
+    }
+
+private:
+    static constexpr int exchange_tag = 1, gather_tag = 2;
+
+    /// Returns the number of bytes as MPI counts them. Throws std::runtime_error if there are too many.
+    int length_of(std::size_t bytes, const std::string& object) const {
+        constexpr int most = std::numeric_limits<int>::max();
+        if (bytes > most)
+            throw std::runtime_error("rank " + std::to_string(rank_) + ": found " + object + " of " +
+                                     std::to_string(bytes) + " bytes, expected at most " + std::to_string(most) +
+                                     "; use more ranks");
+        return static_cast<int>(bytes);
+    }
+    /// Calls act(begin, length) for pieces of a message of any length.
+    template <class Act>
+    static void for_each_piece(std::size_t bytes, Act act) {
+        constexpr std::size_t longest = std::size_t{1} << 30;  // [bytes]
+        for (std::size_t begin = 0; begin < bytes; begin += longest)
+            act(begin, static_cast<int>(std::min(longest, bytes - begin)));
+    }
+
+    MPI_Comm world_ = MPI_COMM_NULL;
+    int rank_ = 0, size_ = 1;
+    MPI_Op combine_ = MPI_OP_NULL;
+    MPI_Datatype record_ = MPI_DATATYPE_NULL;  // type of the records of the last reduction
+    std::size_t record_bytes_ = 0;
+    std::vector<MPI_Request> sends_;
+};
+
+}  // namespace
+
+std::unique_ptr<Ranks> start_mpi() {
+    // Open MPI then yields the core while it waits. Otherwise a waiting rank takes time from the threads of others.
+    setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
+    int level = MPI_THREAD_SINGLE;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);
+    if (level < MPI_THREAD_SERIALIZED)
+        throw std::runtime_error("MPI: found the thread level " + std::to_string(level) + ", expected at least " +
+                                 std::to_string(MPI_THREAD_SERIALIZED) +
+                                 " (MPI_THREAD_SERIALIZED); use an MPI library with support of threads");
+    return std::make_unique<MpiRanks>();
+}
+
+}  // namespace skerry
