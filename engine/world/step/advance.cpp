@@ -270,6 +270,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const StepOutcome outcome = try_step(world, plan, attempt);
         stiffened += world.scratch.findings.stiffened;  // energy also counts if the attempt is not committed
         note_outcome(outcome, world.record.counters, report);
+        if (outcome == StepOutcome::again_over_ranks &&
+            (world.ranks.all.bodies_missing || world.ranks.all.ghosts_expired))
+            update_ghosts(world);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
             break;

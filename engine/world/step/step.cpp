@@ -5,6 +5,7 @@
 #include "engine/world/step/step.h"
 
 #include "engine/world/kernels.h"
+#include "engine/world/ranks/ghosts.h"
 #include "engine/world/step/seams.h"
 #include "systems/contact/prepare_ties.h"
 #include "systems/contact/separate_regions.h"
@@ -79,6 +80,7 @@ void build_step(WorldState& w) {
     check_end(w, g);
     of_models<&MotionModel::check>(w, g);
     of_laws<&ConstraintLaw::check>(w, g);
+    list_ghost_watch(w, g);
     list_reduction(w, g);
     g.begin_phase("Joined integration, if all checks hold");
     wake(w, g);
