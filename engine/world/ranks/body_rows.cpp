@@ -441,6 +441,7 @@ void move_tables(Model& from, Model& to) {
     to.watch.position = std::move(from.watch.position);
     to.watch.stiffness_sum = std::move(from.watch.stiffness_sum);
     to.watch.step = std::move(from.watch.step);
+    to.watch.first_piece.clear();
 }
 
 /// Lets the handles of a table refer to its present rows. Handles of absent rows keep their slots. `slot`: by row.

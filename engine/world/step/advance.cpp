@@ -262,7 +262,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             attempt.slow_enough = step_of_turns(model, attempt.slow_enough, attempt.fastest);
         const Real within = left_in_long_step(model, left, clock.long_step);
         const StepPlan plan = plan_step(model, within, attempt.at_most());
-        store_shapes(*world.executor, model, steps_per_round(world), world.scratch.watch_pieces);
+        if (model.watch.first_piece.empty()) count_pieces(world);
+        store_shapes(*world.executor, model, steps_per_round(world));
         world.query_trees.forget();
         if (leapfrog) drift(plan.h / 2);
         const Real start = clock.time;
