@@ -12,7 +12,7 @@
 #include "components/union_find.h"
 #include "engine/world/ranks/rank_findings.h"
 #include "engine/world/ranks/regions/rank_mail.h"
-#include "engine/world/ranks/whole_world.h"
+#include "engine/world/ranks/hold/whole_world.h"
 #include "jobs/ranks/ranks.h"
 
 namespace skerry {

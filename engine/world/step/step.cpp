@@ -5,7 +5,7 @@
 #include "engine/world/step/step.h"
 
 #include "engine/world/kernels.h"
-#include "engine/world/ranks/ghosts.h"
+#include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/seams.h"
 #include "systems/contact/prepare_ties.h"
 #include "systems/contact/separate_regions.h"
