@@ -194,12 +194,11 @@ private:
         const std::span<const Vec3> deforming =
             rows_of(std::span<const Vec3>(out_.deforming_impulse), rows_.body_implicit[static_cast<std::size_t>(body)]);
         const auto is_zero = [](const Vec3& impulse) { return impulse == Vec3::Zero(); };
-        regions_.mail.put(
-            peer, MailedBody{bodies_.place[static_cast<std::size_t>(body)],
-                             static_cast<Index>(deforming.size()) -
-                                 static_cast<Index>(std::ranges::count_if(deforming, is_zero)),
-                             out_.contact_impulse[frame], out_.contact_moment[frame], out_.push_velocity[frame],
-                             out_.push_spin[frame]});
+        regions_.mail.put(peer, MailedBody{bodies_.place[static_cast<std::size_t>(body)],
+                                           static_cast<Index>(deforming.size()) -
+                                               static_cast<Index>(std::ranges::count_if(deforming, is_zero)),
+                                           out_.contact_impulse[frame], out_.contact_moment[frame],
+                                           out_.push_velocity[frame], out_.push_spin[frame]});
         for (std::size_t n = 0; n < deforming.size(); ++n)
             if (!is_zero(deforming[n])) regions_.mail.put(peer, MailedDeformation{static_cast<Index>(n), deforming[n]});
     }
@@ -211,7 +210,8 @@ private:
             for (std::size_t c = 0; c < regions_.found.size(); ++c)
                 if (regions_.solved_row[c] == -1 - static_cast<Index>(peer))
                     regions_.found.impulse[c] = reader.take<Vec3>();
-        for (MailedNode mail = reader.take<MailedNode>(); mail.name.body != no_index; mail = reader.take<MailedNode>()) {
+        for (MailedNode mail = reader.take<MailedNode>(); mail.name.body != no_index;
+             mail = reader.take<MailedNode>()) {
             const Index node = bodies_.node_of(mail.name);
             out_.velocity_next[node] = mail.velocity;
             out_.push_out[node] = mail.push;
