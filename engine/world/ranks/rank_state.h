@@ -10,6 +10,7 @@
 #include "components/column.h"
 #include "components/types.h"
 #include "components/union_find.h"
+#include "engine/world/ranks/hold/whole_world.h"
 #include "engine/world/ranks/rank_findings.h"
 #include "engine/world/ranks/regions/rank_mail.h"
 #include "engine/world/step/balance.h"
@@ -51,8 +52,8 @@ struct RankSleep {
     Column<SetMember> members;             // of the sets that this rank has found
     // By place, and by set of one rank: a node of `joined`, or no_index
     Column<Index> node_of_place, node_of_set;
-    Column<std::uint8_t> restless;         // by node of `joined`
-    UnionFind joined;                      // sets of all ranks, joined where they share a body
+    Column<std::uint8_t> restless;  // by node of `joined`
+    UnionFind joined;               // sets of all ranks, joined where they share a body
 };
 
 /// A body that a rank must hold to solve a region.
@@ -64,9 +65,9 @@ struct BodyRequest {
 /// Rounds in which ranks exchange the labels of their regions (docs/methods/ranks.md 3).
 struct LabelRounds {
     static constexpr int least = 2;
-    int count = least;    // number of rounds in each attempt at a step, equal on all ranks
-    int needed = least;   // greatest number of rounds that a step has needed since the last check
-    int steps = 0;        // number of steps since the last check
+    int count = least;   // number of rounds in each attempt at a step, equal on all ranks
+    int needed = least;  // greatest number of rounds that a step has needed since the last check
+    int steps = 0;       // number of steps since the last check
 
     /// Adds the number of rounds that an attempt has needed. More than `count`: the number is not known. Too few rounds
     /// are doubled at once; every 500 steps the number falls to the greatest number that was needed.
@@ -105,9 +106,14 @@ struct RankState {
     std::vector<std::vector<int>> holders;
     // For each row of BodyTable: place of the body, its row in the undivided world. The places ascend.
     Column<Index> place;
+    // For each row of BodyTable: SearchMemory::body_travel_bound at which the body leaves the box that was used to find
+    // its holders [m].
+    Column<Real> travel_limit;
+    WholeWorld whole;  // empty if `ranks` is null
     // For each place: number of pieces of the stable-step checks of all bodies before it (count_pieces).
     Column<std::uint64_t> pieces_before;
-    // For each row of BodyTable: 1 if this rank sends the predicted velocities of the body to its holders (note_ghosts).
+    // For each row of BodyTable: 1 if this rank sends the predicted velocities of the body to its holders
+    // (note_ghosts).
     Column<std::uint8_t> leads;
     RankChannel channel;
     PredictionMail predictions;
@@ -115,8 +121,9 @@ struct RankState {
     RankShare share;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
-    RankFindings mine;  // findings of this rank in this attempt at a step; complete when reduce_findings runs
-    RankFindings all;   // combined findings of all ranks in this attempt at a step
+    Column<Index> stale;  // places of own bodies whose copies on other ranks have lost their validity
+    RankFindings mine;   // findings of this rank in this attempt at a step; complete when reduce_findings runs
+    RankFindings all;    // combined findings of all ranks in this attempt at a step
     bool stops = false;  // true if a callback of this rank has asked to end the present call of World::advance
 
     bool on() const { return ranks != nullptr; }

@@ -8,6 +8,7 @@
 #include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/kernels.h"
+#include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/step.h"
 #include "jobs/arithmetic_scope.h"
 
@@ -292,6 +293,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const StepOutcome outcome = try_step(world, plan, attempt);
         stiffened += world.scratch.findings.stiffened;  // energy also counts if the attempt is not committed
         note_outcome(outcome, world.record.counters, report);
+        if (outcome == StepOutcome::again_over_ranks &&
+            (world.ranks.all.bodies_missing || world.ranks.all.ghosts_expired))
+            update_ghosts(world);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
             break;

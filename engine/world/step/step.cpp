@@ -5,6 +5,7 @@
 #include "engine/world/step/step.h"
 
 #include "engine/world/kernels.h"
+#include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/seams.h"
 #include "systems/contact/prepare_ties.h"
 #include "systems/contact/separate_regions.h"
@@ -80,6 +81,7 @@ void build_step(WorldState& w) {
     check_end(w, g);
     of_models<&MotionModel::check>(w, g);
     of_laws<&ConstraintLaw::check>(w, g);
+    list_ghost_watch(w, g);
     list_wakes(w, g);
     list_reduction(w, g);
     g.begin_phase("Joined integration, if all checks hold");
@@ -96,7 +98,10 @@ void build_step(WorldState& w) {
 void list_step_again(WorldState& w) {
     const CrossingTable& crossings = w.cache.crossings;
     w.ranks.channel.ranks = w.ranks.ranks;
-    w.ranks.share = {.balance = {}, .tested = crossings.tested, .hits = crossings.hits, .let_through = crossings.let_through};
+    w.ranks.share = {.balance = {},
+                     .tested = crossings.tested,
+                     .hits = crossings.hits,
+                     .let_through = crossings.let_through};
     w.graph = TaskGraph();
     w.graph.track(&w, sizeof w, name_of_column);
     build_step(w);
