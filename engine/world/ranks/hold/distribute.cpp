@@ -58,7 +58,7 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
     for (std::size_t b = 0; b < moves.size(); ++b)
         kept.push_back(!moves[b] || std::ranges::binary_search(whole.holders[b], mine.rank));
     replace_rows(state, kept, {}, [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == mine.rank; });
-    note_holders(mine, model.bodies, extents);
+    note_holders(mine, extents);
     note_ghosts(state);
     list_step_again(state);
 }
