@@ -84,7 +84,9 @@ void hold_everywhere(World& world, Ranks& ranks) {
         const auto unit = static_cast<std::size_t>(units.root(static_cast<Index>(b)));
         mine.owner.push_back(moves ? static_cast<int>(bodies.slot[unit]) % ranks.size() : ranks.rank());
         mine.holders.push_back(moves ? all : std::vector<int>{});
+        mine.place.push_back(static_cast<Index>(b));
     }
+    list_step_again(state);
 }
 
 std::vector<std::uint64_t> hashes_everywhere(int count, const std::function<World()>& make,

@@ -57,8 +57,10 @@ void list_crossings(WorldState& w, TaskGraph& g) {
                         read(n.push_out), make(w.cache.pairs), make(w.cache.crossings), if_possible(w));
 }
 
-void list_warm_start(WorldState& w, TaskGraph& g) {
+void list_memory(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
+    const auto if_found = only_if([](std::size_t count) { return count > 0; }, read(w.cache.crossings.found_count));
+    g.stage("collision/use_crossings", use_crossings, make(w.cache.pairs), make(w.cache.crossings), if_found);
     ContactTable& c = w.scratch.contacts;
     const StepParameters& p = w.scratch.parameters;
     g.stage("contact/store_warm_start", store_warm_start, inputs<ContactsDone>(c, m.rigid_bodies), value(p.kick),
@@ -71,6 +73,6 @@ void list_warm_start(WorldState& w, TaskGraph& g) {
 }  // namespace
 
 constinit const ConstraintLaw contact_law{
-    .find = list_search, .measure = list_contact_measures, .check = list_crossings, .remember = list_warm_start};
+    .find = list_search, .measure = list_contact_measures, .check = list_crossings, .remember = list_memory};
 
 }  // namespace skerry
