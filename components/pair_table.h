@@ -184,6 +184,7 @@ struct FoundPair {
 struct CrossingTable {
     Column<ContactRow> row;  // contacts of the features that crossed, in key order; empty once the step is committed
     std::vector<Column<ContactRow>> found;  // by block of find_contacts: crossings found in the last attempt
+    std::size_t found_count = 0;            // number of rows of `found`
     Column<ContactRow> merged;              // working memory
     // True: if a pair moves further than its candidate list is valid for, the list is extended. False: the step is
     // rejected.

@@ -271,6 +271,7 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
                      CrossingTable& crossings) {
     const std::size_t blocks = pairs.block.size() > 0 ? pairs.block.size() - 1 : 0;
     crossings.beyond_lists = false;
+    crossings.found_count = 0;
     if (!settings.continuous) return 0;
     Index hopeless = 0;
     const StepMotion motion{velocity_next, push_out, h};
@@ -290,19 +291,19 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
             tested += test_block(inputs, settings.use_budgets, motion, pairs, b, crossings.row, crossings.found[b]);
     });
     crossings.tested += tested;
-    std::size_t hits = 0;
-    for (const auto& found : crossings.found) hits += found.size();
+    for (const auto& found : crossings.found) crossings.found_count += found.size();
+    return crossings.last_try ? 0 : static_cast<Index>(crossings.found_count) + hopeless;
+}
+
+void use_crossings(PairTable& pairs, CrossingTable& crossings) {
     if (crossings.last_try) {
         let_through(crossings, pairs);
-        crossings.let_through += hits;
-        return 0;
+        crossings.let_through += crossings.found_count;
+        return;
     }
-    crossings.hits += hits;
-    if (hits > 0) {
-        merge_rows(crossings.found, crossings.row, true, crossings.merged);
-        crossings.row.swap(crossings.merged);
-    }
-    return static_cast<Index>(hits) + hopeless;
+    crossings.hits += crossings.found_count;
+    merge_rows(crossings.found, crossings.row, true, crossings.merged);
+    crossings.row.swap(crossings.merged);
 }
 
 }  // namespace skerry

@@ -102,9 +102,23 @@ struct NamedHandles : HandleMap<HandleType> {
     std::map<HandleType, std::string> names;
 };
 
+/// Properties of the bodies of all ranks on which the length of a step depends, as of the last reduction
+/// (reduce_limits). Without ranks it limits nothing.
+struct LimitsOfRanks {
+    Real stable_step = infinity;  // shortest stable step [s]
+    Real rest_step = infinity;    // shortest stable step at rest of a body with elements [s]
+    Real spin = 0;                // greatest angular speed of a body with a joint or tie [rad/s]
+    bool has_frames = false;      // true if some body is rigid or implicit
+    bool has_implicit = false;    // true if some body is implicit
+    bool has_clusters = false;    // true if some body has clusters
+    // true if stable steps depend on positions, or joints or ties limit rotation, so that each step needs a reduction
+    bool moves = false;
+};
+
 struct Model {
     Settings settings;
     Tuning tuning;
+    LimitsOfRanks of_ranks;
 
     NodeTable nodes;
     NodeBlockTable node_blocks;

@@ -9,7 +9,9 @@
 #include "components/joint_table.h"
 #include "components/region_table.h"
 #include "components/tie_table.h"
+#include "engine/world/ranks/regions/rank_regions.h"
 #include "engine/world/tuning.h"
+#include "skerry/report.h"
 #include "skerry/settings.h"
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/contact/keep_resting_contacts.h"
@@ -137,6 +139,8 @@ struct StepScratch {
     TieRowTable ties;
     CableBlockTable cables;
     RegionTable regions;
+    RankRegions rank_regions;  // empty if this process simulates the whole world
+    RunCounters counters;     // counters of the last committed step alone (count_step)
     Real awake_mass = 0;      // mass of bodies that are awake at the start of the step [kg]
     bool ran_inline = false;  // true if all stages ran on the calling thread
     bool left_out = false;    // true if no stage ran, since nothing moves

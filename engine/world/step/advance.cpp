@@ -19,7 +19,7 @@ namespace {
 /// the body deforms. The stable step in use is never older than two rounds. With clusters the rounds are shorter,
 /// because steps are several times longer and explicit elements deform more in each step.
 std::uint64_t steps_per_round(const WorldState& world) {
-    return world.model.clusters.empty() ? 128u : 64u;
+    return world.model.clusters.empty() && !world.model.of_ranks.has_clusters ? 128u : 64u;
 }
 
 /// Counts a step of the present round. At the end of a round, the newly evaluated stable steps replace the old ones.
@@ -31,6 +31,7 @@ bool keep_watch(WorldState& world) {
     // The clusters must be updated first, because stable steps depend on them.
     world.record.balance.work += follow_stiffening(world.model);
     world.record.balance.work += use_evaluated_steps(world.model, world.scratch.stiffness_sum);
+    reduce_limits(world);
     watch.second = !watch.second;
     return !watch.second;
 }
@@ -45,8 +46,8 @@ AttemptLimits limits_of_first_attempt(WorldState& world) {
     CheckInputs state = CheckInputs::bind(Binder(), model.node_blocks, model.bodies, model.nodes, model.tetrahedra,
                                           model.elements, model.element_nodes, pushed);
     state.velocity_next = model.nodes.velocity;
-    const StrainRate fastest =
-        kernels().strain_rate(*world.executor, state, max_strain_step / longest, world.scratch.beside_fast);
+    const StrainRate fastest = fastest_of_ranks(
+        world, kernels().strain_rate(*world.executor, state, max_strain_step / longest, world.scratch.beside_fast));
     return {.slow_enough = slow_enough(fastest, max_strain_step, longest), .fastest = fastest.body};
 }
 
@@ -81,21 +82,17 @@ void blame(const WorldState& world, StepReport& report) {
     if (verdict.tetrahedron != no_index) report.element = world.model.user_tetrahedron(b, verdict.tetrahedron);
 }
 
-void add_to_report(const WorldState& world, StepReport& report) {
-    const RegionTable& regions = world.scratch.regions;
-    report.contacts = static_cast<Index>(world.scratch.contacts.size());
-    report.regions = static_cast<Index>(regions.size());
-    report.largest_region = 0;
-    for (std::size_t r = 0; r < regions.size(); ++r) {
-        report.largest_region =
-            std::max(report.largest_region, regions.contacts.offset[r + 1] - regions.contacts.offset[r]);
-        report.unconverged += regions.status[r] == RegionStatus::iteration_limit;
-        if (!(regions.error[r] > report.worst_error)) continue;
-        report.worst_error = regions.error[r];
-        report.worst_region = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
+void add_to_report(const RunCounters& step, StepReport& report) {
+    report.contacts = static_cast<Index>(step.contact_sum);
+    report.regions = static_cast<Index>(step.solved);
+    report.largest_region = step.largest_region;
+    report.unconverged += static_cast<Index>(step.unconverged);
+    if (step.worst_error > report.worst_error) {
+        report.worst_error = step.worst_error;
+        report.worst_region = step.worst_region;
     }
-    report.max_penetration = std::max(report.max_penetration, world.scratch.findings.measures.max_penetration);
-    report.max_gap_violation = std::max(report.max_gap_violation, world.scratch.findings.measures.max_gap_violation);
+    report.max_penetration = std::max(report.max_penetration, step.max_penetration);
+    report.max_gap_violation = std::max(report.max_gap_violation, step.max_gap_violation);
     ++report.steps;
 }
 
@@ -206,6 +203,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     world.settle();
     note_changed_seams(model);
     settle_clusters(model, world.scratch.stiffness_sum);
+    reduce_limits(world);
     require_countable(model, dt);
     StepReport report;
     const Real end = clock.time + dt;
@@ -232,6 +230,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             return false;
         }
     };
+    bool& stops = world.ranks.stops;  // true if a callback has asked to end the call
+    stops = world.ranks.all.stop = false;
     world.transaction.begin_call(model, clock);
     ForceLedger& forces = world.record.forces;
     const Real step_before = clock.step_before;
@@ -242,11 +242,14 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         if (forces.on() && seconds != 0) forces.add_drift(model, seconds, world.scratch);
     };
     while (left > 0) {
-        if (go_on && !call_back([&] { return go_on(std::as_const(report)); })) {
+        if (go_on && !call_back([&] { return go_on(std::as_const(report)); })) stops = true;
+        // Ranks learn in a step that one of them stops, and end the call together after it.
+        if (world.ranks.on() ? world.ranks.all.stop : stops) {
             report.status = StepStatus::stopped;
             break;
         }
         if (model.force_rate_moves) note_force_rates(model);
+        if (model.of_ranks.moves) reduce_limits(world);
         Index stiffest = no_index;
         const Real trusted = trusted_step(model, &stiffest);
         if (!(std::min(trusted, attempt.at_most()) > std::numeric_limits<Real>::epsilon() * end)) {
@@ -277,7 +280,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         world.drawn_behind = world.scratch.parameters.draws_late;
         if (world.scratch.findings.rest.bodies > 0) world.draw(true);
         if (world.scratch.findings.released_ties > 0) release_ties(world);
-        add_to_report(world, report);
+        add_to_report(world.scratch.counters, report);
         note_held(held_in_shapes(world, report.steps == 1), world, report);
         note_inversions(world, report);
         note_limit(world, report);
@@ -299,7 +302,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             if (world.record.step_watch) world.record.step_watch(std::as_const(report));
             return true;
         });
-        if (!heard) break;
+        stops |= !heard;
+        if (!heard && !world.ranks.on()) break;
     }
     clock.long_step = {};                // at the end of a call, implicit bodies have reached the present time
     world.cache.search.end_step(false);  // only has an effect if the last attempt was not committed

@@ -1,4 +1,4 @@
-// Adds a committed step to the counters of the run.
+// Counts the contacts and regions of a step for the counters of the run.
 #include <algorithm>
 
 #include "engine/world/step/step.h"
@@ -29,51 +29,77 @@ void count_shortcuts(const RegionTable& regions, RunCounters& counters) {
         unconverged += regions.status[r] == RegionStatus::iteration_limit;
         largest = std::max(largest, size);
     }
-    counters.closed_form += closed_form;
-    counters.certified += certified;
-    counters.separating += separating;
-    counters.frictionless += frictionless;
-    counters.in_lanes += in_lanes;
-    counters.swept += swept;
-    counters.contact_steps += contact_steps;
-    counters.iteration_sum += iterations;
-    counters.unconverged += unconverged;
+    counters.closed_form = closed_form;
+    counters.certified = certified;
+    counters.separating = separating;
+    counters.frictionless = frictionless;
+    counters.in_lanes = in_lanes;
+    counters.swept = swept;
+    counters.contact_steps = contact_steps;
+    counters.iteration_sum = iterations;
+    counters.unconverged = unconverged;
     counters.largest_region = largest;
+}
+
+/// Takes over the error of a region if it is larger, or equal and of a larger region.
+void note_error(Real error, Index region, RunCounters& counters) {
+    if (error < counters.worst_error || (error == counters.worst_error && region <= counters.worst_region)) return;
+    counters.worst_error = error;
+    counters.worst_region = region;
 }
 
 }  // namespace
 
-void count_step(const StepScratch& scratch, RunCounters& counters) {
-    const RegionTable& regions = scratch.regions;
-    const StepFindings& findings = scratch.findings;
-    const auto contact_count = static_cast<Index>(scratch.contacts.size());
-    const auto region_count = static_cast<Index>(regions.size());
-    if (counters.steps++ == 0) {
-        counters.start_penetration = findings.measures.max_penetration;
-        counters.start_gap_violation = findings.measures.max_gap_violation;
-    }
-    counters.contact_sum += static_cast<std::uint64_t>(contact_count);
-    counters.solved += static_cast<std::uint64_t>(region_count);
-    counters.max_contacts = std::max(counters.max_contacts, contact_count);
-    counters.max_regions = std::max(counters.max_regions, region_count);
+RunCounters count_step(const ContactTable& contacts, const RegionTable& regions, const ContactMeasures& measures,
+                       const NewtonCounts& newton, Index unstrained) {
+    RunCounters counters;
+    counters.steps = 1;
+    counters.contact_sum = contacts.size();
+    counters.solved = regions.size();
     count_shortcuts(regions, counters);
-    for (std::size_t r = 0; r < regions.size(); ++r) {
-        if (!(regions.error[r] > counters.worst_error)) continue;
-        counters.worst_error = regions.error[r];
-        counters.worst_region = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
+    for (std::size_t r = 0; r < regions.size(); ++r)
+        if (regions.error[r] > 0)
+            note_error(regions.error[r], regions.contacts.offset[r + 1] - regions.contacts.offset[r], counters);
+    counters.large_strain_steps = newton.solved;
+    counters.newton_steps = newton.steps;
+    counters.tangent_factors = newton.factors;
+    counters.unstrained = static_cast<std::uint64_t>(unstrained);
+    counters.max_penetration = measures.max_penetration;
+    counters.max_gap_violation = measures.max_gap_violation;
+    return counters;
+}
+
+void add_counters(const RunCounters& from, RunCounters& into) {
+    constexpr std::uint64_t RunCounters::*sums[] = {
+        &RunCounters::steps,        &RunCounters::inline_steps, &RunCounters::resting_steps,
+        &RunCounters::unstrained,   &RunCounters::contact_sum,  &RunCounters::iteration_sum,
+        &RunCounters::solved,       &RunCounters::unconverged,  &RunCounters::certified,
+        &RunCounters::closed_form,  &RunCounters::separating,   &RunCounters::frictionless,
+        &RunCounters::in_lanes,     &RunCounters::swept,        &RunCounters::contact_steps,
+        &RunCounters::newton_steps, &RunCounters::tangent_factors, &RunCounters::large_strain_steps};
+    for (const auto sum : sums) into.*sum += from.*sum;
+    into.max_contacts = std::max(into.max_contacts, from.max_contacts);
+    into.max_regions = std::max(into.max_regions, from.max_regions);
+    into.largest_region = std::max(into.largest_region, from.largest_region);
+    note_error(from.worst_error, from.worst_region, into);
+    into.max_penetration = std::max(into.max_penetration, from.max_penetration);
+    into.max_gap_violation = std::max(into.max_gap_violation, from.max_gap_violation);
+}
+
+void count_committed_step(const RunCounters& step, RunCounters& run) {
+    if (run.steps == 0) {
+        run.start_penetration = step.max_penetration;
+        run.start_gap_violation = step.max_gap_violation;
     }
-    counters.large_strain_steps += findings.strained.newton.solved;
-    counters.newton_steps += findings.strained.newton.steps;
-    counters.tangent_factors += findings.strained.newton.factors;
-    counters.inline_steps += scratch.ran_inline;
-    counters.resting_steps += scratch.left_out;
-    counters.unstrained += static_cast<std::uint64_t>(findings.unstrained);
-    counters.dissipated += findings.measures.dissipated + findings.damped + findings.strained.damped +
-                           findings.relaxed + findings.viscous + findings.plastic + findings.rest.energy +
-                           findings.springs.dissipated + findings.cables.dissipated;
-    counters.plastic_work += findings.plastic;
-    counters.max_penetration = std::max(counters.max_penetration, findings.measures.max_penetration);
-    counters.max_gap_violation = std::max(counters.max_gap_violation, findings.measures.max_gap_violation);
+    run.max_contacts = std::max(run.max_contacts, static_cast<Index>(step.contact_sum));
+    run.max_regions = std::max(run.max_regions, static_cast<Index>(step.solved));
+    add_counters(step, run);
+}
+
+Real dissipated_in(const StepFindings& findings) {
+    return findings.measures.dissipated + findings.damped + findings.strained.damped + findings.relaxed +
+           findings.viscous + findings.plastic + findings.rest.energy + findings.springs.dissipated +
+           findings.cables.dissipated;
 }
 
 }  // namespace skerry

@@ -8,30 +8,38 @@
 
 namespace skerry {
 
+Real fastest_spin(const Model& model, Index* body) {
+    const RigidBodyTable& rigid = model.rigid_bodies;
+    Real fastest = 0;
+    const auto take = [&](Index of) {
+        if (of == no_index || !model.has_frame(static_cast<std::size_t>(of))) return;
+        const auto r = static_cast<std::size_t>(model.bodies.rigid[static_cast<std::size_t>(of)].begin);
+        const Real spin = spin_of(rigid.rotation[r], rigid.moments[r], rigid.angular_momentum[r]).norm();
+        if (!(spin > fastest)) return;
+        fastest = spin;
+        if (body) *body = of;
+    };
+    for (std::size_t j = 0; j < model.joints.slot.size(); ++j) {
+        take(model.joints.first[j]);
+        take(model.joints.second[j]);
+    }
+    for (std::size_t t = 0; t < model.ties.size(); ++t) {
+        if (!model.ties.holds(t)) continue;
+        take(model.ties.first[t]);
+        take(model.ties.second[t]);
+    }
+    return fastest;
+}
+
 Real step_of_turns(const Model& model, Real shorter_than, Index& fastest) {
     // Largest rotation of a body with a joint or tie in a step [rad]. Joints and ties keep their directions of the
     // start of a step during the step. The resulting errors of energy and position grow with the angle of rotation.
     constexpr Real largest_turn = 0.1;
-    const RigidBodyTable& rigid = model.rigid_bodies;
-    Real step = shorter_than;
-    const auto limit_by = [&](Index body) {
-        if (body == no_index || !model.has_frame(static_cast<std::size_t>(body))) return;
-        const auto r = static_cast<std::size_t>(model.bodies.rigid[static_cast<std::size_t>(body)].begin);
-        const Real spin = spin_of(rigid.rotation[r], rigid.moments[r], rigid.angular_momentum[r]).norm();
-        if (!(spin * step > largest_turn)) return;
-        step = largest_turn / spin;
-        fastest = body;
-    };
-    for (std::size_t j = 0; j < model.joints.slot.size(); ++j) {
-        limit_by(model.joints.first[j]);
-        limit_by(model.joints.second[j]);
-    }
-    for (std::size_t t = 0; t < model.ties.size(); ++t) {
-        if (!model.ties.holds(t)) continue;
-        limit_by(model.ties.first[t]);
-        limit_by(model.ties.second[t]);
-    }
-    return step;
+    Index body = no_index;
+    const Real spin = std::max(fastest_spin(model, &body), model.of_ranks.spin);
+    if (!(spin * shorter_than > largest_turn)) return shorter_than;
+    fastest = body;
+    return largest_turn / spin;
 }
 
 StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
@@ -67,7 +75,8 @@ bool forces_follow_implicit_bodies(const Model& model) {
 }  // namespace
 
 Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
-    if (!(model.settings.implicit_step > 0) || model.implicit_nodes.size() == 0) return left;
+    if (!(model.settings.implicit_step > 0)) return left;
+    if (model.implicit_nodes.size() == 0 && !model.of_ranks.has_implicit) return left;
     if (clock.length == 0) {
         if (forces_follow_implicit_bodies(model)) return left;
         // The tolerance prevents an extra long step for a remaining time that is only a rounding error.

@@ -58,19 +58,23 @@ Real stable_step(const Model& model, Index* body) {
         smallest = step;
         if (body) *body = static_cast<Index>(b);
     }
+    if (model.of_ranks.stable_step < smallest) {
+        smallest = model.of_ranks.stable_step;
+        if (body) *body = no_index;
+    }
     return smallest;
 }
 
 Real reported_step(const Model& model, Index* body) {
     const Real stable = stable_step(model, body);
-    return model.rigid_bodies.size() > 0 && std::isinf(stable) ? trusted_step(model) : stable;
+    return (model.rigid_bodies.size() > 0 || model.of_ranks.has_frames) && std::isinf(stable) ? trusted_step(model) : stable;
 }
 
 Real trusted_step(const Model& model, Index* body) {
     const Real stable = stable_step(model, body) * model.tuning.step_safety;
-    Real wanted = model.rigid_bodies.size() > 0 ? step_of_rigid_bodies : stable;
+    Real wanted = model.rigid_bodies.size() > 0 || model.of_ranks.has_frames ? step_of_rigid_bodies : stable;
     if (model.settings.step_size) wanted = *model.settings.step_size;
-    if (model.settings.implicit_step > 0 && model.implicit_nodes.size() > 0)
+    if (model.settings.implicit_step > 0 && (model.implicit_nodes.size() > 0 || model.of_ranks.has_implicit))
         wanted = std::min(wanted, model.settings.implicit_step);
     return std::min(stable, wanted);
 }
@@ -130,7 +134,8 @@ namespace {
 /// Stores newly evaluated stable steps, body by body. Makes elements implicit where clusters reduce the computing time.
 class LooksTaken {
 public:
-    LooksTaken(Model& model, Column<Real>& stiffness_sum) : model_(model), stiffness_sum_(stiffness_sum) {
+    LooksTaken(Model& model, Column<Real>& stiffness_sum)
+        : model_(model), stiffness_sum_(stiffness_sum), goal_(model.of_ranks.rest_step) {
         const BodyTable& bodies = model.bodies;
         for (std::size_t b = 0; b < bodies.slot.size(); ++b)
             if (bodies.blocks[b].size() > 0) goal_ = std::min(goal_, bodies.rest_step[b]);
@@ -168,7 +173,7 @@ public:
 private:
     Model& model_;
     Column<Real>& stiffness_sum_;
-    Real goal_ = infinity;    // shortest stable step at rest among all bodies [s]
+    Real goal_;               // shortest stable step at rest among all bodies [s]
     Real energy_before_ = 0;  // J
     // for each body, nonzero if its implicit elements have changed; empty: no body has changed
     std::vector<std::uint8_t> changed_;

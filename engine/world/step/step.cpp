@@ -79,6 +79,7 @@ void build_step(WorldState& w) {
     check_end(w, g);
     of_models<&MotionModel::check>(w, g);
     of_laws<&ConstraintLaw::check>(w, g);
+    list_reduction(w, g);
     g.begin_phase("Joined integration, if all checks hold");
     wake(w, g);
     of_models<&MotionModel::integrate>(w, g);
@@ -88,6 +89,13 @@ void build_step(WorldState& w) {
     keep_forces(w, g);
     of_laws<&ConstraintLaw::remember>(w, g);
     g.compile();
+}
+
+void list_step_again(WorldState& w) {
+    w.ranks.channel.ranks = w.ranks.ranks;
+    w.graph = TaskGraph();
+    w.graph.track(&w, sizeof w, name_of_column);
+    build_step(w);
 }
 
 namespace {
@@ -130,7 +138,8 @@ void separate(WorldState& w, TaskGraph& g) {
             write(w.scratch.driven), if_sleepy(w));
     of_forces<&ForceElement::mark_driven>(w, g);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
-            inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints, w.scratch.cables),
+            inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints, w.scratch.cables,
+                               w.scratch.rank_regions.elsewhere),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
 }
 
@@ -147,6 +156,7 @@ void solve(WorldState& w, TaskGraph& g) {
                                  m.rigid_bodies, m.implicit_nodes, s.coupling, s.joints, s.cables, m.surface_sets),
             value(p.solver), value(p.h), make(s.solver_memory), make(s.regions),
             outputs<RegionOutputs>(s.contacts, n, m.rigid_bodies, m.implicit_nodes, s.joints, s.cables));
+    list_result_exchange(w, g);
 }
 
 /// Lists the stages that sum contact and attachment forces, if a user requested them.

@@ -9,11 +9,43 @@ namespace skerry {
 
 /// Lists the stages of the step. The task graph derives its edges from the data that the stages read and write.
 void build_step(WorldState& world);
+/// Lists the stages again. Must be called after RankState::ranks was changed.
+void list_step_again(WorldState& world);
 
 // count_step.cpp
 
+/// Counters of a step alone, after the solve. Sums of energy are zero. `unstrained`: see StepFindings.
+RunCounters count_step(const ContactTable& contacts, const RegionTable& regions, const ContactMeasures& measures,
+                       const NewtonCounts& newton, Index unstrained);
+/// Adds the sums of `from` to those of `into`, except for sums of energy, and takes over maxima.
+void add_counters(const RunCounters& from, RunCounters& into);
 /// Adds a committed step to the counters of the run.
-void count_step(const StepScratch& scratch, RunCounters& counters);
+void count_committed_step(const RunCounters& step, RunCounters& run);
+/// Energy that a step dissipated [J].
+Real dissipated_in(const StepFindings& findings);
+
+// ranks/reduce_findings.cpp
+
+/// Lists the stage that combines the findings of all ranks. It has no stage if this process simulates the whole world.
+void list_reduction(WorldState& world, TaskGraph& graph);
+/// Makes all ranks agree, before the stages run, on StepScratch::left_out and on a body that is too far from the
+/// origin. Communicates only if the last attempt has found that either is possible. Without ranks it does nothing.
+void agree_to_start(WorldState& world);
+
+// ranks/reduce_limits.cpp
+
+/// Combines Model::of_ranks of all ranks. Without ranks it does nothing.
+void reduce_limits(WorldState& world);
+/// Returns the fastest deformation of all ranks. Without ranks it returns `mine`.
+StrainRate fastest_of_ranks(WorldState& world, const StrainRate& mine);
+
+// ranks/regions
+
+/// The next functions list the stages in which ranks exchange contacts and results of regions that cross their borders.
+/// They list nothing if this process simulates the whole world.
+void list_row_exchange(WorldState& world, TaskGraph& graph);
+void list_result_exchange(WorldState& world, TaskGraph& graph);
+void list_rows_taken_back(WorldState& world, TaskGraph& graph);
 
 // held_depth.cpp
 
@@ -115,6 +147,8 @@ struct StepPlan {
 };
 /// Plans the next step of an interval that ends in `left` seconds. The step is at most `fast_limit` seconds long.
 StepPlan plan_step(const Model& model, Real left, Real fast_limit);
+/// Greatest angular speed of a body with a joint or tie [rad/s]. `body`: set to the row of this body in BodyTable.
+Real fastest_spin(const Model& model, Index* body = nullptr);
 /// Longest step in which no body with a joint rotates by more than a small angle [s]. `fastest`: set to the row in
 /// BodyTable of the fastest of these bodies if this step is shorter than `shorter_than`.
 Real step_of_turns(const Model& model, Real shorter_than, Index& fastest);

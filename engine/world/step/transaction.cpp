@@ -92,11 +92,11 @@ bool run_stages(WorldState& world) {
     }
     scratch.awake_mass = model.note_rest();
     scratch.left_out = nothing_moves(world);
-    if (!scratch.left_out) {
+    if (!scratch.left_out || world.ranks.on())
         scratch.findings.verdict =
             check_distance(*world.executor, model.nodes.position, model.bodies.nodes, model.bodies.mean_edge);
-        if (scratch.findings.verdict.fault != StepFault::none) return false;
-    }
+    agree_to_start(world);
+    if (scratch.findings.verdict.fault != StepFault::none) return false;
     scratch.pressed.clear();
     const bool drivable =
         scratch.parameters.sleep.on() && (model.forced || model.joints.size() > 0 || model.ties.size() > 0);
@@ -154,6 +154,18 @@ void forget_unstrained(const ContactTable& contacts, BodyTable& bodies) {
             if (body != no_index) bodies.unstrained[body] = 0;
 }
 
+RunCounters counters_of_step(const WorldState& world) {
+    const StepScratch& scratch = world.scratch;
+    const StepFindings& found = scratch.findings;
+    RunCounters counters = world.ranks.on() && !scratch.left_out
+                               ? world.ranks.all.counters
+                               : count_step(scratch.contacts, scratch.regions, found.measures, found.strained.newton,
+                                            found.unstrained);
+    counters.inline_steps = scratch.ran_inline;
+    counters.resting_steps = scratch.left_out;
+    return counters;
+}
+
 void commit(WorldState& world) {
     StepScratch& scratch = world.scratch;
     const StepParameters& parameters = scratch.parameters;
@@ -164,9 +176,13 @@ void commit(WorldState& world) {
         keep_frames(world);
         flow(world);
         if (scratch.regions.pushed) forget_unstrained(scratch.contacts, world.model.bodies);
+        for (const Index body : scratch.rank_regions.pushed_bodies) world.model.bodies.unstrained[body] = 0;
         add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     }
-    count_step(scratch, world.record.counters);
+    scratch.counters = counters_of_step(world);
+    count_committed_step(scratch.counters, world.record.counters);
+    world.record.counters.dissipated += dissipated_in(scratch.findings);
+    world.record.counters.plastic_work += scratch.findings.plastic;
     add_step(scratch, world.record.balance);
     world.clock.time += parameters.h;
     world.clock.step_before = parameters.h;
@@ -273,8 +289,10 @@ void note_try(const Model& model, const StepScratch& scratch, StepLimits& limits
 }
 
 /// Returns the outcome of an attempt, according to the table of StepOutcome.
-StepOutcome judge(const StepScratch& scratch, bool beyond_lists, const StepPlan& plan, AttemptLimits& attempt) {
+StepOutcome judge(const StepScratch& scratch, bool again_over_ranks, bool beyond_lists, const StepPlan& plan,
+                  AttemptLimits& attempt) {
     const StepFindings& found = scratch.findings;
+    if (again_over_ranks) return StepOutcome::again_over_ranks;
     if (beyond_lists) {
         ++attempt.with_longer_lists;
         return StepOutcome::again_with_longer_lists;
@@ -320,18 +338,23 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     scratch.parameters.moment_point = world.record.forces.moment_point();
     world.cache.crossings.last_try = attempt.letting_through;
     world.cache.crossings.beyond_lists = false;
+    world.cache.crossings.found_count = 0;
     // Largest number of repetitions with longer contact lists. Several may be needed, because contact forces change the
     // motion in the next attempt, and the lists cannot cover every motion.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
+    world.ranks.mine = world.ranks.all = {};
     const bool ran = run_stages(world);
-    const StepOutcome outcome = judge(scratch, world.cache.crossings.beyond_lists, plan, attempt);
+    if (world.ranks.on() && ran && !scratch.left_out) world.ranks.label_rounds.note(world.ranks.all.label_rounds);
+    const StepOutcome outcome = judge(scratch, world.ranks.all.again_over_ranks(), world.cache.crossings.beyond_lists,
+                                      plan, attempt);
     switch (outcome) {
         case StepOutcome::committed:
             commit(world);
             note_step(world.model, plan, attempt, world.record.limits);
             attempt = limits_of_next_attempt(scratch, plan, attempt);
             return outcome;
+        case StepOutcome::again_over_ranks:
         case StepOutcome::again_with_longer_lists:
         case StepOutcome::again_with_crossings:
             break;

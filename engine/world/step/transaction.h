@@ -21,6 +21,7 @@ struct WorldState;
 /// the attempt. The regular step is StepPlan::regular.
 ///
 ///     attempt -- good ------------------------------------------------------------> committed
+///      |---- a rank lacks bodies or labels of other ranks -----------------------> again_over_ranks --------> attempt
 ///      |---- features near enough to cross were not in the lists -----------------> again_with_longer_lists -> attempt
 ///      |---- features cross, fewer than 4 attempts of this length ----------------> again_with_crossings ----> attempt
 ///      |---- features cross; h > regular step / 128 ------------------------------> again_shorter -----------> attempt
@@ -30,6 +31,7 @@ struct WorldState;
 ///      '---- not finite, too far; too fast or unsolved at the shortest length ----> refused
 enum class StepOutcome {
     committed,
+    again_over_ranks,         // ranks have to exchange bodies, or more labels of regions; then the same attempt again
     again_with_longer_lists,  // the contact lists lacked features that might cross; the next attempt has longer lists
     again_with_crossings,     // crossing features are contacts of the next attempt with the same length
     again_shorter,            // the next attempt is half as long, or as long as the rate of deformation allows

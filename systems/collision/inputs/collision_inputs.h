@@ -16,6 +16,22 @@
 
 namespace skerry {
 
+/// Division of the pairs among ranks. Each pair belongs to the rank that owns one of its bodies.
+struct PairOwners {
+    std::span<const std::int32_t> body_owner{};  // by row of BodyTable: rank; empty: all pairs belong to this rank
+    std::int32_t rank = 0;                       // number of this rank
+
+    /// True if the pair belongs to this rank. For two bodies that can move, the sum of their slots decides which owner
+    /// has the pair, so that about half of the pairs between two ranks belong to each of them. `first`: row of a body
+    /// that can move. `second`: row of another body that can move, or no_index.
+    bool owns(const BodyTable& body, Index first, Index second) const {
+        if (body_owner.empty()) return true;
+        if (second != no_index && (body.slot[first] + body.slot[second]) % 2 == (body.slot[first] < body.slot[second]))
+            first = second;
+        return body_owner[first] == rank;
+    }
+};
+
 struct CollisionInputs {
     const BodyTable& body;
     const ColliderTable& collider;
@@ -32,6 +48,7 @@ struct CollisionInputs {
     std::span<const Vec3> rest_position = {};
     std::span<const std::uint64_t> disabled_pairs = {};  // keys of the disabled pairs (ContactKey::pair), ascending
     const MaterialPairTable* material_pairs = nullptr;   // null: no pair of materials has its own properties
+    PairOwners owners{};                                 // by default all pairs belong to this rank
 
     static CollisionInputs bind(const Binder& binder, const BodyTable& body, const ColliderTable& collider,
                                 const SurfaceTables& surface, const MaterialTable& material, const BvhTable& bvh,
@@ -52,6 +69,16 @@ struct CollisionInputs {
                 .rest_position = binder.read(node.rest_position),
                 .disabled_pairs = binder.read(disabled.key),
                 .material_pairs = &binder.read(material_pairs)};
+    }
+    static CollisionInputs bind(const Binder& binder, const BodyTable& body, const ColliderTable& collider,
+                                const SurfaceTables& surface, const MaterialTable& material, const BvhTable& bvh,
+                                const BvhLeafTable& bvh_leaf, const NodeTable& node, const DisabledPairTable& disabled,
+                                const MaterialPairTable& material_pairs, const Column<std::int32_t>& owner,
+                                const int& rank) {
+        CollisionInputs inputs =
+            bind(binder, body, collider, surface, material, bvh, bvh_leaf, node, disabled, material_pairs);
+        inputs.owners = {binder.read(owner), binder.value(rank)};
+        return inputs;
     }
 };
 

@@ -191,6 +191,8 @@ private:
     /// Adds a pair with an expired candidate list, so that the pair is searched in this step. Only a search shows how
     /// far apart the two partners are.
     void add_row(std::uint64_t key, PairKind kind, Index first, Index second, Column<FoundPair>& found) const {
+        const bool both_move = kind != PairKind::collider && is_movable(inputs_.body, second);
+        if (!inputs_.owners.owns(inputs_.body, first, both_move ? second : no_index)) return;
         if (!may_collide(inputs_.body, inputs_.collider, inputs_.disabled_pairs, kind, first, second)) return;
         const Vec3 apart = kind == PairKind::collider
                                ? Vec3(Vec3::Zero())

@@ -34,7 +34,10 @@ struct SpikeOverPlate {
     }
     Index crossings() {
         const std::vector<Vec3> none(w.nodes.position.size(), Vec3::Zero());
-        return find_crossings(*w.executor, w.inputs(), w.settings, h, w.nodes.velocity, none, w.pairs, w.crossings);
+        const Index count =
+            find_crossings(*w.executor, w.inputs(), w.settings, h, w.nodes.velocity, none, w.pairs, w.crossings);
+        use_crossings(w.pairs, w.crossings);
+        return count;
     }
     /// The contact of the tip that is nearest to `place`.
     const ContactRow* row_of_tip(const Vec3& place) const {
@@ -200,6 +203,7 @@ TEST_CASE("two edges that would go through each other become a contact although 
     w.find(h);
     REQUIRE(w.pairs.state[0] == PairState::apart);
     REQUIRE(find_crossings(*w.executor, w.inputs(), w.settings, h, w.nodes.velocity, still, w.pairs, w.crossings) > 0);
+    use_crossings(w.pairs, w.crossings);
     const auto crossing = std::find_if(w.crossings.row.begin(), w.crossings.row.end(), [](const ContactRow& row) {
         return row.kind == ContactKind::edge_edge && row.point.norm() < 0.05;
     });
@@ -238,6 +242,7 @@ TEST_CASE("find_contacts tests all features that a test of every feature finds t
             w.crossings.extends_lists = false;
             const std::vector<Vec3> none(w.nodes.position.size(), Vec3::Zero());
             find_crossings(*w.executor, w.inputs(), w.settings, h, w.nodes.velocity, none, w.pairs, w.crossings);
+            use_crossings(w.pairs, w.crossings);
         }
         const CollisionWorld &thrifty = world[0], &thorough = world[1];
         REQUIRE(thrifty.crossings.row.size() == thorough.crossings.row.size());

@@ -56,7 +56,10 @@ struct RollingStrip {
 
     Index crossings() {
         const std::vector<Vec3> none(w.nodes.position.size(), Vec3::Zero());
-        return find_crossings(*w.executor, w.inputs(), w.settings, h, w.nodes.velocity, none, w.pairs, w.crossings);
+        const Index count =
+            find_crossings(*w.executor, w.inputs(), w.settings, h, w.nodes.velocity, none, w.pairs, w.crossings);
+        use_crossings(w.pairs, w.crossings);
+        return count;
     }
 
 private:

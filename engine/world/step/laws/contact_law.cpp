@@ -1,6 +1,7 @@
 // Constraint law of contacts: Signorini's condition and Coulomb friction (docs/methods/contact.md).
 #include "engine/world/kernels.h"
 #include "engine/world/step/seams.h"
+#include "engine/world/step/step.h"
 #include "systems/collision/find_candidates.h"
 #include "systems/collision/find_contacts.h"
 #include "systems/collision/find_crossings.h"
@@ -21,7 +22,10 @@ void list_search(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     ContactTable& c = w.scratch.contacts;
     const StepParameters& p = w.scratch.parameters;
-    g.stage("collision/find_candidates", kernels().find_candidates, collision_inputs(m), value(p.collision), value(p.h),
+    const auto searched =
+        inputs<CollisionInputs>(m.bodies, m.colliders, m.surface, m.materials, m.bvh, m.bvh_leaves, m.nodes,
+                                m.disabled_pairs, m.material_pairs, w.ranks.owner, w.ranks.rank);
+    g.stage("collision/find_candidates", kernels().find_candidates, searched, value(p.collision), value(p.h),
             write(m.bvh.box), make(w.cache.search), make(w.cache.pairs));
     g.stage("collision/find_contacts", kernels().find_contacts, collision_inputs(m), value(p.collision), value(p.h),
             make(w.cache.pairs), make(w.cache.crossings), make(c));
@@ -34,6 +38,7 @@ void list_search(WorldState& w, TaskGraph& g) {
     const auto if_frames = only_if([](const Column<Real>& mass) { return !mass.empty(); }, value(m.rigid_bodies.mass));
     g.stage("contact/hand_on_impulses", hand_on_impulses, inputs<ContactsNow>(c, m.bodies), read(w.cache.warm_start),
             value(p.kick), write(c.impulse), if_warm, if_frames);
+    list_row_exchange(w, g);
 }
 
 void list_contact_measures(WorldState& w, TaskGraph& g) {
@@ -54,8 +59,10 @@ void list_crossings(WorldState& w, TaskGraph& g) {
                         read(n.push_out), make(w.cache.pairs), make(w.cache.crossings), if_possible(w));
 }
 
-void list_warm_start(WorldState& w, TaskGraph& g) {
+void list_memory(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
+    const auto if_found = only_if([](std::size_t count) { return count > 0; }, read(w.cache.crossings.found_count));
+    g.stage("collision/use_crossings", use_crossings, make(w.cache.pairs), make(w.cache.crossings), if_found);
     ContactTable& c = w.scratch.contacts;
     const StepParameters& p = w.scratch.parameters;
     g.stage("contact/store_warm_start", store_warm_start, inputs<ContactsDone>(c, m.rigid_bodies), value(p.kick),
@@ -68,6 +75,10 @@ void list_warm_start(WorldState& w, TaskGraph& g) {
 }  // namespace
 
 constinit const ConstraintLaw contact_law{
-    .find = list_search, .measure = list_contact_measures, .check = list_crossings, .remember = list_warm_start};
+    .find = list_search,
+    .take = list_rows_taken_back,
+    .measure = list_contact_measures,
+    .check = list_crossings,
+    .remember = list_memory};
 
 }  // namespace skerry

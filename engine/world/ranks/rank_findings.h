@@ -1,0 +1,53 @@
+// Findings of an attempt at a step that all ranks combine, so that all of them decide alike whether to commit the step.
+#pragma once
+
+#include <limits>
+
+#include "components/types.h"
+#include "skerry/report.h"
+#include "systems/dynamics/checks/check_state.h"
+
+namespace skerry {
+
+/// Findings of this rank in an attempt at a step, or the combined findings of all ranks. They name bodies by their
+/// place, the row of the body in the undivided world, because rows of BodyTable differ between ranks. Every number
+/// counts the crossings, elements, contacts and regions of all ranks once. Sums of energy are not included, because
+/// their last digits would depend on the order of the ranks.
+struct RankFindings {
+    // StepVerdict: the first fault
+    StepFault fault = StepFault::none;
+    Index fault_body = nobody;
+    Index fault_node = no_index;         // number of the node within the body
+    Index fault_tetrahedron = no_index;  // number of the tetrahedron within the body
+    Real fault_value = 0;
+    // StepVerdict::fastest
+    Real strain_rate = 0;  // [1/s]
+    Index strained_body = nobody;
+    Index unsolved_body = nobody;  // StrainFindings::unsolved
+    Index crossings = 0;           // StepFindings::crossings
+    // Inversions
+    Index inversions = 0;
+    Index inverted_body = nobody;
+    Index inverted_tetrahedron = no_index;  // number of the tetrahedron within the body
+    bool inverts_first = false;
+    bool beyond_lists = false;  // CrossingTable::beyond_lists
+    // Reasons to repeat the attempt that only ranks have:
+    bool labels_open = false;     // the labels of regions had not settled in the last round
+    int label_rounds = 0;         // number of rounds of labels that this attempt needed (LabelRounds)
+    bool bodies_missing = false;  // a rank does not hold all bodies of a region that it has to solve
+    bool ghosts_expired = false;  // a body may come near a rank that does not hold it
+    bool stop = false;            // a callback of World::advance has asked to end the call
+    // Properties of the next step:
+    bool moves = false;    // a body is awake or has a speed
+    bool far = false;      // a body may be too far from the origin (check_distance)
+    RunCounters counters;  // contacts, regions and solver work of the attempt (count_step)
+
+    // place of no body; greater than all other places
+    static constexpr Index nobody = std::numeric_limits<Index>::max();
+    bool again_over_ranks() const { return labels_open || bodies_missing || ghosts_expired; }
+};
+
+/// Adds the findings of another rank. The result does not depend on the order in which ranks are added.
+void combine(RankFindings& into, const RankFindings& from);
+
+}  // namespace skerry

@@ -1,0 +1,52 @@
+// Limits of the step length that depend on the bodies of all ranks.
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+#include "engine/world/step/step.h"
+
+namespace skerry {
+
+void reduce_limits(WorldState& world) {
+    if (!world.ranks.on()) return;
+    Model& model = world.model;
+    LimitsOfRanks limits;
+    model.of_ranks = limits;
+    limits.stable_step = stable_step(model);
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
+        if (model.bodies.blocks[b].size() > 0) limits.rest_step = std::min(limits.rest_step, model.bodies.rest_step[b]);
+    limits.spin = fastest_spin(model);
+    limits.has_frames = model.rigid_bodies.size() > 0;
+    limits.has_implicit = model.implicit_nodes.size() > 0;
+    limits.has_clusters = !model.clusters.empty();
+    limits.moves = model.force_rate_moves || model.joints.slot.size() > 0 || model.ties.size() > 0;
+    reduce(*world.ranks.ranks, limits, [](std::byte* into, const std::byte* from) {
+        LimitsOfRanks all, other;
+        std::memcpy(&all, into, sizeof all);
+        std::memcpy(&other, from, sizeof other);
+        all.stable_step = std::min(all.stable_step, other.stable_step);
+        all.rest_step = std::min(all.rest_step, other.rest_step);
+        all.spin = std::max(all.spin, other.spin);
+        all.has_frames |= other.has_frames;
+        all.has_implicit |= other.has_implicit;
+        all.has_clusters |= other.has_clusters;
+        all.moves |= other.moves;
+        std::memcpy(into, &all, sizeof all);
+    });
+    model.of_ranks = limits;
+}
+
+StrainRate fastest_of_ranks(WorldState& world, const StrainRate& mine) {
+    if (!world.ranks.on()) return mine;
+    StrainRate all{mine.rate, mine.body == no_index ? RankFindings::nobody : world.ranks.place_of(mine.body)};
+    reduce(*world.ranks.ranks, all, [](std::byte* into, const std::byte* from) {
+        StrainRate fastest, other;
+        std::memcpy(&fastest, into, sizeof fastest);
+        std::memcpy(&other, from, sizeof other);
+        if (other.rate > fastest.rate || (other.rate == fastest.rate && other.body < fastest.body)) fastest = other;
+        std::memcpy(into, &fastest, sizeof fastest);
+    });
+    return {all.rate, all.body == RankFindings::nobody ? no_index : all.body};
+}
+
+}  // namespace skerry
