@@ -145,6 +145,7 @@ Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std:
         unite_all(
             executor, blocks, stencil, inverse_mass, [&](Index node) { return groups.leader(node); }, sets,
             contact_region);
+    groups.leave_out_elsewhere(stencil, contact_region);
     blocks.run(executor, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (contact_region[i] == no_index) continue;

@@ -152,10 +152,13 @@ struct NodeGroups {
     RigidNodes rigid{};
     std::span<const JointBlock> joints{};
     SolvedCables cables{};
+    // By row of BodyTable: 1 if another rank solves the rows of the joints, ties and cables of the body. Empty: this
+    // rank solves all rows.
+    std::span<const std::uint8_t> elsewhere{};
 
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                            const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints,
-                           const CableBlockTable& cables) {
+                           const CableBlockTable& cables, const Column<std::uint8_t>& elsewhere) {
         // the matrices of the clusters are not declared as read, because they may still change in a step
         binder.value(clusters.nodes);
         binder.value(clusters.body);
@@ -163,9 +166,15 @@ struct NodeGroups {
         return {.clusters = &clusters,
                 .rigid = RigidNodes::bind(binder, node, body, rigid),
                 .joints = binder.read(joints.block),
-                .cables = SolvedCables::bind(binder, cables)};
+                .cables = SolvedCables::bind(binder, cables),
+                .elsewhere = binder.read(elsewhere)};
     }
 
+    /// True if another rank solves the rows of joints, ties and cables that act on a node.
+    bool is_elsewhere(Index node) const {
+        return !elsewhere.empty() &&
+               elsewhere[static_cast<std::size_t>(rigid.node_body[static_cast<std::size_t>(node)])] != 0;
+    }
     bool empty() const {
         return (clusters == nullptr || clusters->empty()) && !rigid.any() && joints.empty() && cables.block.empty();
     }
@@ -180,6 +189,13 @@ struct NodeGroups {
                 sets.join(first, leader(node));
             });
         }
+    }
+    /// Removes the region of rows that another rank solves. All of them are rows of ties and of held nodes, because the
+    /// contacts have been sent to that rank.
+    void leave_out_elsewhere(std::span<const Stencil> stencil, std::span<Index> contact_region) const {
+        if (elsewhere.empty()) return;
+        for (std::size_t i = 0; i < stencil.size(); ++i)
+            if (is_elsewhere(stencil[i].node[0])) contact_region[i] = no_index;
     }
     /// A node that impulses of the joint `joint` can move.
     Index node_of_joint(std::size_t joint) const { return joints[joint].moving_node(); }

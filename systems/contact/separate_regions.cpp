@@ -49,6 +49,7 @@ Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real
         if (i + ahead < stencil.size()) fetch(stencil[i + ahead]);
         contact_region[i] = unite(stencil[i], inverse_mass, leader, sets);
     }
+    groups.leave_out_elsewhere(stencil, contact_region);
     for (std::size_t i = 0; i < contact_region.size(); ++i) {
         if (i + ahead < contact_region.size() && contact_region[i + ahead] != no_index)
             sets.fetch(contact_region[i + ahead]);
@@ -98,8 +99,9 @@ Index collect_connections(const NodeGroups& groups, std::span<const Real> invers
     const std::size_t joints = groups.joints.size(), cables = groups.cables.block.size();
     regions.joints.clear();
     regions.cables.clear();
-    const auto of_joint = [&](std::size_t j) { return number(groups.node_of_joint(j)); };
-    const auto of_cable = [&](std::size_t c) { return number(groups.node_of_cable(c, inverse_mass)); };
+    const auto of_node = [&](Index node) { return groups.is_elsewhere(node) ? no_index : number(node); };
+    const auto of_joint = [&](std::size_t j) { return of_node(groups.node_of_joint(j)); };
+    const auto of_cable = [&](std::size_t c) { return of_node(groups.node_of_cable(c, inverse_mass)); };
     for (std::size_t j = 0; j < joints; ++j) region_count = std::max(region_count, of_joint(j) + 1);
     for (std::size_t c = 0; c < cables; ++c) region_count = std::max(region_count, of_cable(c) + 1);
     if (joints > 0) collect(joints, of_joint, region_count, regions.joints);

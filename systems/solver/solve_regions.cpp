@@ -83,6 +83,9 @@ void solve_tasks(Executor& executor, const RegionStage& stage, RegionTable& regi
 
 SolverMemory::SolverMemory() : data_(std::make_unique<RegionMemory>()) {}
 SolverMemory::~SolverMemory() = default;
+void SolverMemory::note_push() {
+    data_->pushed = true;
+}
 
 bool solve_regions(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings, Real h,
                    SolverMemory& memory, RegionTable& regions, const RegionOutputs& out) {

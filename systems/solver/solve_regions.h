@@ -19,6 +19,8 @@ public:
     SolverMemory();
     ~SolverMemory();
     RegionMemory& data() { return *data_; }
+    /// Must be called if NodeTable::push_out was written outside of solve_regions. The next call then clears it.
+    void note_push();
 
 private:
     std::unique_ptr<RegionMemory> data_;

@@ -1,11 +1,11 @@
 // Every rank holds every body: ranks search for different pairs, and together they find the contacts of one process.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <map>
 #include <mutex>
 
 #include "engine/world/world_state.h"
 #include "tests/ranks/everywhere.h"
+#include "tests/ranks/thread_ranks.h"
 #include "tests/support/lively_scene.h"
 
 namespace skerry::test {

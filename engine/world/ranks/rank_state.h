@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "components/column.h"
@@ -19,6 +20,44 @@ struct RankChannel {
     Ranks* ranks = nullptr;
 };
 
+/// A body that a rank must hold to solve a region.
+struct BodyRequest {
+    int rank;
+    Index place;  // place of the body in the undivided world
+};
+
+/// Rounds in which ranks exchange the labels of their regions (docs/methods/ranks.md 3).
+struct LabelRounds {
+    static constexpr int least = 2;
+    int count = least;    // number of rounds in each attempt at a step, equal on all ranks
+    int needed = least;   // greatest number of rounds that a step has needed since the last check
+    int steps = 0;        // number of steps since the last check
+
+    /// Adds the number of rounds that an attempt has needed. More than `count`: the number is not known. Too few rounds
+    /// are doubled at once; every 500 steps the number falls to the greatest number that was needed.
+    void note(int rounds) {
+        constexpr int steps_between_checks = 500;
+        if (rounds > count) {
+            count *= 2;
+            needed = count;
+            steps = 0;
+            return;
+        }
+        needed = std::max(needed, rounds);
+        if (++steps < steps_between_checks) return;
+        count = needed;
+        needed = least;
+        steps = 0;
+    }
+};
+
+/// Row of BodyTable of the body at a place of the undivided world; no_index if this rank does not hold it. `place`:
+/// RankState::place.
+inline Index row_of_place(std::span<const Index> place, Index of_place) {
+    const auto at = std::ranges::lower_bound(place, of_place);
+    return at != place.end() && *at == of_place ? static_cast<Index>(at - place.begin()) : no_index;
+}
+
 /// A rank *holds* the bodies that it owns and copies of bodies that other ranks own (*ghosts*). Each body has one
 /// owner.
 struct RankState {
@@ -32,6 +71,8 @@ struct RankState {
     // For each row of BodyTable: place of the body, its row in the undivided world. The places ascend.
     Column<Index> place;
     RankChannel channel;
+    LabelRounds label_rounds;
+    Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
     RankFindings mine;  // findings of this rank in this attempt at a step; complete when reduce_findings runs
     RankFindings all;   // combined findings of all ranks in this attempt at a step
     bool stops = false;  // true if a callback of this rank has asked to end the present call of World::advance
@@ -40,11 +81,7 @@ struct RankState {
     bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == rank; }
     Index place_of(Index row) const { return on() && row != no_index ? place[row] : row; }
     /// Row of BodyTable of the body at a place of the undivided world; no_index if this rank does not hold it.
-    Index row_of(Index of_place) const {
-        if (!on()) return of_place;
-        const auto at = std::ranges::lower_bound(place, of_place);
-        return at != place.end() && *at == of_place ? static_cast<Index>(at - place.begin()) : no_index;
-    }
+    Index row_of(Index of_place) const { return on() ? row_of_place(place, of_place) : of_place; }
 };
 
 }  // namespace skerry

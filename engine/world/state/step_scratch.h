@@ -9,6 +9,7 @@
 #include "components/joint_table.h"
 #include "components/region_table.h"
 #include "components/tie_table.h"
+#include "engine/world/ranks/regions/rank_regions.h"
 #include "engine/world/tuning.h"
 #include "skerry/report.h"
 #include "skerry/settings.h"
@@ -138,6 +139,7 @@ struct StepScratch {
     TieRowTable ties;
     CableBlockTable cables;
     RegionTable regions;
+    RankRegions rank_regions;  // empty if this process simulates the whole world
     RunCounters counters;     // counters of the last committed step alone (count_step)
     Real awake_mass = 0;      // mass of bodies that are awake at the start of the step [kg]
     bool ran_inline = false;  // true if all stages ran on the calling thread

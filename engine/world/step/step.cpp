@@ -138,7 +138,8 @@ void separate(WorldState& w, TaskGraph& g) {
             write(w.scratch.driven), if_sleepy(w));
     of_forces<&ForceElement::mark_driven>(w, g);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
-            inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints, w.scratch.cables),
+            inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints, w.scratch.cables,
+                               w.scratch.rank_regions.elsewhere),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
 }
 
@@ -155,6 +156,7 @@ void solve(WorldState& w, TaskGraph& g) {
                                  m.rigid_bodies, m.implicit_nodes, s.coupling, s.joints, s.cables, m.surface_sets),
             value(p.solver), value(p.h), make(s.solver_memory), make(s.regions),
             outputs<RegionOutputs>(s.contacts, n, m.rigid_bodies, m.implicit_nodes, s.joints, s.cables));
+    list_result_exchange(w, g);
 }
 
 /// Lists the stages that sum contact and attachment forces, if a user requested them.

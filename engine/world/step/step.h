@@ -39,6 +39,14 @@ void reduce_limits(WorldState& world);
 /// Returns the fastest deformation of all ranks. Without ranks it returns `mine`.
 StrainRate fastest_of_ranks(WorldState& world, const StrainRate& mine);
 
+// ranks/regions
+
+/// The next functions list the stages in which ranks exchange contacts and results of regions that cross their borders.
+/// They list nothing if this process simulates the whole world.
+void list_row_exchange(WorldState& world, TaskGraph& graph);
+void list_result_exchange(WorldState& world, TaskGraph& graph);
+void list_rows_taken_back(WorldState& world, TaskGraph& graph);
+
 // held_depth.cpp
 
 /// Largest depth of held nodes on surfaces inside analytic colliders now. Unless `all` is set, bodies whose attachments

@@ -176,6 +176,7 @@ void commit(WorldState& world) {
         keep_frames(world);
         flow(world);
         if (scratch.regions.pushed) forget_unstrained(scratch.contacts, world.model.bodies);
+        for (const Index body : scratch.rank_regions.pushed_bodies) world.model.bodies.unstrained[body] = 0;
         add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     }
     scratch.counters = counters_of_step(world);
@@ -342,7 +343,9 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     // motion in the next attempt, and the lists cannot cover every motion.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
+    world.ranks.mine = world.ranks.all = {};
     const bool ran = run_stages(world);
+    if (world.ranks.on() && ran && !scratch.left_out) world.ranks.label_rounds.note(world.ranks.all.label_rounds);
     const StepOutcome outcome = judge(scratch, world.ranks.all.again_over_ranks(), world.cache.crossings.beyond_lists,
                                       plan, attempt);
     switch (outcome) {

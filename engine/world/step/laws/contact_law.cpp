@@ -1,6 +1,7 @@
 // Constraint law of contacts: Signorini's condition and Coulomb friction (docs/methods/contact.md).
 #include "engine/world/kernels.h"
 #include "engine/world/step/seams.h"
+#include "engine/world/step/step.h"
 #include "systems/collision/find_candidates.h"
 #include "systems/collision/find_contacts.h"
 #include "systems/collision/find_crossings.h"
@@ -37,6 +38,7 @@ void list_search(WorldState& w, TaskGraph& g) {
     const auto if_frames = only_if([](const Column<Real>& mass) { return !mass.empty(); }, value(m.rigid_bodies.mass));
     g.stage("contact/hand_on_impulses", hand_on_impulses, inputs<ContactsNow>(c, m.bodies), read(w.cache.warm_start),
             value(p.kick), write(c.impulse), if_warm, if_frames);
+    list_row_exchange(w, g);
 }
 
 void list_contact_measures(WorldState& w, TaskGraph& g) {
@@ -73,6 +75,10 @@ void list_memory(WorldState& w, TaskGraph& g) {
 }  // namespace
 
 constinit const ConstraintLaw contact_law{
-    .find = list_search, .measure = list_contact_measures, .check = list_crossings, .remember = list_memory};
+    .find = list_search,
+    .take = list_rows_taken_back,
+    .measure = list_contact_measures,
+    .check = list_crossings,
+    .remember = list_memory};
 
 }  // namespace skerry

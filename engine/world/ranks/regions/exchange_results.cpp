@@ -1,0 +1,264 @@
+// Exchange of results after the solve. All ranks that hold a body get its velocities and impulses from the rank that
+// has solved its region.
+#include <cstddef>
+
+#include "engine/world/ranks/regions/rank_regions.h"
+#include "engine/world/step/seams.h"
+#include "engine/world/step/step.h"
+#include "systems/dynamics/motion/hold_axes.h"
+
+namespace skerry {
+
+namespace {
+
+/// Velocities of a node after the solve. A record without a name ends a list.
+struct MailedNode {
+    NodeName name;
+    Vec3 velocity = Vec3::Zero(), push = Vec3::Zero();  // NodeTable: velocity_next, push_out [m/s]
+};
+
+/// Impulses on the frame of a rigid or implicit body (RigidBodyTable). A record without a body ends a list.
+struct MailedBody {
+    Index body = no_index;  // place
+    Index deforming = 0;    // number of records MailedDeformation that follow
+    Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), push = Vec3::Zero(), push_spin = Vec3::Zero();
+};
+
+/// Contact impulse on a node of an implicit body (ImplicitNodeTable) [N s].
+struct MailedDeformation {
+    Index node = no_index;  // number within the body
+    Vec3 impulse = Vec3::Zero();
+};
+
+/// Bodies, nodes and rows of the regions.
+struct SolvedRows {
+    std::span<const Real> inverse_mass;  // by node [1/kg]
+    const NodeClusters& clusters;
+    std::span<const Range> body_rigid, body_implicit;  // BodyTable
+    std::size_t tie_count;                             // number of rows of ties in the contact table
+    std::span<const Index> region;                     // by contact
+    std::span<const Stencil> stencil;                  // by contact
+
+    static SolvedRows bind(const Binder& binder, const Model& model, const ContactTable& contacts,
+                           const TieRowTable& ties) {
+        const std::size_t rows = binder.read(ties.tie).size();
+        return {.inverse_mass = binder.read(model.nodes.inverse_mass),
+                .clusters = binder.read(model.clusters),
+                .body_rigid = binder.read(model.bodies.rigid),
+                .body_implicit = binder.read(model.bodies.implicit),
+                .tie_count = binder.read(model.ties.slot).empty() ? 0 : rows,
+                .region = binder.read(contacts.region),
+                .stencil = binder.read(contacts.stencil)};
+    }
+    /// Row of RigidBodyTable of a body, or no_index.
+    Index frame(Index body) const {
+        const Range rows = body_rigid[static_cast<std::size_t>(body)];
+        return rows.size() > 0 ? rows.begin : no_index;
+    }
+};
+
+class ResultExchange {
+public:
+    ResultExchange(const SharedBodies& bodies, const SolvedRows& rows, JointBlockTable& joints, CableBlockTable& cables,
+                   const RegionOutputs& out, RegionTable& table, RankRegions& regions)
+        : bodies_(bodies), rows_(rows), joints_(joints), cables_(cables), out_(out), table_(table), regions_(regions) {}
+
+    void run(RankChannel& channel) {
+        zero_left_out_rows();
+        list_moved();
+        RankMail& mail = regions_.mail;
+        mail.start(bodies_.peers.size());
+        for (std::size_t p = 0; p < bodies_.peers.size(); ++p) send(p);
+        channel.ranks->exchange(bodies_.peers, mail.out, mail.in);
+        regions_.pushed_bodies.clear();
+        regions_.unit_from.assign(regions_.unit.size(), -1);
+        for (std::size_t p = 0; p < bodies_.peers.size(); ++p) receive(p);
+    }
+
+private:
+    bool is_solved_here(Index body) const { return regions_.elsewhere.empty() || !regions_.elsewhere[body]; }
+
+    /// Rows that hold nodes along single directions are in no region if another rank solves the rows of the node's
+    /// unit. They have no impulse then.
+    void zero_left_out_rows() {
+        for (std::size_t row = regions_.contact_count + rows_.tie_count; row < rows_.region.size(); ++row)
+            if (rows_.region[row] == no_index) out_.impulse[row].setZero();
+    }
+
+    /// Lists the nodes and bodies that the regions of this rank have moved, if other ranks hold them.
+    void list_moved() {
+        regions_.nodes.clear();
+        regions_.bodies.clear();
+        regions_.sets.start(rows_.inverse_mass.size());
+        regions_.visited.assign(bodies_.size(), 0);
+        for (std::size_t c = 0; c < rows_.region.size(); ++c)
+            if (rows_.region[c] != no_index) list_nodes(rows_.stencil[c]);
+        for (const CableBlock& cable : cables_.solved())
+            for (const Stencil& stencil : rows_of(cables_.stencil.span(), cable.points))
+                if (is_solved_here(body_of_cable(cable))) list_nodes(stencil);
+        for (const JointBlock& joint : joints_.block)
+            for (const Index node : {joint.first_node, joint.second_node})
+                if (node != no_index && is_solved_here(bodies_.body_of(node))) list_body(bodies_.body_of(node));
+    }
+
+    void list_nodes(const Stencil& stencil) {
+        for (std::size_t a = 0; a < 4; ++a) {
+            const Index node = stencil.node[a];
+            if (stencil.weight[a] == 0 || !(rows_.inverse_mass[static_cast<std::size_t>(node)] > 0)) continue;
+            const Index body = bodies_.body_of(node);
+            if (bodies_.holders_of(body).empty() || !list_node(node)) continue;
+            list_body(body);
+            if (const Index cluster = rows_.clusters.cluster(node); cluster != no_index)
+                for (const Index other : rows_.clusters.nodes[static_cast<std::size_t>(cluster)]) list_node(other);
+        }
+    }
+    /// Returns false if the node is in the list already.
+    bool list_node(Index node) {
+        if (regions_.sets.node[node].stamp == regions_.sets.now) return false;
+        regions_.nodes.push_back(regions_.sets.root(node));
+        return true;
+    }
+    void list_body(Index body) {
+        if (regions_.visited[body] || rows_.frame(body) == no_index) return;
+        regions_.visited[body] = 1;
+        regions_.bodies.push_back(body);
+    }
+
+    Index body_of_cable(const CableBlock& cable) const {
+        for (const Stencil& stencil : rows_of(cables_.stencil.span(), cable.points))
+            for (std::size_t a = 0; a < 4; ++a)
+                if (stencil.weight[a] != 0) return bodies_.body_of(stencil.node[a]);
+        return no_index;
+    }
+
+    /// Calls visit(number) for the results of all rows of joints, ties and cables of the units for which wants(first
+    /// body of the unit) is true. All ranks that hold a unit have its rows in the same order.
+    void for_each_result_of_units(auto&& wants, auto&& visit) {
+        if (regions_.unit.empty()) return;
+        const auto wanted = [&](Index body) { return body != no_index && wants(regions_.unit[body]); };
+        for (std::size_t j = 0; j < joints_.size(); ++j) {
+            if (!wanted(bodies_.body_of(joints_.block[j].moving_node()))) continue;
+            visit(out_.joint_impulse[j]);
+            visit(out_.axis_impulse[j]);
+        }
+        for (std::size_t row = regions_.contact_count; row < regions_.contact_count + rows_.tie_count; ++row)
+            if (wanted(bodies_.body_of(rows_.stencil[row].node[0]))) visit(out_.impulse[row]);
+        std::size_t c = 0;
+        for (const CableBlock& cable : cables_.solved()) {
+            if (wanted(body_of_cable(cable))) {
+                for (Real& tension : rows_of(out_.cable_impulse, cable.points)) visit(tension);
+                visit(out_.cable_work[c]);
+                visit(out_.cable_loss[c]);
+                visit(out_.cable_sum[c]);
+            }
+            ++c;
+        }
+    }
+
+    void send(std::size_t peer) {
+        RankMail& mail = regions_.mail;
+        mail.put(peer, Index{table_.pushed});
+        const std::size_t first = peer == 0 ? 0 : static_cast<std::size_t>(regions_.received_end[peer - 1]);
+        for (std::size_t i = first; i < static_cast<std::size_t>(regions_.received_end[peer]); ++i)
+            mail.put(peer, out_.impulse[regions_.received_row[i]]);
+        for (const Index node : regions_.nodes)
+            if (bodies_.is_held_by(static_cast<int>(peer), bodies_.body_of(node)))
+                mail.put(peer, MailedNode{bodies_.name(node), out_.velocity_next[node], out_.push_out[node]});
+        mail.put(peer, MailedNode{});
+        for (const Index body : regions_.bodies)
+            if (bodies_.is_held_by(static_cast<int>(peer), body)) send_body(peer, body);
+        mail.put(peer, MailedBody{});
+        const auto sends = [&](Index unit) {
+            return unit != no_index && is_solved_here(unit) && bodies_.is_held_by(static_cast<int>(peer), unit);
+        };
+        for (std::size_t b = 0; b < regions_.unit.size(); ++b)
+            if (regions_.unit[b] == static_cast<Index>(b) && sends(static_cast<Index>(b)))
+                mail.put(peer, bodies_.place[b]);
+        mail.put(peer, no_index);
+        for_each_result_of_units(sends, [&](const auto& number) { mail.put(peer, number); });
+    }
+
+    void send_body(std::size_t peer, Index body) {
+        const auto frame = static_cast<std::size_t>(rows_.frame(body));
+        const std::span<const Vec3> deforming =
+            rows_of(std::span<const Vec3>(out_.deforming_impulse), rows_.body_implicit[static_cast<std::size_t>(body)]);
+        const auto is_zero = [](const Vec3& impulse) { return impulse == Vec3::Zero(); };
+        regions_.mail.put(
+            peer, MailedBody{bodies_.place[static_cast<std::size_t>(body)],
+                             static_cast<Index>(deforming.size()) -
+                                 static_cast<Index>(std::ranges::count_if(deforming, is_zero)),
+                             out_.contact_impulse[frame], out_.contact_moment[frame], out_.push_velocity[frame],
+                             out_.push_spin[frame]});
+        for (std::size_t n = 0; n < deforming.size(); ++n)
+            if (!is_zero(deforming[n])) regions_.mail.put(peer, MailedDeformation{static_cast<Index>(n), deforming[n]});
+    }
+
+    void receive(std::size_t peer) {
+        MailReader reader(regions_.mail.in[peer]);
+        table_.pushed |= reader.take<Index>() != 0;
+        if (regions_.exchanged)
+            for (std::size_t c = 0; c < regions_.found.size(); ++c)
+                if (regions_.solved_row[c] == -1 - static_cast<Index>(peer))
+                    regions_.found.impulse[c] = reader.take<Vec3>();
+        for (MailedNode mail = reader.take<MailedNode>(); mail.name.body != no_index; mail = reader.take<MailedNode>()) {
+            const Index node = bodies_.node_of(mail.name);
+            out_.velocity_next[node] = mail.velocity;
+            out_.push_out[node] = mail.push;
+            if (mail.push != Vec3::Zero()) regions_.pushed_bodies.push_back(bodies_.body_of(node));
+        }
+        for (MailedBody mail = reader.take<MailedBody>(); mail.body != no_index; mail = reader.take<MailedBody>())
+            receive_body(mail, reader);
+        for (Index place = reader.take<Index>(); place != no_index; place = reader.take<Index>())
+            regions_.unit_from[bodies_.row_of(place)] = static_cast<int>(peer);
+        const auto is_from_peer = [&](Index unit) {
+            return unit != no_index && regions_.unit_from[unit] == static_cast<int>(peer);
+        };
+        for_each_result_of_units(is_from_peer,
+                                 [&]<class Number>(Number& number) { number = reader.take<Number>(); });
+        SKERRY_CHECK(reader.at_end());
+    }
+
+    void receive_body(const MailedBody& mail, MailReader& reader) {
+        const Index body = bodies_.row_of(mail.body);
+        const auto frame = static_cast<std::size_t>(rows_.frame(body));
+        out_.contact_impulse[frame] = mail.impulse;
+        out_.contact_moment[frame] = mail.moment;
+        out_.push_velocity[frame] = mail.push;
+        out_.push_spin[frame] = mail.push_spin;
+        const Index first = rows_.body_implicit[static_cast<std::size_t>(body)].begin;
+        for (Index n = 0; n < mail.deforming; ++n) {
+            const MailedDeformation deformation = reader.take<MailedDeformation>();
+            out_.deforming_impulse[first + deformation.node] = deformation.impulse;
+        }
+    }
+
+    const SharedBodies& bodies_;
+    const SolvedRows& rows_;
+    JointBlockTable& joints_;
+    CableBlockTable& cables_;
+    const RegionOutputs& out_;
+    RegionTable& table_;
+    RankRegions& regions_;
+};
+
+void exchange_results(const SharedBodies& bodies, const SolvedRows& rows, const RegionOutputs& out,
+                      JointBlockTable& joints, CableBlockTable& cables, RegionTable& table, SolverMemory& solver,
+                      RankRegions& regions, RankChannel& channel) {
+    ResultExchange(bodies, rows, joints, cables, out, table, regions).run(channel);
+    if (!regions.pushed_bodies.empty()) solver.note_push();
+}
+
+}  // namespace
+
+void list_result_exchange(WorldState& w, TaskGraph& g) {
+    if (!w.ranks.on()) return;
+    Model& m = w.model;
+    StepScratch& s = w.scratch;
+    g.stage("ranks/exchange_results", exchange_results, inputs<SharedBodies>(w.ranks, m.bodies, m.nodes),
+            inputs<SolvedRows>(m, s.contacts, s.ties),
+            outputs<RegionOutputs>(s.contacts, m.nodes, m.rigid_bodies, m.implicit_nodes, s.joints, s.cables),
+            make(s.joints), make(s.cables), make(s.regions), make(s.solver_memory), make(s.rank_regions),
+            make(w.ranks.channel));
+}
+
+}  // namespace skerry

@@ -1,0 +1,420 @@
+// Exchange of contacts before the solve. Ranks find out which of their regions are parts of one region, and send its
+// contacts to the rank that solves it.
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+
+#include "components/write_contact.h"
+#include "engine/world/ranks/regions/rank_regions.h"
+#include "engine/world/step/seams.h"
+#include "engine/world/step/step.h"
+#include "systems/contact/contact_columns.h"
+
+namespace skerry {
+
+SharedBodies SharedBodies::bind(const Binder& binder, const RankState& ranks, const BodyTable& body,
+                                const NodeTable& node) {
+    return {.place = binder.read(ranks.place),
+            .owner = binder.read(ranks.owner),
+            .holders = binder.value(ranks.holders),
+            .peers = binder.value(ranks.peers),
+            .rank = binder.value(ranks.rank),
+            .kind = binder.read(body.kind),
+            .nodes = binder.read(body.nodes),
+            .node_body = binder.read(node.body)};
+}
+
+bool SharedBodies::is_held_by(int peer, Index body) const {
+    const std::span<const int> all = holders_of(body);
+    return std::ranges::find(all, peer) != all.end();
+}
+
+int SharedBodies::peer_of(int rank_number) const {
+    const auto at = std::ranges::lower_bound(peers, rank_number);
+    return at != peers.end() && *at == rank_number ? static_cast<int>(at - peers.begin()) : -1;
+}
+
+namespace {
+
+/// Rows other than contacts that belong to regions, and the bodies on which they act.
+struct JoinedBodies {
+    const BodyLinks& links;
+    std::array<std::span<const Index>, 5> body;  // columns of joints, ties and cables
+
+    static JoinedBodies bind(const Binder& binder, const Model& model) {
+        return {.links = binder.read(model.links),
+                .body = {binder.read(model.joints.first), binder.read(model.joints.second),
+                         binder.read(model.ties.first), binder.read(model.ties.second),
+                         binder.read(model.cables.anchor.body)}};
+    }
+};
+
+/// Nodes, and the groups of nodes that move together. All moving nodes of a unit count as one group, so that one rank
+/// solves all rows of its joints, ties and cables.
+struct RegionGroups {
+    std::span<const Real> inverse_mass;  // by node [1/kg]
+    NodeGroups groups;
+
+    static RegionGroups bind(const Binder& binder, const Model& model) {
+        binder.value(model.clusters.nodes);
+        binder.value(model.clusters.body);
+        binder.value(model.clusters.cluster_of);
+        return {.inverse_mass = binder.read(model.nodes.inverse_mass),
+                .groups = {.clusters = &model.clusters,
+                           .rigid = RigidNodes::bind(binder, model.nodes, model.bodies, model.rigid_bodies)}};
+    }
+};
+
+/// A group of nodes in a message, and the label of its region.
+struct NamedLabel {
+    NodeName group;
+    RegionLabel label;
+};
+
+/// Sets RankRegions::unit.
+void find_units(const JoinedBodies& joined, std::size_t bodies, RankRegions& regions) {
+    regions.unit.clear();
+    if (std::ranges::all_of(joined.body, [](std::span<const Index> column) { return column.empty(); })) return;
+    UnionFind& sets = regions.body_sets;
+    sets.start(bodies);
+    for (std::size_t link = 0; link < joined.links.first.size(); ++link)
+        sets.join(joined.links.first[link], joined.links.second[link]);
+    regions.in_unit.assign(bodies, 0);
+    for (const std::span<const Index> column : joined.body)
+        for (const Index body : column)
+            if (body != no_index) regions.in_unit[sets.root(body)] = 1;
+    regions.unit.resize(bodies);
+    for (std::size_t b = 0; b < bodies; ++b) {
+        const Index root = sets.root(static_cast<Index>(b));
+        regions.unit[b] = regions.in_unit[root] ? root : no_index;
+    }
+}
+
+/// Labels of the regions of this rank, which ranks that hold the same bodies make equal.
+class RegionLabels {
+public:
+    RegionLabels(const SharedBodies& bodies, const RegionGroups& nodes, RankRegions& regions)
+        : bodies_(bodies), nodes_(nodes), regions_(regions) {
+        const std::size_t count = nodes.inverse_mass.size();
+        regions.sets.start(count);
+        regions.label.resize(count);
+        regions.open.resize(count);
+        regions.changed.resize(count);
+        regions.group.clear();
+    }
+
+    /// Joins the groups of each contact. The units of this rank are regions even without contacts.
+    void join_groups(std::span<const Stencil> stencil) {
+        regions_.group_of.resize(stencil.size());
+        for (std::size_t c = 0; c < stencil.size(); ++c) regions_.group_of[c] = join_nodes(stencil[c]);
+        for (std::size_t b = 0; b < regions_.unit.size(); ++b)
+            if (regions_.unit[b] == static_cast<Index>(b) && bodies_.owner[b] == bodies_.rank)
+                touch(bodies_.nodes[b].begin);
+        for (const Index group : regions_.group) {
+            RegionLabel& of_region = regions_.label[regions_.sets.root(group)];
+            if (regions_.label[group].least < of_region.least) of_region = regions_.label[group];
+        }
+    }
+
+    /// Exchanges labels in `rounds` rounds. A label that has changed is sent in the next round. Returns the number of
+    /// rounds after which no label changes, or more than `rounds` if this is not known.
+    int settle(RankChannel& channel, int rounds) {
+        int needed = 1;
+        for (int round = 1; round <= rounds; ++round) {
+            send(round);
+            RankMail& mail = regions_.mail;
+            channel.ranks->exchange(bodies_.peers, mail.out, mail.in);
+            for (const RankMessage& message : mail.in)
+                for (MailReader reader(message); !reader.at_end();)
+                    if (receive(reader.take<NamedLabel>(), round)) needed = round + 1;
+        }
+        return needed;
+    }
+
+private:
+    bool is_touched(Index group) const { return regions_.sets.node[group].stamp == regions_.sets.now; }
+
+    /// Returns the first node of the group of a node that can move.
+    Index leader(Index node) const {
+        if (regions_.unit.empty()) return nodes_.groups.leader(node);
+        const Index unit = regions_.unit[bodies_.body_of(node)];
+        return unit == no_index ? nodes_.groups.leader(node) : bodies_.nodes[static_cast<std::size_t>(unit)].begin;
+    }
+
+    void touch(Index group) {
+        if (is_touched(group)) return;
+        regions_.label[regions_.sets.root(group)] = {
+            bodies_.name(group), bodies_.owner[static_cast<std::size_t>(bodies_.body_of(group))]};
+        regions_.open[group] = 0;
+        regions_.changed[group] = 0;
+        regions_.group.push_back(group);
+    }
+
+    Index join_nodes(const Stencil& stencil) {
+        Index first = no_index;
+        for (std::size_t a = 0; a < 4; ++a) {
+            const Index node = stencil.node[a];
+            if (stencil.weight[a] == 0 || !(nodes_.inverse_mass[static_cast<std::size_t>(node)] > 0)) continue;
+            const Index group = leader(node);
+            touch(group);
+            if (first == no_index) first = group;
+            regions_.sets.join(first, group);
+        }
+        return first;
+    }
+
+    void send(int round) {
+        regions_.mail.start(bodies_.peers.size());
+        for (const Index group : regions_.group) {
+            const std::span<const int> holders = bodies_.holders_of(bodies_.body_of(group));
+            if (holders.empty()) continue;
+            const Index root = regions_.sets.root(group);
+            if (regions_.changed[root] != round - 1) continue;
+            for (const int peer : holders)
+                regions_.mail.put(static_cast<std::size_t>(peer),
+                                  NamedLabel{bodies_.name(group), regions_.label[root]});
+        }
+    }
+
+    /// Returns true if the label of a region changes.
+    bool receive(const NamedLabel& named, int round) {
+        const Index group = bodies_.node_of(named.group);
+        if (group == no_index || !is_touched(group)) return false;
+        const Index root = regions_.sets.root(group);
+        regions_.open[root] = 1;
+        if (!(named.label.least < regions_.label[root].least)) return false;
+        regions_.label[root] = named.label;
+        regions_.changed[root] = round;
+        return true;
+    }
+
+    const SharedBodies& bodies_;
+    const RegionGroups& nodes_;
+    RankRegions& regions_;
+};
+
+/// Sends the contacts of regions that other ranks solve, and receives contacts of regions that this rank solves.
+class RowExchange {
+public:
+    RowExchange(const SharedBodies& bodies, ContactTable& contacts, RankRegions& regions,
+                Column<BodyRequest>& requests)
+        : bodies_(bodies), contacts_(contacts), regions_(regions), requests_(requests) {}
+
+    void run(RankChannel& channel) {
+        regions_.mail.start(bodies_.peers.size());
+        send_units();
+        const bool sends = send_contacts();
+        RankMail& mail = regions_.mail;
+        channel.ranks->exchange(bodies_.peers, mail.out, mail.in);
+        regions_.received.clear();
+        regions_.received_end.clear();
+        for (const RankMessage& message : mail.in) {
+            receive(message);
+            regions_.received_end.push_back(static_cast<Index>(regions_.received.size()));
+        }
+        spread_over_units();
+        regions_.exchanged = sends || !regions_.received.empty();
+        if (regions_.exchanged) merge();
+        regions_.contact_count = contacts_.size();
+    }
+
+private:
+    /// Peer that solves the region of a group, or -1 if this rank solves it.
+    int solver_of(Index group) {
+        const Index root = regions_.sets.root(group);
+        const int owner = regions_.label[root].owner;
+        if (!regions_.open[root] || owner == bodies_.rank) return -1;
+        return bodies_.peer_of(owner) == -1 ? no_peer(owner) : bodies_.peer_of(owner);
+    }
+    /// Result of solver_of for a rank that shares no body with this rank. Such ranks have numbers below -1.
+    static int no_peer(int owner) { return -2 - owner; }
+
+    /// True if the peer holds the body. Otherwise the body is requested for it.
+    bool reaches(int peer, Index body) {
+        if (body == no_index || bodies_.kind[static_cast<std::size_t>(body)] == BodyKind::kinematic) return true;
+        if (peer >= 0 && bodies_.is_held_by(peer, body)) return true;
+        const int to = peer >= 0 ? bodies_.peers[static_cast<std::size_t>(peer)] : -2 - peer;
+        requests_.push_back({to, bodies_.place[static_cast<std::size_t>(body)]});
+        return false;
+    }
+
+    /// Sends the units of this rank whose rows another rank solves. Units of other ranks are solved elsewhere, unless
+    /// their owners say otherwise.
+    void send_units() {
+        regions_.elsewhere.assign(regions_.unit.size(), 1);
+        regions_.unit_count.assign(bodies_.peers.size(), 0);
+        for_each_own_unit([&](Index body, int peer) {
+            const bool sent = peer != -1 && reaches(peer, body);
+            regions_.elsewhere[body] = sent;
+            if (sent) ++regions_.unit_count[peer];
+        });
+        for (std::size_t p = 0; p < bodies_.peers.size(); ++p) regions_.mail.put(p, regions_.unit_count[p]);
+        for_each_own_unit([&](Index body, int peer) {
+            if (regions_.elsewhere[body])
+                regions_.mail.put(static_cast<std::size_t>(peer), bodies_.place[static_cast<std::size_t>(body)]);
+        });
+    }
+
+    void for_each_own_unit(auto&& visit) {
+        for (std::size_t b = 0; b < regions_.unit.size(); ++b)
+            if (regions_.unit[b] == static_cast<Index>(b) && bodies_.owner[b] == bodies_.rank)
+                visit(static_cast<Index>(b), solver_of(bodies_.nodes[b].begin));
+    }
+
+    /// Copies the value of the first body of each unit to its other bodies.
+    void spread_over_units() {
+        for (std::size_t b = 0; b < regions_.unit.size(); ++b)
+            regions_.elsewhere[b] = regions_.unit[b] != no_index && regions_.elsewhere[regions_.unit[b]];
+    }
+
+    bool send_contacts() {
+        bool any = false;
+        regions_.solved_row.resize(contacts_.size());
+        for (std::size_t c = 0; c < contacts_.size(); ++c) {
+            regions_.solved_row[c] = 0;
+            if (regions_.group_of[c] == no_index) continue;
+            const int peer = solver_of(regions_.group_of[c]);
+            if (peer == -1) continue;
+            const bool first = reaches(peer, contacts_.first_body[c]), second = reaches(peer, contacts_.second_body[c]);
+            if (!first || !second) continue;
+            regions_.mail.put(static_cast<std::size_t>(peer), mailed(c));
+            regions_.solved_row[c] = -1 - peer;
+            any = true;
+        }
+        return any;
+    }
+
+    Index place_of(Index body) const {
+        return body == no_index ? no_index : bodies_.place[static_cast<std::size_t>(body)];
+    }
+
+    MailedContact mailed(std::size_t c) const {
+        MailedContact mail{{.key = contacts_.key[c],
+                            .kind = contacts_.kind[c],
+                            .stencil = contacts_.stencil[c],
+                            .point = contacts_.point[c],
+                            .normal = contacts_.normal[c],
+                            .gap = contacts_.gap[c],
+                            .distance = contacts_.distance[c],
+                            .surface_velocity = contacts_.surface_velocity[c],
+                            .static_friction = contacts_.static_friction[c],
+                            .dynamic_friction = contacts_.dynamic_friction[c],
+                            .restitution = contacts_.restitution[c],
+                            .first_body = place_of(contacts_.first_body[c]),
+                            .second_body = place_of(contacts_.second_body[c]),
+                            .collider = contacts_.collider[c]},
+                           contacts_.friction_axis[c],
+                           contacts_.impulse[c]};
+        for (Index& node : mail.row.stencil.node) {
+            const Index body = bodies_.body_of(node);
+            node = 2 * (node - bodies_.nodes[static_cast<std::size_t>(body)].begin) +
+                   (body != contacts_.first_body[c] ? 1 : 0);
+        }
+        return mail;
+    }
+
+    void receive(const RankMessage& message) {
+        MailReader reader(message);
+        for (Index unit = reader.take<Index>(); unit > 0; --unit)
+            regions_.elsewhere[bodies_.row_of(reader.take<Index>())] = 0;
+        while (!reader.at_end()) {
+            MailedContact mail = reader.take<MailedContact>();
+            ContactRow& row = mail.row;
+            row.first_body = bodies_.row_of(row.first_body);
+            if (row.second_body != no_index) row.second_body = bodies_.row_of(row.second_body);
+            for (Index& node : row.stencil.node)
+                node = bodies_.nodes[static_cast<std::size_t>(node % 2 ? row.second_body : row.first_body)].begin +
+                       node / 2;
+            regions_.received.push_back(mail);
+        }
+    }
+
+    /// Replaces the contact table by the contacts that this rank solves, in key order.
+    void merge() {
+        std::swap(contacts_, regions_.found);
+        const ContactTable& found = regions_.found;
+        const std::span<const MailedContact> received = regions_.received;
+        regions_.order.resize(received.size());
+        std::iota(regions_.order.begin(), regions_.order.end(), 0);
+        std::ranges::sort(regions_.order, {}, [&](Index i) { return received[static_cast<std::size_t>(i)].row.key; });
+        regions_.received_row.resize(received.size());
+        regions_.source.clear();
+        auto next = regions_.order.begin();
+        const auto take_received = [&](auto&& is_before) {
+            for (; next != regions_.order.end() && is_before(received[static_cast<std::size_t>(*next)].row.key);
+                 ++next) {
+                regions_.received_row[*next] = static_cast<Index>(regions_.source.size());
+                regions_.source.push_back(~*next);
+            }
+        };
+        for (std::size_t c = 0; c < found.size(); ++c) {
+            if (regions_.solved_row[c] < 0) continue;
+            take_received([&](const ContactKey& key) { return key < found.key[c]; });
+            regions_.solved_row[c] = static_cast<Index>(regions_.source.size());
+            regions_.source.push_back(static_cast<Index>(c));
+        }
+        take_received([](const ContactKey&) { return true; });
+        contacts_.resize(regions_.source.size());
+        for (std::size_t row = 0; row < regions_.source.size(); ++row)
+            if (regions_.source[row] < 0) write_received(received[static_cast<std::size_t>(~regions_.source[row])], row);
+        for_each_column_of(contacts_, found, found, [&](auto& to, const auto& from, const auto&) {
+            for (std::size_t row = 0; row < regions_.source.size(); ++row)
+                if (regions_.source[row] >= 0) to[row] = from[regions_.source[row]];
+        });
+    }
+
+    void write_received(const MailedContact& mail, std::size_t row) {
+        write_contact(mail.row, row, contacts_);
+        contacts_.friction_axis[row] = mail.friction_axis;
+        contacts_.impulse[row] = mail.impulse;
+    }
+
+    const SharedBodies& bodies_;
+    ContactTable& contacts_;
+    RankRegions& regions_;
+    Column<BodyRequest>& requests_;
+};
+
+void exchange_rows(const SharedBodies& bodies, const RegionGroups& nodes, const JoinedBodies& joined, const LabelRounds& rounds,
+                   ContactTable& contacts, RankRegions& regions, Column<BodyRequest>& requests, RankFindings& mine,
+                   RankChannel& channel) {
+    requests.clear();
+    find_units(joined, bodies.size(), regions);
+    RegionLabels labels(bodies, nodes, regions);
+    labels.join_groups(contacts.stencil);
+    mine.label_rounds = labels.settle(channel, rounds.count);
+    mine.labels_open = mine.label_rounds > rounds.count;
+    RowExchange(bodies, contacts, regions, requests).run(channel);
+    mine.bodies_missing = !requests.empty();
+}
+
+/// Puts the contacts that this rank has found into the contact table again. Their impulses are known by now.
+void take_back_rows(RankRegions& regions, ContactTable& contacts) {
+    if (!regions.exchanged) return;
+    for (std::size_t c = 0; c < regions.found.size(); ++c) {
+        const Index row = regions.solved_row[c];
+        if (row < 0) continue;
+        regions.found.impulse[c] = contacts.impulse[row];
+        regions.found.region[c] = contacts.region[row];
+    }
+    std::swap(contacts, regions.found);
+    regions.exchanged = false;
+}
+
+}  // namespace
+
+void list_row_exchange(WorldState& w, TaskGraph& g) {
+    if (!w.ranks.on()) return;
+    const Model& m = w.model;
+    g.stage("ranks/exchange_rows", exchange_rows, inputs<SharedBodies>(w.ranks, m.bodies, m.nodes),
+            inputs<RegionGroups>(m), inputs<JoinedBodies>(m), value(w.ranks.label_rounds), make(w.scratch.contacts),
+            make(w.scratch.rank_regions), make(w.ranks.requests), make(w.ranks.mine), make(w.ranks.channel));
+}
+
+void list_rows_taken_back(WorldState& w, TaskGraph& g) {
+    if (!w.ranks.on()) return;
+    g.stage("ranks/take_back_rows", take_back_rows, make(w.scratch.rank_regions), make(w.scratch.contacts));
+}
+
+}  // namespace skerry
