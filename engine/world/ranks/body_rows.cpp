@@ -150,10 +150,9 @@ private:
         }
     }
 
-    /// Appends the progress of the checks of stable steps. All ranks have checked the same bodies of the whole world.
+    /// Appends the progress of the checks of stable steps. The checks of all ranks have proceeded to the same place.
     void append_watch() {
         StepWatch& watch = to_.watch;
-        watch.body = watch.kept = 0;
         for (const Pick& pick : picks_) {
             const Source& source = sources_[pick.source];
             StepWatch& from = source.model->watch;
@@ -162,10 +161,16 @@ private:
             append_rows(from.position, nodes, watch.position);
             append_rows(from.stiffness_sum, nodes, watch.stiffness_sum);
             append_rows(from.step, {row, row + 1}, watch.step);
-            watch.body += row < source.watched;
-            watch.kept += row < source.kept;
-            if (row == source.watched) watch.look = source.look;
         }
+        const auto first_row = [&](auto&& is_open) {
+            return static_cast<Index>(std::ranges::find_if(picks_, is_open) - picks_.begin());
+        };
+        watch.body = first_row([&](const Pick& p) { return static_cast<Index>(p.row) >= sources_[p.source].watched; });
+        watch.kept = first_row([&](const Pick& p) { return static_cast<Index>(p.row) >= sources_[p.source].kept; });
+        if (watch.body < static_cast<Index>(picks_.size()))
+            if (const Pick& next = picks_[static_cast<std::size_t>(watch.body)];
+                static_cast<Index>(next.row) == sources_[next.source].watched)
+                watch.look = sources_[next.source].look;
         if (watch.step.size() == picks_.size() && watch.position.size() == to_.nodes.position.size()) return;
         watch = {};
     }
@@ -436,6 +441,7 @@ void move_tables(Model& from, Model& to) {
     to.watch.position = std::move(from.watch.position);
     to.watch.stiffness_sum = std::move(from.watch.stiffness_sum);
     to.watch.step = std::move(from.watch.step);
+    to.watch.first_piece.clear();
 }
 
 /// Lets the handles of a table refer to its present rows. Handles of absent rows keep their slots. `slot`: by row.

@@ -61,6 +61,7 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
     replace_rows(state, kept, {},
                  [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == mine.rank; });
     note_holders(mine, model.bodies, extents);
+    note_ghosts(state);
     list_step_again(state);
 }
 
@@ -90,6 +91,7 @@ std::optional<World> gathered(const World& world) {
     }
     replace_rows(copy, kept, added, [](std::uint64_t) { return true; });
     copy.ranks = {};
+    note_ghosts(copy);
     copy.model.of_ranks = {};
     return whole;
 }

@@ -243,6 +243,7 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
                      [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == rank; });
     whole.searched_step = world.record.counters.steps;
     note_holders(ranks, world.model.bodies, found.extents);
+    note_ghosts(world);
 }
 
 /// Finds whether a body may leave its box in this step.

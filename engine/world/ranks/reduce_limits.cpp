@@ -19,6 +19,7 @@ void reduce_limits(WorldState& world) {
     limits.has_frames = model.rigid_bodies.size() > 0;
     limits.has_implicit = model.implicit_nodes.size() > 0;
     limits.has_clusters = !model.clusters.empty();
+    limits.clusters_grew = model.clusters_grew;
     limits.moves = model.force_rate_moves || model.joints.slot.size() > 0 || model.ties.size() > 0;
     reduce(*world.ranks.ranks, limits, [](std::byte* into, const std::byte* from) {
         LimitsOfRanks all, other;
@@ -30,10 +31,13 @@ void reduce_limits(WorldState& world) {
         all.has_frames |= other.has_frames;
         all.has_implicit |= other.has_implicit;
         all.has_clusters |= other.has_clusters;
+        all.clusters_grew |= other.clusters_grew;
         all.moves |= other.moves;
         std::memcpy(into, &all, sizeof all);
     });
     model.of_ranks = limits;
+    if (limits.clusters_grew) world.ranks.pieces_before.clear();
+    model.clusters_grew = false;
 }
 
 StrainRate fastest_of_ranks(WorldState& world, const StrainRate& mine) {

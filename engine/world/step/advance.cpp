@@ -262,7 +262,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             attempt.slow_enough = step_of_turns(model, attempt.slow_enough, attempt.fastest);
         const Real within = left_in_long_step(model, left, clock.long_step);
         const StepPlan plan = plan_step(model, within, attempt.at_most());
-        store_shapes(*world.executor, model, steps_per_round(world), world.scratch.watch_pieces);
+        if (model.watch.first_piece.empty()) count_pieces(world);
+        store_shapes(*world.executor, model, steps_per_round(world));
         world.query_trees.forget();
         if (leapfrog) drift(plan.h / 2);
         const Real start = clock.time;
@@ -270,6 +271,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const StepOutcome outcome = try_step(world, plan, attempt);
         stiffened += world.scratch.findings.stiffened;  // energy also counts if the attempt is not committed
         note_outcome(outcome, world.record.counters, report);
+        if (outcome == StepOutcome::again_over_ranks &&
+            (world.ranks.all.bodies_missing || world.ranks.all.ghosts_expired))
+            update_ghosts(world);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
             break;

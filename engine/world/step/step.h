@@ -24,6 +24,20 @@ void count_committed_step(const RunCounters& step, RunCounters& run);
 /// Energy that a step dissipated [J].
 Real dissipated_in(const StepFindings& findings);
 
+// ranks/lead_ghosts.cpp
+
+/// Computes BodyTable::ghost. Must be called after bodies, their owners or their holders have changed.
+void note_ghosts(WorldState& world);
+/// Lists the stage that sends the predicted velocities of bodies to the ranks that hold a led ghost of them.
+void list_led_ghosts(WorldState& world, TaskGraph& graph);
+
+// ranks/sleep_over_ranks.cpp
+
+/// Lists the stages by which sets of touching bodies on several ranks fall asleep and wake as in an undivided world.
+void list_wakes(WorldState& world, TaskGraph& graph);         // finds bodies that this rank wakes; before the reduction
+void list_joined_wakes(WorldState& world, TaskGraph& graph);  // joins these bodies of all ranks; before wake_bodies
+void list_joined_sets(WorldState& world, TaskGraph& graph);   // joins the sets of all ranks; before rest_bodies
+
 // ranks/reduce_findings.cpp
 
 /// Lists the stage that combines the findings of all ranks. It has no stage if this process simulates the whole world.
@@ -96,7 +110,10 @@ Real evaluate_stable_steps(Model& model, Column<Real>& stiffness_sum);
 Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum);
 /// Must be called before each step. Copies the shapes of some bodies; the stable steps for these shapes are then
 /// evaluated in parallel with the step. In a round of `round` steps, all bodies are evaluated.
-void store_shapes(Executor& executor, Model& model, std::uint64_t round, Column<WatchPieces>& pieces_memory);
+void store_shapes(Executor& executor, Model& model, std::uint64_t round);
+/// Computes StepWatch::first_piece. With ranks it is collective the first time, and after a round in which elements of
+/// some rank became implicit.
+void count_pieces(WorldState& world);
 
 /// Updates the matrices of clusters whose elements have stiffened, exactly as the next step would do. Returns the
 /// energy that this update adds to the balance [J].

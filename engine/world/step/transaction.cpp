@@ -126,21 +126,21 @@ bool run_stages(WorldState& world) {
 /// unstrained bodies the swapped columns contain equal values.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
-    if (!world.model.any_asleep) {
+    if (!world.model.any_idle) {
         elements.rotation.swap(elements.rotation_next);
         elements.spring_strain.swap(elements.spring_strain_next);
         return;
     }
     ElementInputs awake = world.model.awake_elements();
     // A body that this step has woken was asleep while the stages ran, so its element rotations were not computed.
-    awake.body_asleep = world.transaction.rested(world.model.bodies);
+    awake.body_idle = world.transaction.rested(world.model.bodies);
     keep_memory(*world.executor, awake, elements);
 }
 
 /// Returns the elements of the bodies that moved to the yield surface at their new positions.
 void flow(WorldState& world) {
     ElementInputs moved = world.model.awake_elements();
-    if (world.model.any_asleep) moved.body_asleep = world.transaction.rested(world.model.bodies);
+    if (world.model.any_idle) moved.body_idle = world.transaction.rested(world.model.bodies);
     const bool yields = std::ranges::any_of(world.model.materials.constants, &MaterialConstants::yields);
     const TraceZone zone(world.record.tracing && yields ? &world.record.trace : nullptr, "dynamics/yield_elements");
     world.scratch.findings.plastic = yield_blocks(world, moved, world.model.all_blocks());
@@ -343,7 +343,6 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     // motion in the next attempt, and the lists cannot cover every motion.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
-    world.ranks.mine = world.ranks.all = {};
     const bool ran = run_stages(world);
     if (world.ranks.on() && ran && !scratch.left_out) world.ranks.label_rounds.note(world.ranks.all.label_rounds);
     const StepOutcome outcome = judge(scratch, world.ranks.all.again_over_ranks(), world.cache.crossings.beyond_lists,
@@ -394,7 +393,7 @@ void StepTransaction::roll_back_try(Model& model) const {
 }
 
 std::span<const std::uint8_t> StepTransaction::rested(const BodyTable& bodies) {
-    for (std::size_t b = 0; b < asleep_.size(); ++b) asleep_[b] |= bodies.asleep[b];
+    for (std::size_t b = 0; b < asleep_.size(); ++b) asleep_[b] = asleep_[b] || bodies.asleep[b] || bodies.idle[b];
     return asleep_;
 }
 

@@ -92,8 +92,8 @@ public:
     void roll_back_try(Model& model) const;
     /// For each body, nonzero if it was asleep when the attempt began. Valid until `rested` is called.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
-    /// For each body, nonzero if it was asleep when the attempt began or is asleep now. The stages, or the completion
-    /// of the attempt, skip such a body.
+    /// For each body, nonzero if it was idle when the attempt began or is asleep now. The stages, or the completion of
+    /// the attempt, skip such a body.
     std::span<const std::uint8_t> rested(const BodyTable& bodies);
 
     /// begin_call and roll_back_call store and restore the state at the start of a call of advance, if the integrator
