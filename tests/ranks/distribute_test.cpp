@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/world/ranks/ghosts.h"
+#include "engine/world/ranks/hold/ghosts.h"
 #include "skerry/ranks.h"
 #include "tests/ranks/rank_scenes.h"
 #include "tests/ranks/thread_ranks.h"

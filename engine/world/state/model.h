@@ -106,8 +106,11 @@ struct NamedHandles : HandleMap<HandleType> {
 /// (reduce_limits). Without ranks it limits nothing.
 struct LimitsOfRanks {
     Real stable_step = infinity;  // shortest stable step [s]
+    Index stiffest = no_index;    // place of the body with this stable step: its row in the undivided world
+    bool strained = false;        // true if strain has shortened this stable step (is_strained)
     Real rest_step = infinity;    // shortest stable step at rest of a body with elements [s]
     Real spin = 0;                // greatest angular speed of a body with a joint or tie [rad/s]
+    Index spinning = no_index;    // place of the body with this speed
     bool has_frames = false;      // true if some body is rigid or implicit
     bool has_implicit = false;    // true if some body is implicit
     bool has_clusters = false;    // true if some body has clusters

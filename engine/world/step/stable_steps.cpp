@@ -61,11 +61,16 @@ Real stable_step(const Model& model, Index* body) {
         smallest = step;
         if (body) *body = static_cast<Index>(b);
     }
-    if (model.of_ranks.stable_step < smallest) {
-        smallest = model.of_ranks.stable_step;
-        if (body) *body = no_index;
-    }
-    return smallest;
+    if (!(model.of_ranks.stable_step <= smallest) || model.of_ranks.stiffest == no_index) return smallest;
+    if (body) *body = no_index;
+    return model.of_ranks.stable_step;
+}
+
+bool is_strained(const Model& model, std::size_t body) {
+    // Largest ratio of the stable step of a body to its stable step at rest for which strain counts as the cause of a
+    // short step. Above this ratio the cause is the rest shape.
+    constexpr Real as_at_rest = 0.9;
+    return model.bodies.stable_step[body] < as_at_rest * model.bodies.rest_step[body];
 }
 
 Real reported_step(const Model& model, Index* body) {

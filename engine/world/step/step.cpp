@@ -5,7 +5,7 @@
 #include "engine/world/step/step.h"
 
 #include "engine/world/kernels.h"
-#include "engine/world/ranks/ghosts.h"
+#include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/seams.h"
 #include "systems/contact/prepare_ties.h"
 #include "systems/contact/separate_regions.h"
@@ -96,7 +96,9 @@ void build_step(WorldState& w) {
 }
 
 void list_step_again(WorldState& w) {
+    const CrossingTable& crossings = w.cache.crossings;
     w.ranks.channel.ranks = w.ranks.ranks;
+    w.ranks.share = {.tested = crossings.tested, .hits = crossings.hits, .let_through = crossings.let_through};
     w.graph = TaskGraph();
     w.graph.track(&w, sizeof w, name_of_column);
     build_step(w);

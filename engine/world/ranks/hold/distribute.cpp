@@ -1,8 +1,8 @@
 #include <numeric>
 
 #include "engine/world/complaint.h"
-#include "engine/world/ranks/body_rows.h"
-#include "engine/world/ranks/ghosts.h"
+#include "engine/world/ranks/rows/body_rows.h"
+#include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/step.h"
 #include "skerry/ranks.h"
 
