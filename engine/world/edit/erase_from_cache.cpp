@@ -18,7 +18,7 @@ public:
         const auto &first = down(pairs_.first[p]),
                    &second = pairs_.kind[p] == PairKind::collider ? first : down(pairs_.second[p]);
         const Index second_row = second_now(p);
-        if (first.bodies > 0 || second.bodies > 0 || second_row != pairs_.second[p])
+        if (first != Down{} || second != Down{} || second_row != pairs_.second[p])
             for (Candidate& candidate : pairs_.candidates[p]) renumber(candidate, pairs_.kind[p], first, second);
         if (pairs_.kind[p] == PairKind::collider)
             for (Candidate& candidate : pairs_.candidates[p]) candidate.second = second_row;

@@ -21,8 +21,8 @@ void lower(Range& range, Index by) {
 /// Renumbers the references between rows of one body, in all tables.
 class RowsOfBody {
 public:
-    RowsOfBody(Model& model, std::size_t body, const OfBodyTables<Index>& down)
-        : model_(model), body_(body), has_(rows_of_body(model, body)), down_(down) {}
+    RowsOfBody(Model& model, std::size_t body, const OfBodyTables<Range>& has, const OfBodyTables<Index>& down)
+        : model_(model), body_(body), has_(has), down_(down) {}
 
     void renumber() const {
         nodes();
@@ -185,24 +185,14 @@ void erase_bodies(const RowMoves& moves, Model& model) {
     renumber_clusters(moves, model, model.clusters);
     model.known_elements.clear();
     for (std::size_t b = first; b < moves.body_now.size(); ++b)
-        if (moves.body_now[b] != no_index) RowsOfBody(model, b, moves.down[b]).renumber();
+        if (moves.body_now[b] != no_index) renumber_rows_of_body(model, b, rows_of_body(model, b), moves.down[b]);
     const OfBodyTables<std::vector<Range>>& gone = moves.gone;
-    AnyTable(model.nodes).erase(gone.nodes);
-    AnyTable(model.node_blocks).erase(gone.node_blocks);
-    AnyTable(model.tetrahedra).erase(gone.tetrahedron_blocks);
-    AnyTable(model.elements).erase(gone.blocks);
-    AnyTable(model.element_nodes).erase(gone.element_nodes);
-    AnyTable(model.surface.triangles).erase(gone.triangles);
-    AnyTable(model.surface.edges).erase(gone.edges);
-    AnyTable(model.surface.vertices).erase(gone.vertices);
-    model.surface.vertex_triangle.erase(gone.vertex_triangles);
-    AnyTable(model.bvh).erase(gone.bvh_nodes);
-    AnyTable(model.bvh_leaves).erase(gone.bvh_leaves);
-    AnyTable(model.rigid_bodies).erase(gone.rigid);
-    AnyTable(model.implicit_nodes).erase(gone.implicit);
+    constexpr auto list_of = OfBodyTables<std::vector<Range>>::members();
+    const std::vector<std::vector<AnyColumn>> tables = columns_by_body_table(model);
+    for (std::size_t table = 0; table < tables.size(); ++table)
+        for (const AnyColumn& column : tables[table]) column.erase(gone.*list_of[table]);
     for (auto rows = gone.rigid.rbegin(); rows != gone.rigid.rend(); ++rows)
         model.stiff_bodies.erase(model.stiff_bodies.begin() + rows->begin, model.stiff_bodies.begin() + rows->end);
-    AnyTable(model.bodies).erase(gone.bodies);
     erase_records(moves.body_now, model.body_records);
     model.body_mass.erase(gone.bodies);
     model.watch.erase(gone.bodies, gone.nodes);
@@ -210,6 +200,11 @@ void erase_bodies(const RowMoves& moves, Model& model) {
 }
 
 }  // namespace
+
+void renumber_rows_of_body(Model& model, std::size_t body, const OfBodyTables<Range>& rows,
+                           const OfBodyTables<Index>& down) {
+    RowsOfBody(model, body, rows, down).renumber();
+}
 
 void erase_scripted_rows(std::span<const Range> gone, ColliderTable& table) {
     erase_scripts(gone, table);

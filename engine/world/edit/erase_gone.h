@@ -22,6 +22,10 @@ std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body
 /// Removes the rows of erased bodies and colliders from the model. Also removes the element patches of the first erased
 /// body and of all later bodies; Model::extend_derived builds these patches again.
 void erase_gone(const RowMoves& moves, Model& model);
+/// Renumbers all references between rows of one body, in all tables. `rows`: the present rows of the body. `down`:
+/// numbers that are subtracted from the references.
+void renumber_rows_of_body(Model& model, std::size_t body, const OfBodyTables<Range>& rows,
+                           const OfBodyTables<Index>& down);
 /// Removes scripted colliders or attachments together with their keyframes. `gone`: removed rows in ascending order.
 void erase_scripted_rows(std::span<const Range> gone, ColliderTable& table);
 void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table);

@@ -19,6 +19,44 @@ Range entries_of(const Table& table, const ColumnInfo& column, std::size_t row) 
     return {static_cast<Index>(row), static_cast<Index>(row) + 1};
 }
 
+/// The lists of entries that the rows of a table have in columns without one entry per row: `rows` is the column with
+/// the range of each row, and `columns` are the columns with its entries.
+struct RowLists {
+    Column<Range>* rows;
+    std::vector<AnyColumn> columns;
+};
+inline std::vector<RowLists> lists_of(JointTable& t) {
+    return {{&t.motor_keys, {t.key}}};
+}
+inline std::vector<RowLists> lists_of(SurfaceSetTable& t) {
+    return {{&t.members, {t.member}}};
+}
+inline std::vector<RowLists> lists_of(TieTable& t) {
+    return {{&t.nodes, {t.node, t.corner, t.weight, t.place, t.normal, t.impulse, t.broken}}};
+}
+inline std::vector<RowLists> lists_of(CableTable& t) {
+    return {{&t.points, {t.anchor.body, t.anchor.collider, t.anchor.point, t.tension, t.length}}, {&t.keys, {t.key}}};
+}
+inline std::vector<RowLists> lists_of(CavityTable& t) {
+    return {{&t.faces, {t.face, t.corners}}, {&t.keys, {t.key}}};
+}
+inline std::vector<RowLists> lists_of(PipeTable& t) {
+    return {{&t.keys, {t.key}}};
+}
+inline std::vector<RowLists> lists_of(FibreTable& t) {
+    return {{&t.tetrahedra, {t.tetrahedron, t.node, t.slope, t.volume, t.passive, t.mobility, t.next}},
+            {&t.tension_keys, {t.key}}};
+}
+inline std::vector<RowLists> lists_of(LoadTable& t) {
+    return {{&t.nodes, {t.node, t.weight}}, {&t.faces, {t.face}}, {&t.scale_keys, {t.key}}};
+}
+inline std::vector<RowLists> lists_of(SpringTable& t) {
+    return {{&t.rest_length, {t.key}}};
+}
+inline std::vector<RowLists> lists_of(AttachmentTable& t) {
+    return {{&t.nodes, {t.node, t.anchor}}};
+}
+
 /// Removes the marked rows of a table and their handles. `gone`: true for each row to be removed.
 template <class Table, class Handle>
 void erase_joining_rows(const std::vector<bool>& gone, Table& table, NamedHandles<Handle>& map) {

@@ -22,6 +22,19 @@ void number_rows(std::size_t count, auto&& is_gone, std::vector<Range>& gone, st
 
 }  // namespace
 
+std::vector<std::vector<AnyColumn>> columns_by_body_table(Model& model) {
+    const auto all = [](AnyTable table) {
+        std::vector<AnyColumn> columns;
+        for (const ColumnInfo& info : table.columns()) columns.push_back(table.column(info));
+        return columns;
+    };
+    SurfaceTables& surface = model.surface;
+    return {all(model.bodies),      all(model.nodes),         all(model.node_blocks), all(model.elements),
+            all(model.element_nodes), all(surface.edges),     all(model.tetrahedra),  all(surface.triangles),
+            all(surface.vertices),  all(model.bvh),           {surface.vertex_triangle}, all(model.bvh_leaves),
+            all(model.rigid_bodies), all(model.implicit_nodes)};
+}
+
 OfBodyTables<Range> rows_of_body(const Model& model, std::size_t body) {
     const BodyTable& table = model.bodies;
     const auto row = static_cast<Index>(body);

@@ -25,7 +25,11 @@ struct OfBodyTables {
                           &Of::vertices,      &Of::bvh_nodes, &Of::vertex_triangles,   &Of::bvh_leaves,
                           &Of::rigid,         &Of::implicit};
     }
+    bool operator==(const OfBodyTables&) const = default;
 };
+
+/// The columns of each table in which a body has rows. The tables are in the order of OfBodyTables::members().
+std::vector<std::vector<AnyColumn>> columns_by_body_table(Model& model);
 
 OfBodyTables<Range> rows_of_body(const Model& model, std::size_t body);
 

@@ -1,0 +1,50 @@
+// Division of one world among several processes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "components/options.h"
+#include "skerry/world.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+/// The processes that simulate one world together. Each process is a rank.
+class Ranks;
+
+/// Rule that chooses the ranks that own bodies: equal shares of the cost along a space-filling curve, which keeps
+/// neighbours together; in turn; or at random. The results are the same for all rules.
+enum class OwnerMap : std::uint8_t { curve, round_robin, random };
+template <>
+struct EnumNames<OwnerMap> {
+    static constexpr std::array<std::pair<OwnerMap, std::string_view>, 3> table{{
+        {OwnerMap::curve, "curve"},
+        {OwnerMap::round_robin, "round_robin"},
+        {OwnerMap::random, "random"},
+    }};
+};
+
+struct RankSettings {
+    OwnerMap map = OwnerMap::curve;
+    // The bodies get new owners if the greatest cost of a rank exceeds the mean cost by this factor. Only for
+    // OwnerMap::curve.
+    double most_imbalance = 1.2;
+    std::uint64_t seed = 1;  // for OwnerMap::random
+};
+
+/// Divides a world among ranks. All ranks must call the function with equal worlds. Afterwards each rank simulates the
+/// bodies that it owns. All ranks must then make the same calls of advance() and gathered(). Calls that change objects
+/// throw SceneError. Throws SceneError if the world uses something that ranks cannot divide.
+void distribute(World& world, Ranks& ranks, const RankSettings& settings = {});
+
+/// Returns the complete world on rank 0 and nothing on the other ranks. All ranks must call the function. The result
+/// equals the world that one process would have computed, with the same handles. If the world is not divided, returns a
+/// copy.
+std::optional<World> gathered(const World& world);
+
+}  // namespace skerry
+#pragma GCC visibility pop

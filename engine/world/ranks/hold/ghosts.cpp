@@ -1,0 +1,318 @@
+#include "engine/world/ranks/hold/ghosts.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/world/ranks/rows/body_rows.h"
+#include "engine/world/step/step.h"
+#include "jobs/stage_arguments.h"
+#include "systems/collision/tree/box.h"
+
+namespace skerry {
+
+namespace {
+
+/// Number of rank searches for which a rank holds a body that it has requested.
+constexpr int searches_of_requests = 8;
+/// Greatest number of steps between two rank searches.
+constexpr std::uint64_t steps_between_searches = 1000;
+/// Number of steps for which the margin of a body lasts if the body keeps its speed.
+constexpr Real steps_of_margin = 100;
+/// Cost of a contact, in units of the cost of an explicit element. The solver visits a contact several times.
+constexpr Real contact_cost = 10;
+/// Cost of a body without elements, in the same units.
+constexpr Real body_cost = 20;
+
+/// Distance by which a body may move before its holders are found again [m]. `speed`: greatest speed of a node [m/s].
+Real margin_of(const WorldState& world, std::size_t body, Real speed) {
+    const Model& model = world.model;
+    const Real h = world.clock.step_before > 0 ? world.clock.step_before : trusted_step(model);
+    const Real time = std::isfinite(h) ? steps_of_margin * h : 0;
+    const Real size = model.bodies.mean_edge[body] + model.bodies.round_radius[body] / 8;
+    return size + time * (speed + model.settings.gravity.norm() * time);
+}
+
+BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
+    const Model& model = world.model;
+    const BodyTable& bodies = model.bodies;
+    Range nodes = bodies.nodes[body];
+    // the other nodes of a round body only draw it
+    if (const Index core = bodies.core_nodes[body]; core > 0) nodes.end = nodes.begin + core;
+    Aabb box = empty_box();
+    Real speed = 0;
+    for (Index node = nodes.begin; node < nodes.end; ++node) {
+        grow(box, model.nodes.position[node]);
+        speed = std::max(speed, model.nodes.velocity[node].norm());
+    }
+    const Real margin = margin_of(world, body, speed);
+    const Vec3 more = Vec3::Constant(margin + bodies.contact_distance[body] + bodies.round_radius[body]);
+    const auto elements = static_cast<Real>(bodies.blocks[body].size() * Index{element_lanes});
+    return {.place = world.ranks.place[body],
+            .cost = body_cost + elements + static_cast<Real>(bodies.implicit[body].size()) + contact_cost * contacts,
+            .margin = margin,
+            .box = {box.lower - more, box.upper + more}};
+}
+
+/// Facts that each rank tells all others in a rank search.
+struct SearchHeader {
+    std::uint64_t extents, requests, stale;
+    std::uint64_t keeps_owners;  // 1: bodies must not get new owners now
+};
+
+template <class T>
+void put_rows(std::span<T> rows, RankMessage& message) {
+    const std::span<const std::byte> bytes = std::as_bytes(rows);
+    message.insert(message.end(), bytes.begin(), bytes.end());
+}
+template <class T>
+std::vector<T> take_rows(std::span<const std::byte>& message, std::uint64_t count) {
+    std::vector<T> rows(count);
+    if (count > 0) std::memcpy(static_cast<void*>(rows.data()), message.data(), count * sizeof(T));
+    message = message.subspan(count * sizeof(T));
+    return rows;
+}
+
+/// Facts about the bodies of all ranks.
+struct RankSearch {
+    std::vector<BodyExtent> extents;  // in the order of the places
+    std::vector<FetchedUnit> requests;
+    std::vector<Index> stale;  // places
+    bool keeps_owners = false;
+};
+
+std::vector<std::uint8_t> owned_bodies(const WorldState& world) {
+    std::vector<std::uint8_t> owned;
+    for (std::size_t b = 0; b < world.ranks.owner.size(); ++b)
+        owned.push_back(world.ranks.owns(b) && world.model.bodies.kind[b] == BodyKind::deformable);
+    return owned;
+}
+
+RankSearch search_ranks(WorldState& world) {
+    RankState& ranks = world.ranks;
+    const std::vector<BodyExtent> extents = extents_of(world, owned_bodies(world));
+    std::vector<FetchedUnit> requests;
+    for (const BodyRequest& request : ranks.requests)
+        requests.push_back({ranks.whole.unit[request.place], request.rank, searches_of_requests});
+    RankMessage mine;
+    const SearchHeader header{extents.size(), requests.size(), ranks.stale.size(),
+                              world.cache.crossings.row.empty() ? 0u : 1u};
+    put_rows(std::span(&header, 1), mine);
+    put_rows(std::span(extents), mine);
+    put_rows(std::span(requests), mine);
+    put_rows(ranks.stale.span(), mine);
+    RankSearch all;
+    for (const RankMessage& message : ranks.ranks->gather_everywhere(mine)) {
+        std::span<const std::byte> bytes(message);
+        const SearchHeader of_rank = take_rows<SearchHeader>(bytes, 1)[0];
+        const auto append = [](auto& to, const auto& more) { to.insert(to.end(), more.begin(), more.end()); };
+        append(all.extents, take_rows<BodyExtent>(bytes, of_rank.extents));
+        append(all.requests, take_rows<FetchedUnit>(bytes, of_rank.requests));
+        append(all.stale, take_rows<Index>(bytes, of_rank.stale));
+        all.keeps_owners |= of_rank.keeps_owners != 0;
+    }
+    std::ranges::sort(all.extents, {}, &BodyExtent::place);
+    ranks.requests.clear();
+    ranks.stale.clear();
+    return all;
+}
+
+bool contains(const std::vector<int>& ranks, int rank) {
+    return std::ranges::binary_search(ranks, rank);
+}
+void insert(int rank, std::vector<int>& ranks) {
+    const auto at = std::ranges::lower_bound(ranks, rank);
+    if (at == ranks.end() || *at != rank) ranks.insert(at, rank);
+}
+
+/// Change of the owners and holders of all bodies. All ranks compute the same change.
+class HolderChange {
+public:
+    HolderChange(WholeWorld& whole, const RankSearch& found, Column<std::int32_t> owner, int rank_count)
+        : before_(whole), owner_(std::move(owner)), stale_(whole.size(), 0) {
+        for (const Index place : found.stale) stale_[static_cast<std::size_t>(whole.unit[place])] = 1;
+        note_requests(whole, found.requests);
+        holders_ = find_holders(whole, owner_, found.extents);
+        for (const FetchedUnit& fetched : whole.fetched)
+            for (const BodyExtent& body : found.extents)
+                if (whole.unit[body.place] == fetched.unit) insert(fetched.rank, holders_at(body.place));
+        keep_ghosts(found.extents, rank_count);
+    }
+
+    bool owners_change() const { return !std::ranges::equal(owner_, before_.owner); }
+    const Column<std::int32_t>& owner() const { return owner_; }
+    const std::vector<std::vector<int>>& holders() const { return holders_; }
+    /// True if the old owner of a body sends the rows of the body to a rank.
+    bool is_sent(Index place, int rank) const {
+        const auto p = static_cast<std::size_t>(place);
+        if (!contains(holders_[p], rank) || rank == before_.owner[place]) return false;
+        return !contains(before_.holders[p], rank) || rank == owner_[place] ||
+               stale_[static_cast<std::size_t>(before_.unit[place])] != 0;
+    }
+    /// True if a rank keeps the rows of a body that it held before.
+    bool is_kept(Index place, int rank) const {
+        return before_.owner[place] == WholeWorld::everywhere ||
+               (contains(holders_[static_cast<std::size_t>(place)], rank) && !is_sent(place, rank));
+    }
+
+private:
+    std::vector<int>& holders_at(Index place) { return holders_[static_cast<std::size_t>(place)]; }
+
+    static void note_requests(WholeWorld& whole, const std::vector<FetchedUnit>& requests) {
+        for (FetchedUnit& fetched : whole.fetched) --fetched.searches;
+        for (const FetchedUnit& request : requests) {
+            std::erase_if(whole.fetched, [&](const FetchedUnit& other) {
+                return other.unit == request.unit && other.rank == request.rank;
+            });
+            whole.fetched.push_back(request);
+        }
+        std::erase_if(whole.fetched, [](const FetchedUnit& fetched) { return fetched.searches <= 0; });
+    }
+
+    /// A rank that receives no rows keeps the ghosts that it no longer needs, because a change of its tables costs as
+    /// much as some steps.
+    void keep_ghosts(std::span<const BodyExtent> extents, int rank_count) {
+        if (owners_change()) return;
+        std::vector<std::uint8_t> receives(static_cast<std::size_t>(rank_count), 0);
+        for (const BodyExtent& body : extents)
+            for (const int rank : holders_at(body.place))
+                if (is_sent(body.place, rank)) receives[static_cast<std::size_t>(rank)] = 1;
+        for (const BodyExtent& body : extents)
+            for (const int rank : before_.holders[static_cast<std::size_t>(body.place)])
+                if (!receives[static_cast<std::size_t>(rank)]) insert(rank, holders_at(body.place));
+    }
+
+    const WholeWorld& before_;
+    Column<std::int32_t> owner_;
+    std::vector<std::uint8_t> stale_;  // by unit: nonzero if all holders need its rows again
+    std::vector<std::vector<int>> holders_;
+};
+
+/// Ranks to which this rank sends rows or from which it receives rows.
+std::vector<int> partners_of(const HolderChange& change, const WholeWorld& whole, std::span<const BodyExtent> extents,
+                             const Ranks& ranks) {
+    std::vector<int> partners;
+    if (change.owners_change()) {  // contacts may come from any rank
+        for (int rank = 0; rank < ranks.size(); ++rank)
+            if (rank != ranks.rank()) partners.push_back(rank);
+        return partners;
+    }
+    for (const BodyExtent& body : extents)
+        for (const int rank : change.holders()[static_cast<std::size_t>(body.place)]) {
+            if (!change.is_sent(body.place, rank)) continue;
+            const int sender = whole.owner[body.place];
+            if (sender == ranks.rank()) insert(rank, partners);
+            if (rank == ranks.rank()) insert(sender, partners);
+        }
+    return partners;
+}
+
+void move_bodies(WorldState& world, const RankSearch& found, const HolderChange& change) {
+    RankState& ranks = world.ranks;
+    WholeWorld& whole = ranks.whole;
+    const int rank = ranks.rank;
+    const std::vector<int> partners = partners_of(change, whole, found.extents, *ranks.ranks);
+    std::vector<RankMessage> out, in(partners.size());
+    for (const int partner : partners) {
+        std::vector<std::uint8_t> sent;
+        for (std::size_t b = 0; b < ranks.place.size(); ++b)
+            sent.push_back(ranks.owner[b] == rank && change.is_sent(ranks.place[b], partner) &&
+                           whole.owner[ranks.place[b]] == rank);
+        BodyRows rows = rows_of_bodies(world, sent, [&](std::uint64_t pair) {
+            return whole.pair_owner(pair, whole.owner) == rank && whole.pair_owner(pair, change.owner()) == partner;
+        });
+        out.push_back(message_of(rows));
+    }
+    if (!partners.empty()) ranks.ranks->exchange(partners, out, in);
+    std::vector<std::uint8_t> kept;
+    bool all_kept = true;
+    for (const Index place : ranks.place) {
+        kept.push_back(change.is_kept(place, rank));
+        all_kept &= kept.back() != 0;
+    }
+    std::vector<BodyRows> added;
+    for (const RankMessage& message : in) {
+        std::span<const std::byte> bytes(message);
+        added.push_back(rows_of_message(bytes));
+    }
+    const bool changes = !all_kept || change.owners_change() ||
+                         std::ranges::any_of(added, [](const BodyRows& rows) { return !rows.place.empty(); });
+    whole.holders = change.holders();
+    whole.owner = change.owner();
+    if (changes)
+        replace_rows(world, kept, added,
+                     [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == rank; });
+    whole.searched_step = world.record.counters.steps;
+    note_holders(ranks, world.model.bodies, found.extents);
+    note_ghosts(world);
+}
+
+/// Finds whether a body may leave its box in this step.
+void watch_ghosts(const SearchState& search, std::span<const Real> limit, const RunCounters& run,
+                  const std::uint64_t& searched_step, RankFindings& mine) {
+    const std::span<const Real> bound = search.memory.body_travel_bound;
+    for (std::size_t b = 0; b < bound.size(); ++b) mine.ghosts_expired |= !(bound[b] < limit[b]);
+    mine.ghosts_expired |= run.steps >= searched_step + steps_between_searches;
+}
+
+}  // namespace
+
+std::vector<BodyExtent> extents_of(const WorldState& world, std::span<const std::uint8_t> marked) {
+    std::vector<Real> contacts(marked.size(), 0);
+    const ContactTable& table = world.scratch.contacts;
+    for (std::size_t c = 0; c < table.size(); ++c)
+        if (const Index body = table.first_body[c]; body != no_index) contacts[static_cast<std::size_t>(body)] += 1;
+    std::vector<BodyExtent> extents;
+    for (std::size_t b = 0; b < marked.size(); ++b)
+        if (marked[b]) extents.push_back(extent_of(world, b, contacts[b]));
+    return extents;
+}
+
+void note_holders(RankState& ranks, const BodyTable& bodies, std::span<const BodyExtent> extents) {
+    const WholeWorld& whole = ranks.whole;
+    ranks.owner.clear();
+    ranks.peers.clear();
+    ranks.holders.clear();
+    ranks.travel_limit.assign(ranks.place.size(), infinity);
+    for (std::size_t b = 0; b < ranks.place.size(); ++b) {
+        const Index place = ranks.place[b];
+        const std::int32_t owner = whole.owner[place];
+        ranks.owner.push_back(owner == WholeWorld::everywhere ? ranks.rank : owner);
+        for (const int rank : whole.holders[static_cast<std::size_t>(place)])
+            if (rank != ranks.rank) insert(rank, ranks.peers);
+        if (owner != ranks.rank) continue;
+        const auto body = std::ranges::lower_bound(extents, place, {}, &BodyExtent::place);
+        ranks.travel_limit[b] =
+            bodies.travel[b] + bodies.frame[b].path - 2 * bodies.displacement[b] + body->margin;
+    }
+    for (const Index place : ranks.place) {
+        std::vector<int>& holders = ranks.holders.emplace_back();
+        for (const int rank : whole.holders[static_cast<std::size_t>(place)])
+            if (rank != ranks.rank)
+                holders.push_back(
+                    static_cast<int>(std::ranges::lower_bound(ranks.peers, rank) - ranks.peers.begin()));
+    }
+}
+
+void list_ghost_watch(WorldState& w, TaskGraph& g) {
+    if (!w.ranks.on()) return;
+    g.stage("ranks/watch_ghosts", watch_ghosts, read(w.cache.search), read(w.ranks.travel_limit),
+            read(w.record.counters), read(w.ranks.whole.searched_step), make(w.ranks.mine));
+}
+
+void update_ghosts(WorldState& world) {
+    WholeWorld& whole = world.ranks.whole;
+    const RankSearch found = search_ranks(world);
+    const int count = world.ranks.ranks->size();
+    const bool unbalanced = whole.settings.map == OwnerMap::curve && !found.keeps_owners &&
+                            imbalance(whole.owner, found.extents, count) > whole.settings.most_imbalance;
+    Column<std::int32_t> owner =
+        unbalanced ? choose_owners(whole, found.extents, whole.settings, count) : Column<std::int32_t>(whole.owner);
+    move_bodies(world, found, HolderChange(whole, found, std::move(owner), count));
+}
+
+void move_to_owners(WorldState& world, const Column<std::int32_t>& owner) {
+    const RankSearch found = search_ranks(world);
+    move_bodies(world, found, HolderChange(world.ranks.whole, found, owner, world.ranks.ranks->size()));
+}
+
+}  // namespace skerry

@@ -1,0 +1,60 @@
+// Facts about all bodies of a world that is divided among ranks. All ranks have the same facts, except for the records.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/world/state/model.h"
+#include "skerry/ranks.h"
+#include "systems/collision/inputs/contact_key.h"
+
+namespace skerry {
+
+/// A rank that holds a unit because it has to solve a region with a body of the unit.
+struct FetchedUnit {
+    Index unit;  // WholeWorld::unit
+    int rank;
+    int searches;  // number of rank searches after which the rank no longer needs the unit
+
+    bool operator==(const FetchedUnit&) const = default;
+};
+
+/// The *place* of a body is its row in the undivided world. The rows of a rank are in the order of their places.
+struct WholeWorld {
+    static constexpr std::int32_t everywhere = -1;  // owner of a kinematic body, which each rank computes
+
+    // The next columns have one row per place.
+    Column<std::int32_t> owner;  // rank
+    Column<std::uint32_t> slot;  // BodyTable::slot
+    // First place of the unit of the body. A *unit* is a set of bodies that rows other than contacts join. All bodies
+    // of a unit have the same owner and the same holders.
+    Column<Index> unit;
+    std::vector<BodyRecord> records;    // records of the bodies that this rank does not hold
+    std::vector<Index> place_of_slot;   // by handle slot: place of the body, or no_index
+    // Row in the undivided world of each row that joins bodies: by table of Model::for_each_joining and handle slot.
+    // The last list is that of the attachments.
+    std::vector<std::vector<Index>> joining_place;
+    // By place: the ranks that hold the body, ascending.
+    std::vector<std::vector<int>> holders;
+    std::vector<FetchedUnit> fetched;
+    std::uint64_t searched_step = 0;  // number of steps of the run at the last rank search
+    RankSettings settings;
+
+    std::size_t size() const { return owner.size(); }
+    Index place(std::uint32_t slot_of_body) const { return place_of_slot[slot_of_body]; }
+    /// The rank that searches the pair with this key (ContactKey::pair), and stores its contacts. For two bodies, the
+    /// sum of their slots decides which of the owners has the pair (PairOwners). `owners`: by place.
+    std::int32_t pair_owner(std::uint64_t key, std::span<const std::int32_t> owners) const {
+        const PairSlots pair = slots_of_pair(key);
+        const bool of_first = pair.is_collider || (pair.first + pair.second) % 2 != (pair.first < pair.second);
+        return owners[static_cast<std::size_t>(place(of_first ? pair.first : pair.second))];
+    }
+    BodyHandle handle(const Model& model, Index place) const { return model.body_map.handle_of_slot(slot[place]); }
+};
+
+/// Facts about a world that is not yet divided. All bodies belong to rank 0.
+WholeWorld whole_world_of(Model& model);
+
+}  // namespace skerry

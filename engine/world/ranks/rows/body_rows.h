@@ -1,0 +1,51 @@
+// Rows of some bodies with all that belongs to them. Bodies move between the ranks of a divided world in this form.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "engine/world/world_state.h"
+
+namespace skerry {
+
+/// Progress of the checks of the stable steps, for the rows of BodyRows (StepWatch).
+struct WatchProgress {
+    Index body = 0, kept = 0;
+    StepEvaluation look;
+};
+
+/// Rows of bodies, of their attachments, and of the tables that join bodies (Model::for_each_joining). No row refers to
+/// a body that is not among them. Handles, records of bodies, colliders and materials are on every rank.
+struct BodyRows {
+    Model model;          // only these rows, node clusters and the columns of StepWatch
+    Column<Index> place;  // by row of BodyTable (WholeWorld)
+    Column<WatchProgress> watch;     // one row
+    Column<Real> valid_until;        // SearchState::body_valid_until
+    WarmStartTable warm_start;
+    RestingContactTable resting;
+    PairTable pairs;        // overlapping pairs, without candidates
+    ContactTable contacts;  // contacts of the last step
+};
+
+/// Contact data that are copied with rows of bodies: those of all pairs for which the function returns true. It gets
+/// the key of the pair (ContactKey::pair).
+using WantsPair = std::function<bool(std::uint64_t pair)>;
+
+/// Returns copies of the rows of marked bodies of a settled world. The marked bodies must be complete units. `marked`:
+/// by row of BodyTable.
+BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked, const WantsPair& wants_pair);
+
+/// Removes all bodies of a settled world that are not marked, and adds bodies. Removes contact data of all pairs for
+/// which `keeps_pair` is false. Changes no other state and wakes no body. Afterwards the rows of all tables are in the
+/// order of the undivided world.
+void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::span<BodyRows> added,
+                  const WantsPair& keeps_pair);
+
+/// Message with all columns of the rows, for a rank that runs the same program.
+RankMessage message_of(BodyRows& rows);
+/// Reads a message of message_of from its start, which is removed from the span.
+BodyRows rows_of_message(std::span<const std::byte>& message);
+
+}  // namespace skerry
