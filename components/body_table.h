@@ -21,6 +21,13 @@ enum class BodyKind : std::uint8_t {
 template <>
 inline constexpr std::uint64_t value_count<BodyKind> = 2;
 
+/// A ghost is a copy of a body that another rank owns (engine/world/ranks).
+enum class GhostKind : std::uint8_t {
+    none,  // this rank owns the body
+    twin,  // this rank computes the ghost completely, like the owner
+    led,   // this rank computes no forces of the ghost, and receives its predicted velocities from the owner
+};
+
 /// A frame that translates with a body but does not rotate. Distances inside a body change only if nodes move relative
 /// to the frame. The distance between two bodies also changes by the relative motion of their two frames.
 struct MovingFrame {
@@ -73,6 +80,9 @@ struct BodyTable {
     Column<Real> cluster_step;
     // 1: the body is asleep. Steps do not compute a sleeping body until another object touches it.
     Column<std::uint8_t> asleep;
+    Column<GhostKind> ghost;  // derived by note_ghosts; empty in a world that is not divided among ranks
+    // 1: the body is asleep or a led ghost, so this step computes no forces on it. Derived by Model::note_rest.
+    Column<std::uint8_t> idle;
     // Number of steps until find_unstrained.h tests again whether the body is strained. Until then the body counts as
     // undeformed and unrotated, so its elements exert no force and are not computed. 0: the elements are computed.
     Column<std::uint16_t> unstrained;
@@ -98,6 +108,9 @@ struct BodyTable {
     Column<Real> travel;
     // no tetrahedron of the body changes the sign of its volume while `travel` is below this value [m]
     Column<Real> uninverted_until;
+
+    bool is_ghost(std::size_t row) const { return !ghost.empty() && ghost[row] != GhostKind::none; }
+    bool is_led(std::size_t row) const { return !ghost.empty() && ghost[row] == GhostKind::led; }
 
     /// Visits all columns. This is the only list of the columns. Model::rebuild_outlines derives the columns
     /// `triangles` to `bvh_leaves`.
@@ -132,6 +145,8 @@ struct BodyTable {
         visit("stable_step", stable_step, ColumnRole::state);
         visit("cluster_step", cluster_step, ColumnRole::state);
         visit("asleep", asleep, ColumnRole::state);
+        visit("ghost", ghost, ColumnRole::derived);
+        visit("idle", idle, ColumnRole::derived);
         visit("unstrained", unstrained, ColumnRole::memory);
         visit("still_time", still_time, ColumnRole::state);
         visit("drift", drift, ColumnRole::state);

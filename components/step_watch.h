@@ -47,17 +47,22 @@ struct StepWatch {
     Column<Vec3> position;       // by node: its position in the stored shape that is checked [m]
     Column<Real> stiffness_sum;  // by node: sum of the stiffnesses of its elements (stable_step.h)
     Column<Real> step;           // by body: the stable step found, or not_evaluated [s]
+    // For each body: number of pieces of all bodies before it in the undivided world. The last entry is the number of
+    // all pieces. Derived by count_pieces; empty after a change of bodies.
+    Column<std::uint64_t> first_piece;
 
     /// Starts a new round. An unfinished round is abandoned.
     void begin_round() {
         steps = 0;
         body = kept = 0;
         look = {};
+        first_piece.clear();  // elements that become implicit change the numbers of pieces
     }
     /// Cancels the check of the body in row `row`, because the body has been checked elsewhere or has changed since its
     /// shape was stored.
     void forget(std::size_t row) {
         if (row < step.size()) step[row] = not_evaluated;
+        first_piece.clear();
     }
     /// Erases the rows of removed bodies and removed nodes. `bodies`: ranges of rows of BodyTable. `nodes`: ranges of
     /// rows of NodeTable.

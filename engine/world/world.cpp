@@ -1,11 +1,13 @@
 #include "skerry/world.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <map>
 #include <numeric>
 #include <ostream>
 #include <random>
+#include <string_view>
 #include <utility>
 
 #include "components/any_table.h"
@@ -65,6 +67,16 @@ WorldState::WorldState(const Settings& settings) : executor(make_executor(settin
 }
 
 void WorldState::require_between_steps(const char* call) const {
+    // calls that all ranks of a divided world can make alike
+    constexpr std::array<std::string_view, 5> on_ranks{"advance", "distribute", "settle_start", "watch_steps", "clone"};
+    if (ranks.on() && std::ranges::find(on_ranks, call) == on_ranks.end())
+        Complaint{.file = {},
+                  .object = call,
+                  .field = "world",
+                  .found = "a world that is divided among ranks",
+                  .expected = "an undivided world",
+                  .hint = "call it before distribute(), or with the world that gathered() returns"}
+            .raise();
     if (!advancing) return;
     Complaint{.file = {},
               .object = call,

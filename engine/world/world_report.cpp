@@ -236,8 +236,7 @@ WorldReport World::report() const {
             (world.model.elements.part[block] == ElementPart::guard ? report.guards : report.implicit_elements) +=
                 m > 0;
     report.stable_step = reported_step(world.model, &stiffest);
-    if (stiffest != no_index)
-        report.stable_step_body = world.model.body_records[static_cast<std::size_t>(stiffest)].name;
+    report.stable_step_body = name_body(world, place_of_stiffest(world, stiffest)).name;
     for (std::size_t b = 0; b < world.model.body_records.size(); ++b)
         if (const BodyRecord& record = world.model.body_records[b]; record.choice.reason != DynamicsReason::given)
             report.dynamics_choices.push_back({world.model.body_map.handle_of_slot(world.model.bodies.slot[b]),
@@ -290,7 +289,7 @@ WorldReport World::report() const {
         report.worst_volume_element = world.model.user_tetrahedron(b, ratios.item);
     }
     const Balance balance =
-        checked_balance(world.model, world.clock.time, lag_between_steps(world), world.record.balance);
+        checked_balance(world, world.clock.time, lag_between_steps(world), world.record.balance);
     const auto share = [](Real of, Real whole) { return whole > 0 ? of / whole : 0; };
     report.energy_error = balance.energy_error;
     report.energy_error_share =

@@ -3,7 +3,7 @@
 #include <functional>
 #include <random>
 
-#include "engine/world/ranks/body_rows.h"
+#include "engine/world/ranks/rows/body_rows.h"
 #include "tests/support/lively_scene.h"
 
 namespace skerry::test {

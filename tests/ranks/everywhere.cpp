@@ -31,6 +31,7 @@ void hold_everywhere(World& world, Ranks& ranks) {
         mine.holders.push_back(moves ? all : std::vector<int>{});
         mine.place.push_back(static_cast<Index>(b));
     }
+    note_ghosts(state);
     list_step_again(state);
 }
 

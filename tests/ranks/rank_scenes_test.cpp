@@ -66,7 +66,8 @@ TEST_CASE("the scenes for ranks have what they are for", "[ranks]") {
 
 TEST_CASE("a scene has the same bits on any number of ranks as without ranks", "[.][ranks]") {
     std::size_t turn = 0;
-    for (const char* name : {"pile", "shots", "sleep", "stiff", "linked", "surfaces", "refused", "one_region"}) {
+    for (const char* name :
+         {"pile", "shots", "sleep", "stiff", "linked", "surfaces", "refused", "one_region", "constraints"}) {
         const RankScene scene = own_scene(name);
         const WholeRun whole = run_whole(scene);
         for (const Division& division : divisions(turn++))

@@ -33,6 +33,8 @@ void combine(RankFindings& into, const RankFindings& from) {
     into.bodies_missing |= from.bodies_missing;
     into.ghosts_expired |= from.ghosts_expired;
     into.stop |= from.stop;
+    into.wakes |= from.wakes;
+    into.may_rest |= from.may_rest;
     into.moves |= from.moves;
     into.far |= from.far;
     add_counters(from.counters, into.counters);

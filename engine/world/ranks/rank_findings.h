@@ -37,6 +37,8 @@ struct RankFindings {
     bool bodies_missing = false;  // a rank does not hold all bodies of a region that it has to solve
     bool ghosts_expired = false;  // a body may come near a rank that does not hold it
     bool stop = false;            // a callback of World::advance has asked to end the call
+    bool wakes = false;           // a body with several holders wakes in this step
+    bool may_rest = false;        // a body with several holders may have been still long enough after this step
     // Properties of the next step:
     bool moves = false;    // a body is awake or has a speed
     bool far = false;      // a body may be too far from the origin (check_distance)

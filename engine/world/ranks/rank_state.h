@@ -9,8 +9,11 @@
 
 #include "components/column.h"
 #include "components/types.h"
+#include "components/union_find.h"
+#include "engine/world/ranks/hold/whole_world.h"
 #include "engine/world/ranks/rank_findings.h"
-#include "engine/world/ranks/whole_world.h"
+#include "engine/world/ranks/regions/rank_mail.h"
+#include "engine/world/step/balance.h"
 #include "jobs/ranks/ranks.h"
 
 namespace skerry {
@@ -19,6 +22,38 @@ namespace skerry {
 /// call in the same order on all ranks.
 struct RankChannel {
     Ranks* ranks = nullptr;
+};
+
+/// Sums over the steps of this rank alone, since they were last added to the records of the run (join_records).
+struct RankShare {
+    Real dissipated = 0, plastic_work = 0;  // RunCounters [J]
+    Balance balance;                        // only its sums
+    // CrossingTable::tested, hits and let_through after the last join
+    std::uint64_t tested = 0, hits = 0, let_through = 0;
+};
+
+/// Predicted velocities of bodies that have led ghosts.
+struct PredictionMail : RankMail {
+    Column<std::size_t> taken;  // by peer: number of bytes of `in` that were read
+};
+
+/// A set of touching bodies that one rank has found, as told to all ranks: a body of the set with several holders.
+struct SetMember {
+    Index place;
+    Index set;           // row of the first body of the set on the rank that has found the set
+    Index must_stay_up;  // nonzero if a body of the set must stay awake
+};
+
+/// Working memory of the sleep of bodies with several holders.
+struct RankSleep {
+    Column<std::uint8_t> asleep, pressed;  // by body
+    Column<Real> still_time;               // by body [s]
+    Column<Index> woken;                   // places of the bodies with several holders that this rank wakes
+    Column<SetMember> members;             // of the sets that this rank has found
+    // By place, and by set of one rank: a node of `joined`, or no_index
+    Column<Index> node_of_place, node_of_set;
+    Column<std::uint8_t> restless;  // by node of `joined`
+    UnionFind joined;               // sets of all ranks, joined where they share a body
 };
 
 /// A body that a rank must hold to solve a region.
@@ -30,9 +65,9 @@ struct BodyRequest {
 /// Rounds in which ranks exchange the labels of their regions (docs/methods/ranks.md 3).
 struct LabelRounds {
     static constexpr int least = 2;
-    int count = least;    // number of rounds in each attempt at a step, equal on all ranks
-    int needed = least;   // greatest number of rounds that a step has needed since the last check
-    int steps = 0;        // number of steps since the last check
+    int count = least;   // number of rounds in each attempt at a step, equal on all ranks
+    int needed = least;  // greatest number of rounds that a step has needed since the last check
+    int steps = 0;       // number of steps since the last check
 
     /// Adds the number of rounds that an attempt has needed. More than `count`: the number is not known. Too few rounds
     /// are doubled at once; every 500 steps the number falls to the greatest number that was needed.
@@ -75,11 +110,20 @@ struct RankState {
     // its holders [m].
     Column<Real> travel_limit;
     WholeWorld whole;  // empty if `ranks` is null
+    // For each place: number of pieces of the stable-step checks of all bodies before it (count_pieces).
+    Column<std::uint64_t> pieces_before;
+    // For each row of BodyTable: 1 if this rank sends the predicted velocities of the body to its holders
+    // (note_ghosts).
+    Column<std::uint8_t> leads;
     RankChannel channel;
+    PredictionMail predictions;
+    RankSleep sleep;
+    RankShare share;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
-    RankFindings mine;  // findings of this rank in this attempt at a step; complete when reduce_findings runs
-    RankFindings all;   // combined findings of all ranks in this attempt at a step
+    Column<Index> stale;  // places of own bodies whose copies on other ranks have lost their validity
+    RankFindings mine;   // findings of this rank in this attempt at a step; complete when reduce_findings runs
+    RankFindings all;    // combined findings of all ranks in this attempt at a step
     bool stops = false;  // true if a callback of this rank has asked to end the present call of World::advance
 
     bool on() const { return ranks != nullptr; }

@@ -12,28 +12,47 @@ void reduce_limits(WorldState& world) {
     Model& model = world.model;
     LimitsOfRanks limits;
     model.of_ranks = limits;
-    limits.stable_step = stable_step(model);
+    Index stiffest = no_index;
+    limits.stable_step = stable_step(model, &stiffest);
+    limits.stiffest = stiffest == no_index ? RankFindings::nobody : world.ranks.place_of(stiffest);
+    limits.strained = stiffest != no_index && is_strained(model, static_cast<std::size_t>(stiffest));
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (model.bodies.blocks[b].size() > 0) limits.rest_step = std::min(limits.rest_step, model.bodies.rest_step[b]);
-    limits.spin = fastest_spin(model);
+    Index spinning = no_index;
+    limits.spin = fastest_spin(model, &spinning);
+    limits.spinning = spinning == no_index ? RankFindings::nobody : world.ranks.place_of(spinning);
     limits.has_frames = model.rigid_bodies.size() > 0;
     limits.has_implicit = model.implicit_nodes.size() > 0;
     limits.has_clusters = !model.clusters.empty();
+    limits.clusters_grew = model.clusters_grew;
     limits.moves = model.force_rate_moves || model.joints.slot.size() > 0 || model.ties.size() > 0;
     reduce(*world.ranks.ranks, limits, [](std::byte* into, const std::byte* from) {
         LimitsOfRanks all, other;
         std::memcpy(&all, into, sizeof all);
         std::memcpy(&other, from, sizeof other);
-        all.stable_step = std::min(all.stable_step, other.stable_step);
+        if (other.stable_step < all.stable_step ||
+            (other.stable_step == all.stable_step && other.stiffest < all.stiffest)) {
+            all.stable_step = other.stable_step;
+            all.stiffest = other.stiffest;
+            all.strained = other.strained;
+        }
         all.rest_step = std::min(all.rest_step, other.rest_step);
-        all.spin = std::max(all.spin, other.spin);
+        if (other.spin > all.spin || (other.spin == all.spin && other.spinning < all.spinning)) {
+            all.spin = other.spin;
+            all.spinning = other.spinning;
+        }
         all.has_frames |= other.has_frames;
         all.has_implicit |= other.has_implicit;
         all.has_clusters |= other.has_clusters;
+        all.clusters_grew |= other.clusters_grew;
         all.moves |= other.moves;
         std::memcpy(into, &all, sizeof all);
     });
+    for (Index* place : {&limits.stiffest, &limits.spinning})
+        if (*place == RankFindings::nobody) *place = no_index;
     model.of_ranks = limits;
+    if (limits.clusters_grew) world.ranks.pieces_before.clear();
+    model.clusters_grew = false;
 }
 
 StrainRate fastest_of_ranks(WorldState& world, const StrainRate& mine) {

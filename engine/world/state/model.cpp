@@ -95,7 +95,7 @@ ElementInputs Model::all_elements() const {
 }
 
 ElementInputs Model::awake_elements() const {
-    return ElementInputs::bind({}, elements, element_nodes, materials, bodies, any_asleep);
+    return ElementInputs::bind({}, elements, element_nodes, materials, bodies, any_idle);
 }
 
 bool Model::yields(std::size_t body) const {
@@ -161,11 +161,14 @@ void Model::wake_all() {
 }
 
 Real Model::note_rest() {
-    any_asleep = false;
+    any_asleep = any_idle = false;
     Real awake_mass = 0;
+    bodies.idle.resize(bodies.asleep.size());
     for (std::size_t b = 0; b < bodies.asleep.size(); ++b) {
+        bodies.idle[b] = bodies.asleep[b] != 0 || bodies.is_led(b);
         any_asleep |= bodies.asleep[b] != 0;
-        if (!bodies.asleep[b]) awake_mass += body_mass[b];
+        any_idle |= bodies.idle[b] != 0;
+        if (!bodies.asleep[b] && !bodies.is_ghost(b)) awake_mass += body_mass[b];
     }
     return awake_mass;
 }
@@ -214,6 +217,8 @@ void Model::extend_derived() {
     const std::size_t first_body = body_mass.size();
     build_patches(elements, nodes.position.size(), element_nodes, patches);
     body_mass.resize(bodies.slot.size());
+    bodies.idle.resize(bodies.slot.size());
+    watch.first_piece.clear();
     for (std::size_t b = first_body; b < bodies.slot.size(); ++b) {
         body_mass[b] = 0;
         for (const Real mass : rows_of(nodes.mass, bodies.nodes[b])) body_mass[b] += mass;

@@ -106,11 +106,15 @@ struct NamedHandles : HandleMap<HandleType> {
 /// (reduce_limits). Without ranks it limits nothing.
 struct LimitsOfRanks {
     Real stable_step = infinity;  // shortest stable step [s]
+    Index stiffest = no_index;    // place of the body with this stable step: its row in the undivided world
+    bool strained = false;        // true if strain has shortened this stable step (is_strained)
     Real rest_step = infinity;    // shortest stable step at rest of a body with elements [s]
     Real spin = 0;                // greatest angular speed of a body with a joint or tie [rad/s]
+    Index spinning = no_index;    // place of the body with this speed
     bool has_frames = false;      // true if some body is rigid or implicit
     bool has_implicit = false;    // true if some body is implicit
     bool has_clusters = false;    // true if some body has clusters
+    bool clusters_grew = false;   // Model::clusters_grew
     // true if stable steps depend on positions, or joints or ties limit rotation, so that each step needs a reduction
     bool moves = false;
 };
@@ -173,6 +177,7 @@ struct Model {
     Column<Real> body_mass;  // mass of all nodes of each body, including held nodes [kg]; computed by extend_derived
     // True if the implicit elements must be chosen again, because bodies, colliders or settings have changed.
     bool clusters_open = true;
+    bool clusters_grew = false;  // true if elements became implicit at the last evaluation of stable steps
     bool settled = true;      // true if all bodies and colliders were checked for overlaps
     Index loaded_bodies = 0;  // number of bodies with loads; computed by derive_all and note_loads
     bool forced = false;      // true if any force element (loads included) is present; computed by note_forces
@@ -192,6 +197,7 @@ struct Model {
     bool links_open = false;  // true if joints (or other rows that join bodies) have changed since `links` was computed
     // True if a body is asleep. If false, no stage tests for sleeping bodies. Computed by note_rest.
     bool any_asleep = false;
+    bool any_idle = false;  // true if a body is idle in this step (BodyTable::idle)
 
     /// Sets the number of this world, which is a part of all handles of its objects.
     void set_world(std::uint32_t number);
@@ -222,7 +228,8 @@ struct Model {
     /// Wakes one body, or all bodies.
     void wake(std::size_t body);
     void wake_all();
-    /// Must be called before a step: sets any_asleep. Returns the mass of all bodies that are awake [kg].
+    /// Must be called before a step: sets any_asleep, any_idle and
+    /// BodyTable::idle. Returns the mass of all bodies that are awake and no ghosts [kg].
     Real note_rest();
     /// Must be called after the loads of a body were set. Updates loaded_bodies. `before`: true if the body already had
     /// loads.

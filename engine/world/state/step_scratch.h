@@ -162,7 +162,6 @@ struct StepScratch {
     Column<ExternalWork> work_parts;   // used by measure_work
     InversionMemory inversions;        // used by find_inversions
     Column<WatchPart> watch_parts;     // used by watch_stable_steps
-    Column<WatchPieces> watch_pieces;  // used by store_shapes
     Column<Real> viscous_parts;        // used by measure_viscosity
     Column<Real> plastic_parts;        // used by yield_elements
     // For each body, nonzero if a load, spring, cable, cavity, fibre, motor or tie that acts on it changes in this

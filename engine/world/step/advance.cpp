@@ -8,6 +8,7 @@
 #include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/kernels.h"
+#include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/step.h"
 #include "jobs/arithmetic_scope.h"
 
@@ -29,8 +30,9 @@ bool keep_watch(WorldState& world) {
     ++watch.steps;
     if (watch.steps < steps_per_round(world)) return false;
     // The clusters must be updated first, because stable steps depend on them.
-    world.record.balance.work += follow_stiffening(world.model);
-    world.record.balance.work += use_evaluated_steps(world.model, world.scratch.stiffness_sum);
+    Balance& balance = world.ranks.on() ? world.ranks.share.balance : world.record.balance;
+    balance.work += follow_stiffening(world.model);
+    balance.work += use_evaluated_steps(world.model, world.scratch.stiffness_sum);
     reduce_limits(world);
     watch.second = !watch.second;
     return !watch.second;
@@ -74,11 +76,14 @@ void blame(const WorldState& world, StepReport& report) {
     report.status = status_of(verdict.fault);
     report.value = verdict.value;
     if (verdict.body == no_index) return;
+    const auto [handle, name] = name_body(world, verdict.body);
+    report.body = handle;
+    report.body_name = name;
+    report.node = verdict.node;
+    report.element = verdict.tetrahedron;
+    if (world.ranks.on()) return;  // the findings of all ranks count nodes and elements within the body
     const auto b = static_cast<std::size_t>(verdict.body);
-    if (world.model.bodies.kind[b] == BodyKind::deformable)
-        report.body = world.model.body_map.handle_of_slot(world.model.bodies.slot[b]);
-    report.body_name = world.model.body_records[b].name;
-    if (verdict.node != no_index) report.node = verdict.node - world.model.bodies.nodes[b].begin;
+    if (verdict.node != no_index) report.node -= world.model.bodies.nodes[b].begin;
     if (verdict.tetrahedron != no_index) report.element = world.model.user_tetrahedron(b, verdict.tetrahedron);
 }
 
@@ -111,11 +116,14 @@ void note_outcome(StepOutcome outcome, RunCounters& counters, StepReport& report
 void note_inversions(WorldState& world, StepReport& report) {
     const Inversions& inversions = world.scratch.findings.inversions;
     if (inversions.count == 0) return;
-    const auto b = static_cast<std::size_t>(inversions.body);
     if (report.inverted == 0) {
-        report.inverted_body = world.model.body_map.handle_of_slot(world.model.bodies.slot[b]);
-        report.inverted_name = world.model.body_records[b].name;
-        report.inverted_element = world.model.user_tetrahedron(b, inversions.tetrahedron);
+        const auto [handle, name] = name_body(world, inversions.body);
+        report.inverted_body = handle;
+        report.inverted_name = name;
+        report.inverted_element =
+            world.ranks.on() ? inversions.tetrahedron
+                             : world.model.user_tetrahedron(static_cast<std::size_t>(inversions.body),
+                                                            inversions.tetrahedron);
     }
     report.inverted += inversions.count;
     world.record.counters.inversions += static_cast<std::uint64_t>(inversions.count);
@@ -126,28 +134,40 @@ void note_limit(WorldState& world, StepReport& report) {
     if (!world.model.settings.step_size) return;
     Index body = no_index;
     const Real trusted = trusted_step(world.model, &body);
+    body = place_of_stiffest(world, body);
     if (body == no_index || *world.model.settings.step_size <= trusted) return;
     ++report.limited;
     ++world.record.counters.limited;
     report.limited_step = trusted;
-    report.limited_by = world.model.body_records[static_cast<std::size_t>(body)].name;
+    report.limited_by = name_body(world, body).name;
+}
+
+/// Limits the next attempt so that no body with a joint or tie rotates too far.
+void limit_turns(const WorldState& world, AttemptLimits& attempt) {
+    Index row = no_index;
+    const Real step = step_of_turns(world.model, attempt.slow_enough, row);
+    if (!(step < attempt.slow_enough)) return;
+    attempt.slow_enough = step;
+    attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.place_of(row);
 }
 
 /// Throws SceneError if a call would need too many steps. Steps are counted with an int. Without this check, a call
 /// whose steps are too small to advance time would never end.
-void require_countable(const Model& model, Real dt) {
+void require_countable(const WorldState& world, Real dt) {
+    const Model& model = world.model;
     constexpr Real most = std::numeric_limits<int>::max();
     Index body = no_index;
     const Real stable = stable_step(model, &body) * model.tuning.step_safety;
     const Real step = model.settings.step_size.value_or(stable);
     if (!(dt > most * step)) return;
+    body = place_of_stiffest(world, body);
     const bool of_body = !model.settings.step_size && body != no_index;
     Complaint{.file = {},
               .object = "advance",
               .field = "dt",
               .found = short_text(dt) + " s in steps of " + short_text(step) + " s" +
                        (of_body ? ", the stable step of body '" +
-                                      model.body_records[static_cast<std::size_t>(body)].name + "'"
+                                      name_body(world, body).name + "'"
                                 : std::string()),
               .expected = "at most 2147483647 steps",
               .hint = of_body ? "check the size and material of this body" : "use a shorter dt or a larger step_size"}
@@ -204,7 +224,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     note_changed_seams(model);
     settle_clusters(model, world.scratch.stiffness_sum);
     reduce_limits(world);
-    require_countable(model, dt);
+    require_countable(world, dt);
     StepReport report;
     const Real end = clock.time + dt;
     Real left = dt;
@@ -212,7 +232,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     // The stored crossings belong to an abandoned step, and bodies may have changed since then.
     world.cache.crossings.row.clear();
     if (world.record.counters.steps == 0 && left > 0)
-        check_balance(model, clock.time, lag_between_steps(world), world.record.balance);
+        check_balance(world, clock.time, lag_between_steps(world), world.record.balance);
     world.scratch.self_crossing_places.resize(model.bodies.slot.size());
     // force elements read all nodes in every step, so these nodes must be up to date
     world.scratch.parameters.draws_late = !model.forced;
@@ -230,6 +250,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             return false;
         }
     };
+    // With ranks, the sums of this rank are added to those of all ranks by join_records.
+    Balance& balance = world.ranks.on() ? world.ranks.share.balance : world.record.balance;
     bool& stops = world.ranks.stops;  // true if a callback has asked to end the call
     stops = world.ranks.all.stop = false;
     world.transaction.begin_call(model, clock);
@@ -253,16 +275,17 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         Index stiffest = no_index;
         const Real trusted = trusted_step(model, &stiffest);
         if (!(std::min(trusted, attempt.at_most()) > std::numeric_limits<Real>::epsilon() * end)) {
-            world.scratch.findings.verdict = {StepFault::too_stiff, stiffest, no_index, trusted};
+            world.scratch.findings.verdict = {StepFault::too_stiff, place_of_stiffest(world, stiffest), no_index,
+                                              trusted};
             blame(world, report);
             break;
         }
         // Repeated attempts with longer lists or with crossings must keep the length of the step.
-        if (attempt.with_longer_lists == 0 && attempt.with_crossings == 0)
-            attempt.slow_enough = step_of_turns(model, attempt.slow_enough, attempt.fastest);
+        if (attempt.with_longer_lists == 0 && attempt.with_crossings == 0) limit_turns(world, attempt);
         const Real within = left_in_long_step(model, left, clock.long_step);
         const StepPlan plan = plan_step(model, within, attempt.at_most());
-        store_shapes(*world.executor, model, steps_per_round(world), world.scratch.watch_pieces);
+        if (model.watch.first_piece.empty()) count_pieces(world);
+        store_shapes(*world.executor, model, steps_per_round(world));
         world.query_trees.forget();
         if (leapfrog) drift(plan.h / 2);
         const Real start = clock.time;
@@ -270,6 +293,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const StepOutcome outcome = try_step(world, plan, attempt);
         stiffened += world.scratch.findings.stiffened;  // energy also counts if the attempt is not committed
         note_outcome(outcome, world.record.counters, report);
+        if (outcome == StepOutcome::again_over_ranks &&
+            (world.ranks.all.bodies_missing || world.ranks.all.ghosts_expired))
+            update_ghosts(world);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
             break;
@@ -286,7 +312,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         note_limit(world, report);
         left = plan.steps > 1 || within < left ? left - plan.h : 0;
         move_on_in_long_step(plan, clock.long_step);
-        world.record.balance.work += std::exchange(stiffened, Real(0));
+        balance.work += std::exchange(stiffened, Real(0));
         if (keep_watch(world)) {
             world.draw();
             if (!world.scratch.left_out)
@@ -317,8 +343,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         note_held(held_in_surfaces(world), world, report);
         // Clusters are updated here, because their energy would otherwise be gained by the next call.
         stiffened += follow_stiffening(model);
-        world.record.balance.work += stiffened;
+        balance.work += stiffened;
     }
+    join_reports(world, report);
     world.draw();
     world.query_trees.forget();
     if (left == 0) clock.time = end;

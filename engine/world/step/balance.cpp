@@ -6,6 +6,7 @@
 
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
+#include "engine/world/ranks/regions/rank_mail.h"
 #include "engine/world/state/model.h"
 #include "engine/world/state/step_scratch.h"
 #include "engine/world/step/seams.h"
@@ -20,12 +21,38 @@ struct Present {
     Vec3 momentum = Vec3::Zero();                  // kg m/s
     // sum of the magnitudes of the momenta of all nodes and bodies, and of the impulses of applied forces in a step
     Real momentum_size = 0;  // [kg m/s]
+    bool damps_held_body = false, holds_implicit_element = false;
+
+    void add(const Present& other) {
+        kinetic += other.kinetic;
+        elastic += other.elastic;
+        potential += other.potential;
+        momentum += other.momentum;
+        momentum_size += other.momentum_size;
+        damps_held_body |= other.damps_held_body;
+        holds_implicit_element |= other.holds_implicit_element;
+    }
 };
 
+bool of_ghost(const Model& model, std::size_t node) {
+    return model.bodies.is_ghost(static_cast<std::size_t>(model.nodes.body[node]));
+}
+
+/// Blocks of the elements of all bodies but ghosts: one range if there are no ghosts, else one for each body.
+std::vector<Range> own_blocks(const Model& model) {
+    if (model.bodies.ghost.empty()) return {model.all_blocks()};
+    std::vector<Range> own;
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
+        if (!model.bodies.is_ghost(b)) own.push_back(model.bodies.blocks[b]);
+    return own;
+}
+
+/// Energy and momentum of the bodies that this rank owns.
 Present measure(const Model& model, Real time, Real lag) {
     Present now;
     const NodeTable& nodes = model.nodes;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
+        if (of_ghost(model, n)) continue;
         now.potential -= nodes.mass[n] * model.settings.gravity.dot(nodes.position[n]);
         if (model.node_has_frame(n)) continue;
         const Vec3 momentum = nodes.mass[n] * nodes.velocity[n];
@@ -40,7 +67,7 @@ Present measure(const Model& model, Real time, Real lag) {
     Vec3 kicked = now.momentum;
     for (const Index body : model.rigid_bodies.body) {
         const auto b = static_cast<std::size_t>(body);
-        if (model.is_held(b) && model.is_rigid(b)) continue;
+        if ((model.is_held(b) && model.is_rigid(b)) || model.bodies.is_ghost(b)) continue;
         const RigidSums sums = model.is_held(b) ? moving_sums(model, b) : rigid_sums(model, b);
         now.kinetic += sums.kinetic;
         implicit += sums.elastic;
@@ -53,11 +80,12 @@ Present measure(const Model& model, Real time, Real lag) {
     // change in half of the next kick, without contacts. With the velocities v and v' before and after a kick and the
     // mass m, elastic bodies conserve m v.v' / 2 plus their elastic energy, as leapfrog does.
     if (lag != 0) {
-        now.kinetic -=
-            lag * kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
+        for (const Range& blocks : own_blocks(model))
+            now.kinetic -= lag * kernels().elastic_power(model.all_elements(), blocks, nodes.position, nodes.velocity);
         Real power = kicked.dot(model.settings.gravity);
         if (model.forced)  // the forces of the last step are used, as in balance.work
             for (std::size_t n = 0; n < nodes.position.size(); ++n) {
+                if (of_ghost(model, n)) continue;
                 // Fibres and springs exchange momentum between nodes also while all nodes are at rest.
                 now.momentum_size += 2 * std::abs(lag) * nodes.applied_before[n].norm();
                 if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
@@ -65,7 +93,9 @@ Present measure(const Model& model, Real time, Real lag) {
             }
         now.kinetic += lag * power;
     }
-    now.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position) + implicit;
+    now.elastic = implicit;
+    for (const Range& blocks : own_blocks(model))
+        now.elastic += kernels().elastic_energy(model.all_elements(), blocks, nodes.position);
     for (const ForceElement* element : force_elements)
         if (element->energy && element->any(model)) now.elastic += element->energy(model, time, lag);
     return now;
@@ -131,13 +161,21 @@ void add_step(const StepScratch& step, Balance& balance) {
     balance.energy_flow += std::abs(work);
 }
 
-void check_balance(const Model& model, Real time, Real lag, Balance& balance) {
-    const Present now = measure(model, time, lag);
+void check_balance(const WorldState& world, Real time, Real lag, Balance& balance) {
+    const Model& model = world.model;
+    Present now = measure(model, time, lag);
+    now.damps_held_body = !balance.open && damps_held_body(model);
+    now.holds_implicit_element = holds_implicit_element(model);
+    if (world.ranks.on()) {
+        const std::vector<RankMessage> all = world.ranks.ranks->gather_everywhere(std::as_bytes(std::span(&now, 1)));
+        now = {};
+        for (const RankMessage& message : all) now.add(MailReader(message).take<Present>());
+    }
     const Real energy = now.kinetic + now.elastic + now.potential;
     const bool was_open = balance.open;
     if (!was_open) {
         balance.open = true;
-        balance.momentum_known = !damps_held_body(model);
+        balance.momentum_known = !now.damps_held_body;
         balance.energy = energy;
         balance.potential = now.potential;
         balance.momentum = now.momentum;
@@ -146,7 +184,7 @@ void check_balance(const Model& model, Real time, Real lag, Balance& balance) {
         balance.work = balance.energy_flow = balance.momentum_flow = 0;
     }
     // checked again, because elements may become implicit during a run
-    balance.momentum_known &= !holds_implicit_element(model);
+    balance.momentum_known &= !now.holds_implicit_element;
     // Only the change of the potential energy counts as exchanged, since the zero point of this energy is arbitrary.
     const Real exchanged =
         now.kinetic + now.elastic + std::abs(now.potential - balance.potential) + balance.energy_flow;
@@ -158,8 +196,8 @@ void check_balance(const Model& model, Real time, Real lag, Balance& balance) {
             std::max(balance.momentum_error, (now.momentum - balance.momentum - balance.impulse).norm());
 }
 
-Balance checked_balance(const Model& model, Real time, Real lag, Balance balance) {
-    if (balance.open) check_balance(model, time, lag, balance);
+Balance checked_balance(const WorldState& world, Real time, Real lag, Balance balance) {
+    if (balance.open && !world.ranks.on()) check_balance(world, time, lag, balance);
     return balance;
 }
 

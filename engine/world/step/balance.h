@@ -10,6 +10,7 @@ namespace skerry {
 
 struct Model;
 struct StepScratch;
+struct WorldState;
 
 /// Sums since the last change from outside (such as an added body or set velocities), and the largest errors of the
 /// whole run. The balance is opened at the first check after such a change.
@@ -40,10 +41,12 @@ void add_step(const StepScratch& step, Balance& balance);
 
 /// Compares the present energy and momentum with the expected values. Records the error if it is the largest so far.
 /// Opens the balance if it is closed. Reads all tables. `time`: present time [s]; `lag`: time by which velocities are
-/// older than positions [s]. The kinetic energy is corrected for this lag with the present forces.
-void check_balance(const Model& model, Real time, Real lag, Balance& balance);
+/// older than positions [s]. The kinetic energy is corrected for this lag with the present forces. With ranks the
+/// function is collective, and energy and momentum are those of all ranks.
+void check_balance(const WorldState& world, Real time, Real lag, Balance& balance);
 
-/// Returns a copy of the balance, checked by check_balance, for a report. A closed balance is returned unchanged.
-Balance checked_balance(const Model& model, Real time, Real lag, Balance balance);
+/// Returns a copy of the balance, checked by check_balance, for a report. A closed balance is returned unchanged, and
+/// so is that of a divided world.
+Balance checked_balance(const WorldState& world, Real time, Real lag, Balance balance);
 
 }  // namespace skerry

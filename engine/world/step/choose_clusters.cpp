@@ -411,7 +411,7 @@ Real added_energy(const Model& model) {
     if (model.clusters.empty()) return 0;
     Real energy = 0;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
-        if (!(model.bodies.cluster_step[b] > 0)) continue;
+        if (!(model.bodies.cluster_step[b] > 0) || model.bodies.is_ghost(b)) continue;
         const Range blocks = model.bodies.blocks[b];
         energy += added_energy(model.all_elements(), blocks,
                                model.elements.implicit_modulus.span().subspan(static_cast<std::size_t>(blocks.begin),

@@ -73,7 +73,8 @@ void check_balance_after_motion(WorldState& world) {
     Balance& balance = world.record.balance;
     // the balance cannot have changed, because nothing has moved since the last check
     if (balance.open && world.scratch.left_out && world.record.balance_of_rest) return;
-    check_balance(world.model, world.clock.time, lag_between_steps(world), balance);
+    join_records(world);
+    check_balance(world, world.clock.time, lag_between_steps(world), balance);
     world.record.balance_of_rest = world.scratch.left_out;
 }
 

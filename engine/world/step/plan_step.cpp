@@ -36,7 +36,11 @@ Real step_of_turns(const Model& model, Real shorter_than, Index& fastest) {
     // start of a step during the step. The resulting errors of energy and position grow with the angle of rotation.
     constexpr Real largest_turn = 0.1;
     Index body = no_index;
-    const Real spin = std::max(fastest_spin(model, &body), model.of_ranks.spin);
+    Real spin = fastest_spin(model, &body);
+    if (model.of_ranks.spinning != no_index && model.of_ranks.spin >= spin) {
+        spin = model.of_ranks.spin;
+        body = no_index;
+    }
     if (!(spin * shorter_than > largest_turn)) return shorter_than;
     fastest = body;
     return largest_turn / spin;

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <span>
 #include <vector>
 
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
-#include "jobs/reduce.h"
+#include "jobs/parallel_for.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"
 #include "systems/dynamics/stability/stable_step.h"
@@ -53,16 +55,22 @@ Real step_of_body(const Model& model, std::size_t body) {
 Real stable_step(const Model& model, Index* body) {
     Real smallest = infinity;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
+        if (model.bodies.is_ghost(b)) continue;  // its owner knows the stable step
         const Real step = step_of_body(model, b);
         if (!(step < smallest)) continue;
         smallest = step;
         if (body) *body = static_cast<Index>(b);
     }
-    if (model.of_ranks.stable_step < smallest) {
-        smallest = model.of_ranks.stable_step;
-        if (body) *body = no_index;
-    }
-    return smallest;
+    if (!(model.of_ranks.stable_step <= smallest) || model.of_ranks.stiffest == no_index) return smallest;
+    if (body) *body = no_index;
+    return model.of_ranks.stable_step;
+}
+
+bool is_strained(const Model& model, std::size_t body) {
+    // Largest ratio of the stable step of a body to its stable step at rest for which strain counts as the cause of a
+    // short step. Above this ratio the cause is the rest shape.
+    constexpr Real as_at_rest = 0.9;
+    return model.bodies.stable_step[body] < as_at_rest * model.bodies.rest_step[body];
 }
 
 Real reported_step(const Model& model, Index* body) {
@@ -165,6 +173,7 @@ public:
 
     /// Energy that the inertia of newly added clusters has added to the balance [J].
     Real end() {
+        model_.clusters_grew = !changed_.empty();
         if (changed_.empty()) return 0;
         model_.rebuild_clusters(changed_);
         return added_energy(model_) - energy_before_;
@@ -200,45 +209,73 @@ Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum) {
     return looks.end();
 }
 
-void store_shapes(Executor& executor, Model& model, std::uint64_t round, Column<WatchPieces>& pieces_memory) {
+namespace {
+
+/// Number of pieces of a body's check, sent to other ranks.
+struct PiecesAtPlace {
+    Index place;
+    std::uint32_t pieces;
+};
+
+/// Numbers of pieces of all bodies of the undivided world before each place, and the number of all pieces.
+void gather_pieces(const Model& model, RankState& ranks) {
+    std::vector<PiecesAtPlace> mine;
+    const ElementInputs elements = model.all_elements();
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
+        if (ranks.owns(b))
+            mine.push_back({ranks.place[b],
+                            static_cast<std::uint32_t>(pieces_of_look(elements, model.bodies.blocks[b]))});
+    ranks.pieces_before.clear();
+    for (const RankMessage& message : ranks.ranks->gather_everywhere(std::as_bytes(std::span(mine)))) {
+        std::vector<PiecesAtPlace> theirs(message.size() / sizeof(PiecesAtPlace));
+        std::memcpy(theirs.data(), message.data(), message.size());
+        for (const PiecesAtPlace& body : theirs) {
+            const auto place = static_cast<std::size_t>(body.place);
+            ranks.pieces_before.resize(std::max(ranks.pieces_before.size(), place + 2), 0);
+            ranks.pieces_before[place + 1] = body.pieces;
+        }
+    }
+    for (std::size_t place = 1; place < ranks.pieces_before.size(); ++place)
+        ranks.pieces_before[place] += ranks.pieces_before[place - 1];
+}
+
+}  // namespace
+
+void count_pieces(WorldState& world) {
+    const Model& model = world.model;
+    RankState& ranks = world.ranks;
+    Column<std::uint64_t>& first = world.model.watch.first_piece;
+    const std::size_t rows = model.bodies.slot.size();
+    first.assign(rows + 1, 0);
+    if (!ranks.on()) {
+        const ElementInputs elements = model.all_elements();
+        for (std::size_t b = 0; b < rows; ++b) first[b + 1] = first[b] + pieces_of_look(elements, model.bodies.blocks[b]);
+        return;
+    }
+    if (ranks.pieces_before.empty()) gather_pieces(model, ranks);
+    for (std::size_t b = 0; b < rows; ++b) first[b] = ranks.pieces_before[static_cast<std::size_t>(ranks.place[b])];
+    if (!ranks.pieces_before.empty()) first[rows] = ranks.pieces_before[ranks.pieces_before.size() - 1];
+}
+
+void store_shapes(Executor& executor, Model& model, std::uint64_t round) {
     const BodyTable& bodies = model.bodies;
     StepWatch& watch = model.watch;
     const auto rows = static_cast<Index>(bodies.slot.size());
     const ElementInputs elements = model.all_elements();
-    const auto pieces_of = [&](Index row) {
-        return pieces_of_look(elements, bodies.blocks[static_cast<std::size_t>(row)]);
-    };
-    // Counting the pieces of work is slow, because it reads memory at scattered addresses. A step cannot begin before
-    // the count is known, so it runs in parallel.
-    constexpr std::size_t bodies_per_block = 64;
-    const WatchPieces all = reduce(
-        executor, bodies.slot.size(), bodies_per_block, pieces_memory, {},
-        [&](std::size_t begin, std::size_t end) {
-            WatchPieces some;
-            for (auto row = static_cast<Index>(begin); row < static_cast<Index>(end); ++row) {
-                const std::uint64_t pieces = pieces_of(row);
-                if (row < watch.body) some.before += pieces;
-                if (row < watch.kept) some.kept += pieces;
-                some.total += pieces;
-            }
-            return some;
-        },
-        [](const WatchPieces& a, const WatchPieces& b) {
-            return WatchPieces{a.before + b.before, a.kept + b.kept, a.total + b.total};
-        });
-    watch.before = all.before;
-    std::uint64_t kept = all.kept;
     const auto share = static_cast<Real>(std::min(watch.steps + 1, round)) / static_cast<Real>(round);
-    watch.target = static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(all.total)));
+    watch.target =
+        static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(watch.first_piece[bodies.slot.size()])));
     watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // one row per node, as in saved worlds
     watch.stiffness_sum.resize(model.nodes.position.size());
     watch.step.resize(bodies.slot.size());
     const auto first = static_cast<std::size_t>(watch.kept);
-    for (; watch.kept < rows && (kept < watch.target || pieces_of(watch.kept) == 0); ++watch.kept)
-        kept += pieces_of(watch.kept);
+    const auto is_due = [&](std::size_t row) {
+        return watch.first_piece[row] < watch.target || pieces_of_look(elements, bodies.blocks[row]) == 0;
+    };
+    while (watch.kept < rows && is_due(static_cast<std::size_t>(watch.kept))) ++watch.kept;
     parallel_for(executor, static_cast<std::size_t>(watch.kept) - first, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = first + begin; b < first + end; ++b) {
-            const bool keeps_its_shape = bodies.asleep[b] || bodies.unstrained[b] > 0;
+            const bool keeps_its_shape = bodies.asleep[b] || bodies.unstrained[b] > 0 || bodies.is_led(b);
             watch.step[b] = keeps_its_shape ? StepWatch::not_evaluated : 0;
             if (keeps_its_shape) continue;
             std::ranges::copy(rows_of(model.nodes.position, bodies.nodes[b]),

@@ -5,6 +5,7 @@
 #include "engine/world/step/step.h"
 
 #include "engine/world/kernels.h"
+#include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/seams.h"
 #include "systems/contact/prepare_ties.h"
 #include "systems/contact/separate_regions.h"
@@ -61,6 +62,7 @@ void build_step(WorldState& w) {
     of_forces<&ForceElement::add_forces>(w, g);
     of_models<&MotionModel::add_forces>(w, g);
     of_models<&MotionModel::predict>(w, g);
+    list_led_ghosts(w, g);
     g.begin_phase("Find contacts and joint rows");
     of_laws<&ConstraintLaw::find>(w, g);
     g.begin_phase("Separate contact regions");
@@ -79,6 +81,8 @@ void build_step(WorldState& w) {
     check_end(w, g);
     of_models<&MotionModel::check>(w, g);
     of_laws<&ConstraintLaw::check>(w, g);
+    list_ghost_watch(w, g);
+    list_wakes(w, g);
     list_reduction(w, g);
     g.begin_phase("Joined integration, if all checks hold");
     wake(w, g);
@@ -92,7 +96,9 @@ void build_step(WorldState& w) {
 }
 
 void list_step_again(WorldState& w) {
+    const CrossingTable& crossings = w.cache.crossings;
     w.ranks.channel.ranks = w.ranks.ranks;
+    w.ranks.share = {.tested = crossings.tested, .hits = crossings.hits, .let_through = crossings.let_through};
     w.graph = TaskGraph();
     w.graph.track(&w, sizeof w, name_of_column);
     build_step(w);
@@ -199,6 +205,7 @@ void check_end(WorldState& w, TaskGraph& g) {
 void wake(WorldState& w, TaskGraph& g) {
     AttachmentTable& a = w.model.attachments;
     BodyTable& b = w.model.bodies;
+    list_joined_wakes(w, g);
     g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(w.scratch.contacts, w.model.links),
             read(w.scratch.pressed), read(w.scratch.driven), read(a.body), read(a.motion), write(b.asleep),
             write(b.still_time), if_taken(w), if_sleepy(w));
@@ -226,11 +233,13 @@ void put_to_rest(WorldState& w, TaskGraph& g) {
     NodeTable& n = m.nodes;
     RigidBodyTable& r = m.rigid_bodies;
     const StepParameters& p = w.scratch.parameters;
-    g.stage_with_result("dynamics/rest_bodies", w.scratch.findings.rest, rest_bodies,
-                        inputs<TouchInputs>(w.scratch.contacts, m.links),
-                        inputs<RestInputs>(m.attachments, m.bodies, m.materials, n, r, w.scratch.driven),
-                        value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
-                        outputs<RestOutputs>(m.bodies, n, r, m.implicit_nodes), if_taken(w), if_sleepy(w));
+    const auto bodies = inputs<RestInputs>(m.attachments, m.bodies, m.materials, n, r, w.scratch.driven);
+    const auto state = outputs<RestOutputs>(m.bodies, n, r, m.implicit_nodes);
+    g.stage("dynamics/find_still_sets", find_still_sets, inputs<TouchInputs>(w.scratch.contacts, m.links), bodies,
+            value(p.sleep), value(p.h), make(w.scratch.sleep_memory), state, if_taken(w), if_sleepy(w));
+    list_joined_sets(w, g);
+    g.stage_with_result("dynamics/rest_bodies", w.scratch.findings.rest, rest_bodies, bodies,
+                        make(w.scratch.sleep_memory), state, if_taken(w), if_sleepy(w));
 }
 
 }  // namespace

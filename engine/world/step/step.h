@@ -24,6 +24,41 @@ void count_committed_step(const RunCounters& step, RunCounters& run);
 /// Energy that a step dissipated [J].
 Real dissipated_in(const StepFindings& findings);
 
+// ranks/name_body.cpp
+
+/// Handle and name of a body for reports.
+struct NamedBody {
+    BodyHandle body{};  // a stale handle for a mesh collider
+    std::string name;
+};
+/// Returns the handle and name of the body at a place of the undivided world, which this rank may not hold. Without
+/// ranks the place is the row in BodyTable.
+NamedBody name_body(const WorldState& world, Index place);
+/// Place of the body with the shortest stable step. `row`: result of stable_step.
+Index place_of_stiffest(const WorldState& world, Index row);
+
+// ranks/lead_ghosts.cpp
+
+/// Computes BodyTable::ghost. Must be called after bodies, their owners or their holders have changed.
+void note_ghosts(WorldState& world);
+/// Lists the stage that sends the predicted velocities of bodies to the ranks that hold a led ghost of them.
+void list_led_ghosts(WorldState& world, TaskGraph& graph);
+
+// ranks/join_records.cpp
+
+/// Adds the sums of all ranks since the last call to the records of the run. Without ranks it does nothing. The last
+/// digits of sums depend on the number of ranks; the motion does not depend on these sums.
+void join_records(WorldState& world);
+/// Calls join_records, and makes the report of a call of advance equal on all ranks.
+void join_reports(WorldState& world, StepReport& report);
+
+// ranks/sleep_over_ranks.cpp
+
+/// Lists the stages by which sets of touching bodies on several ranks fall asleep and wake as in an undivided world.
+void list_wakes(WorldState& world, TaskGraph& graph);         // finds bodies that this rank wakes; before the reduction
+void list_joined_wakes(WorldState& world, TaskGraph& graph);  // joins these bodies of all ranks; before wake_bodies
+void list_joined_sets(WorldState& world, TaskGraph& graph);   // joins the sets of all ranks; before rest_bodies
+
 // ranks/reduce_findings.cpp
 
 /// Lists the stage that combines the findings of all ranks. It has no stage if this process simulates the whole world.
@@ -70,8 +105,10 @@ void note_changed_seams(Model& model);
 // stable_steps.cpp
 
 /// Shortest of the stable steps of all bodies, as last evaluated [s]. `body`: receives the row of the body with this
-/// step.
+/// step; no_index if the step was combined with other ranks (Model::of_ranks).
 Real stable_step(const Model& model, Index* body = nullptr);
+/// True if strain has shortened the stable step of a body.
+bool is_strained(const Model& model, std::size_t body);
 /// Stable step of one body [s]. It is the stable step of the body's elements, shortened because of damping
 /// (docs/methods/stable_step.md 6.1) and of force elements.
 Real step_of_body(const Model& model, std::size_t body);
@@ -96,7 +133,10 @@ Real evaluate_stable_steps(Model& model, Column<Real>& stiffness_sum);
 Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum);
 /// Must be called before each step. Copies the shapes of some bodies; the stable steps for these shapes are then
 /// evaluated in parallel with the step. In a round of `round` steps, all bodies are evaluated.
-void store_shapes(Executor& executor, Model& model, std::uint64_t round, Column<WatchPieces>& pieces_memory);
+void store_shapes(Executor& executor, Model& model, std::uint64_t round);
+/// Computes StepWatch::first_piece. With ranks it is collective the first time, and after a round in which elements of
+/// some rank became implicit.
+void count_pieces(WorldState& world);
 
 /// Updates the matrices of clusters whose elements have stiffened, exactly as the next step would do. Returns the
 /// energy that this update adds to the balance [J].
@@ -143,14 +183,16 @@ struct StepPlan {
     // Longest step that also suits rotating joints [s]. The smallest allowed length of a repeated attempt is a fraction
     // of it.
     Real regular = 0;
-    Index stiffest = no_index;  // row in BodyTable of the body with the shortest stable step
+    // row in BodyTable of the body with the shortest stable step; no_index if the step was combined with other ranks
+    Index stiffest = no_index;
 };
 /// Plans the next step of an interval that ends in `left` seconds. The step is at most `fast_limit` seconds long.
 StepPlan plan_step(const Model& model, Real left, Real fast_limit);
 /// Greatest angular speed of a body with a joint or tie [rad/s]. `body`: set to the row of this body in BodyTable.
 Real fastest_spin(const Model& model, Index* body = nullptr);
 /// Longest step in which no body with a joint rotates by more than a small angle [s]. `fastest`: set to the row in
-/// BodyTable of the fastest of these bodies if this step is shorter than `shorter_than`.
+/// BodyTable of the fastest of these bodies if this step is shorter than `shorter_than`; no_index if the speed was
+/// combined with other ranks (Model::of_ranks).
 Real step_of_turns(const Model& model, Real shorter_than, Index& fastest);
 /// Returns the time until the end of the long step that contains the next step [s]. Begins a long step if there is
 /// none. In worlds without long steps, returns `left`, the time until the end of the call.

@@ -126,21 +126,21 @@ bool run_stages(WorldState& world) {
 /// unstrained bodies the swapped columns contain equal values.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
-    if (!world.model.any_asleep) {
+    if (!world.model.any_idle) {
         elements.rotation.swap(elements.rotation_next);
         elements.spring_strain.swap(elements.spring_strain_next);
         return;
     }
     ElementInputs awake = world.model.awake_elements();
     // A body that this step has woken was asleep while the stages ran, so its element rotations were not computed.
-    awake.body_asleep = world.transaction.rested(world.model.bodies);
+    awake.body_idle = world.transaction.rested(world.model.bodies);
     keep_memory(*world.executor, awake, elements);
 }
 
 /// Returns the elements of the bodies that moved to the yield surface at their new positions.
 void flow(WorldState& world) {
     ElementInputs moved = world.model.awake_elements();
-    if (world.model.any_asleep) moved.body_asleep = world.transaction.rested(world.model.bodies);
+    if (world.model.any_idle) moved.body_idle = world.transaction.rested(world.model.bodies);
     const bool yields = std::ranges::any_of(world.model.materials.constants, &MaterialConstants::yields);
     const TraceZone zone(world.record.tracing && yields ? &world.record.trace : nullptr, "dynamics/yield_elements");
     world.scratch.findings.plastic = yield_blocks(world, moved, world.model.all_blocks());
@@ -181,47 +181,34 @@ void commit(WorldState& world) {
     }
     scratch.counters = counters_of_step(world);
     count_committed_step(scratch.counters, world.record.counters);
-    world.record.counters.dissipated += dissipated_in(scratch.findings);
-    world.record.counters.plastic_work += scratch.findings.plastic;
-    add_step(scratch, world.record.balance);
+    RankShare& share = world.ranks.share;
+    const bool divided = world.ranks.on();
+    share.balance.open = world.record.balance.open;
+    (divided ? share.dissipated : world.record.counters.dissipated) += dissipated_in(scratch.findings);
+    (divided ? share.plastic_work : world.record.counters.plastic_work) += scratch.findings.plastic;
+    add_step(scratch, divided ? share.balance : world.record.balance);
     world.clock.time += parameters.h;
     world.clock.step_before = parameters.h;
 }
 
-/// Largest ratio of the stable step of a body to its stable step at rest for which strain counts as the cause of a
-/// short step. Above this ratio the cause is the rest shape.
-constexpr Real as_at_rest = 0.9;
-
-struct Blamed {
-    BodyHandle body;
-    const std::string& name;
-};
-
-Blamed blamed(const Model& model, Index body) {
-    static const std::string nobody;
-    if (body == no_index) return {{}, nobody};
-    const auto b = static_cast<std::size_t>(body);
-    // The remaining bodies are the meshes of mesh colliders, which have no handle.
-    const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;
-    return {has_handle ? model.body_map.handle_of_slot(model.bodies.slot[b]) : BodyHandle{},
-            model.body_records[b].name};
-}
-
 /// Counts the cause that limited the length of a committed step: earlier attempts, the settings or the stiffest body.
-void note_step(const Model& model, const StepPlan& plan, const AttemptLimits& attempt, StepLimits& limits) {
+void note_step(WorldState& world, const StepPlan& plan, const AttemptLimits& attempt) {
+    const Model& model = world.model;
     const bool fast = attempt.slow_enough < attempt.longest;
     StepLimit limit = fast ? StepLimit::speed : attempt.limit;
     Index body = fast ? attempt.fastest : attempt.body;
     if (!(attempt.at_most() < plan.stable)) {
+        const bool here = plan.stiffest != no_index;
         const auto b = static_cast<std::size_t>(plan.stiffest);
-        const bool set = plan.stiffest == no_index || plan.stable < step_of_body(model, b) * model.tuning.step_safety;
-        limit = set ? StepLimit::setting
-                    : (model.bodies.stable_step[b] < as_at_rest * model.bodies.rest_step[b] ? StepLimit::strain
-                                                                                            : StepLimit::rest);
-        body = set ? no_index : plan.stiffest;
+        body = place_of_stiffest(world, plan.stiffest);
+        const Real stable = here ? step_of_body(model, b) : model.of_ranks.stable_step;
+        const bool set = body == no_index || plan.stable < stable * model.tuning.step_safety;
+        const bool strained = here ? is_strained(model, b) : model.of_ranks.strained;
+        limit = set ? StepLimit::setting : (strained ? StepLimit::strain : StepLimit::rest);
+        if (set) body = no_index;
     }
-    const auto [handle, name] = blamed(model, body);
-    limits.count_step(limit, handle, name, plan.h);
+    const auto [handle, name] = name_body(world, body);
+    world.record.limits.count_step(limit, handle, name, plan.h);
 }
 
 /// Returns the reason why an attempt is given up for a shorter step.
@@ -278,14 +265,14 @@ AttemptLimits limits_of_next_attempt(const StepScratch& scratch, const StepPlan&
 }
 
 /// Counts an attempt that is given up for a shorter step.
-void note_try(const Model& model, const StepScratch& scratch, StepLimits& limits) {
-    const StepFindings& found = scratch.findings;
+void note_try(WorldState& world) {
+    const StepFindings& found = world.scratch.findings;
     const StepLimit limit = shortened_by(found);
     const Index body = limit == StepLimit::crossing    ? no_index
                        : limit == StepLimit::inversion ? found.inversions.body
                                                        : found.verdict.body;
-    const auto [handle, name] = blamed(model, body);
-    limits.count_try(limit, handle, name);
+    const auto [handle, name] = name_body(world, body);
+    world.record.limits.count_try(limit, handle, name);
 }
 
 /// Returns the outcome of an attempt, according to the table of StepOutcome.
@@ -343,7 +330,6 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     // motion in the next attempt, and the lists cannot cover every motion.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
-    world.ranks.mine = world.ranks.all = {};
     const bool ran = run_stages(world);
     if (world.ranks.on() && ran && !scratch.left_out) world.ranks.label_rounds.note(world.ranks.all.label_rounds);
     const StepOutcome outcome = judge(scratch, world.ranks.all.again_over_ranks(), world.cache.crossings.beyond_lists,
@@ -351,7 +337,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     switch (outcome) {
         case StepOutcome::committed:
             commit(world);
-            note_step(world.model, plan, attempt, world.record.limits);
+            note_step(world, plan, attempt);
             attempt = limits_of_next_attempt(scratch, plan, attempt);
             return outcome;
         case StepOutcome::again_over_ranks:
@@ -362,7 +348,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
             // The shorter attempt finds its own crossings. After an inversion it keeps the crossings of earlier
             // attempts as contacts.
             if (!scratch.inverts()) world.cache.crossings.row.clear();
-            note_try(world.model, scratch, world.record.limits);
+            note_try(world);
             attempt = limits_of_shorter_attempt(world, plan, attempt);
             break;
         case StepOutcome::again_letting_through:
@@ -394,7 +380,7 @@ void StepTransaction::roll_back_try(Model& model) const {
 }
 
 std::span<const std::uint8_t> StepTransaction::rested(const BodyTable& bodies) {
-    for (std::size_t b = 0; b < asleep_.size(); ++b) asleep_[b] |= bodies.asleep[b];
+    for (std::size_t b = 0; b < asleep_.size(); ++b) asleep_[b] = asleep_[b] || bodies.asleep[b] || bodies.idle[b];
     return asleep_;
 }
 

@@ -45,13 +45,13 @@ struct AttemptLimits {
     // bound grows in each committed step.
     Real longest = infinity;
     Real slow_enough = infinity;   // upper bound by the rate of deformation and the rotation of joints [s]
-    Index fastest = no_index;      // body that causes this bound, as row of BodyTable
+    Index fastest = no_index;      // body that causes this bound, by its place in the undivided world
     int with_longer_lists = 0;     // number of attempts at this step whose contact lists were incomplete
     int with_crossings = 0;        // number of attempts with this step length in which features crossed
     bool letting_through = false;  // true if the next attempt is the last, which accepts crossings and inversions
     // Cause of the bound `longest`: the last cause for which an attempt was shortened, apart from speed.
     StepLimit limit = StepLimit::inversion;
-    Index body = no_index;  // body that caused the bound `longest`, as row of BodyTable
+    Index body = no_index;  // body that caused the bound `longest`, by its place in the undivided world
 
     Real at_most() const { return std::min(longest, slow_enough); }
 };
@@ -92,8 +92,8 @@ public:
     void roll_back_try(Model& model) const;
     /// For each body, nonzero if it was asleep when the attempt began. Valid until `rested` is called.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
-    /// For each body, nonzero if it was asleep when the attempt began or is asleep now. The stages, or the completion
-    /// of the attempt, skip such a body.
+    /// For each body, nonzero if it was idle when the attempt began or is asleep now. The stages, or the completion of
+    /// the attempt, skip such a body.
     std::span<const std::uint8_t> rested(const BodyTable& bodies);
 
     /// begin_call and roll_back_call store and restore the state at the start of a call of advance, if the integrator

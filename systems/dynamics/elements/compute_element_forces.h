@@ -29,9 +29,9 @@ struct ElementInputs {
     std::span<const ElementLane> own_frequency = {};  // 1/s
     std::span<const Real> relaxing_share = {};
     std::span<const SpringStrain> spring_strain = {};
-    // Flags from BodyTable. Elements of sleeping and of unstrained bodies are left out of a step. The spans are empty
-    // if there are no such bodies.
-    std::span<const std::uint8_t> body_asleep = {};
+    // Flags from BodyTable. Elements of idle and of unstrained bodies are left out of a step. The spans are empty if
+    // there are no such bodies.
+    std::span<const std::uint8_t> body_idle = {};
     std::span<const std::uint16_t> body_unstrained = {};
     std::span<const ElementForm> mass_form = {};  // empty if all elements use mass_share [1/(kg m^2)]
     // Assumed modulus; 0 for an explicit element; empty if all elements are explicit [Pa]
@@ -53,7 +53,7 @@ struct ElementInputs {
     }
     /// True if the elements of a block are left out of this step.
     bool is_left_out(std::size_t block) const {
-        return (!body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[block])]) ||
+        return (!body_idle.empty() && body_idle[static_cast<std::size_t>(body[block])]) ||
                (!body_unstrained.empty() && body_unstrained[static_cast<std::size_t>(body[block])]);
     }
 
@@ -64,12 +64,12 @@ struct ElementInputs {
         elements.implicit_modulus = binder.read(element.implicit_modulus);
         return elements;
     }
-    /// Binds all elements, and the flags that show which elements are left out of a step. `any_asleep`: true if at
-    /// least one body is asleep.
+    /// Binds all elements, and the flags that show which elements are left out of a step. `any_idle`: true if at
+    /// least one body is idle.
     static ElementInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
-                              const MaterialTable& material, const BodyTable& body, const bool& any_asleep) {
+                              const MaterialTable& material, const BodyTable& body, const bool& any_idle) {
         ElementInputs elements = bind(binder, element, nodes, material);
-        elements.body_asleep = binder.read_if(binder.value(any_asleep), body.asleep);
+        elements.body_idle = binder.read_if(binder.value(any_idle), body.idle);
         elements.body_unstrained = binder.read(body.unstrained);
         return elements;
     }

@@ -24,16 +24,17 @@ inline constexpr std::uint16_t unstrained_steps = 1024;
 struct UnstrainedInputs {
     ElementInputs elements;
     std::span<const Range> body_nodes, body_blocks;  // BodyTable
-    std::span<const std::uint8_t> body_asleep;       // BodyTable
+    std::span<const std::uint8_t> body_idle;         // BodyTable; empty if no body is idle
     std::span<const Vec3> position, velocity;
     std::span<const ElementRotation> rotation;
 
     static UnstrainedInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
-                                 const MaterialTable& material, const BodyTable& body, const NodeTable& node) {
+                                 const MaterialTable& material, const BodyTable& body, const NodeTable& node,
+                                 const bool& any_idle) {
         return {.elements = ElementInputs::bind_explicit(binder, element, nodes, material),
                 .body_nodes = binder.read(body.nodes),
                 .body_blocks = binder.read(body.blocks),
-                .body_asleep = binder.read(body.asleep),
+                .body_idle = binder.read_if(binder.value(any_idle), body.idle),
                 .position = binder.read(node.position),
                 .velocity = binder.read(node.velocity),
                 .rotation = binder.read(element.rotation)};
@@ -52,7 +53,7 @@ struct UnstrainedOutputs {
     }
 };
 
-/// Finds the awake bodies that are unstrained, and returns their number. Parallel over bodies.
+/// Finds the bodies that are not idle and that are unstrained, and returns their number. Parallel over bodies.
 ///
 /// All nodes of an unstrained body have bitwise the same velocity, and none of its elements is strained or rotated or
 /// has a strained spring. A body stays unstrained while its velocities are equal; its strains are checked again every

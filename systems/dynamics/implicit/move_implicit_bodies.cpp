@@ -253,12 +253,13 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
         parts[r].damped = taken;
     });
     StrainFindings found;
-    for (const StrainPart& of_body : parts) {
-        found.damped += of_body.damped;
-        found.impulse += of_body.impulse;
+    for (std::size_t r = 0; r < parts.size(); ++r) {
+        if (bodies.is_ghost(r)) continue;
+        found.damped += parts[r].damped;
+        found.impulse += parts[r].impulse;
     }
     for (std::size_t r = 0; r < stiff.size(); ++r) {
-        found.newton += stiff[r].large_step.counts;
+        if (!bodies.is_ghost(r)) found.newton += stiff[r].large_step.counts;
         if (found.unsolved == no_index && stiff[r].large_step.failed) found.unsolved = bodies.body[r];
     }
     return found;

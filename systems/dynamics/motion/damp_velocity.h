@@ -19,7 +19,7 @@ struct DampingInputs {
     std::span<const Index> body_material;                       // BodyTable
     std::span<const Index> body_pinned_count;                   // BodyTable
     std::span<const Range> body_rigid;                          // BodyTable
-    std::span<const std::uint8_t> body_asleep;                  // BodyTable
+    std::span<const std::uint8_t> body_idle;                    // BodyTable; empty if no body is idle
     std::span<const std::uint16_t> body_unstrained;             // BodyTable
     std::span<const Real> material_damping;                     // [1/s]
     std::span<const Vec3> position;
@@ -27,7 +27,8 @@ struct DampingInputs {
     Real lag = 0;  // time by which velocities are earlier than positions [s]
 
     static DampingInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
-                              const MaterialTable& material, const NodeTable& node, const Real& lag) {
+                              const MaterialTable& material, const NodeTable& node, const Real& lag,
+                              const bool& any_idle) {
         return {.block_begin = binder.read(block.begin),
                 .block_end = binder.read(block.end),
                 .block_body = binder.read(block.body),
@@ -35,7 +36,7 @@ struct DampingInputs {
                 .body_material = binder.read(body.material),
                 .body_pinned_count = binder.read(body.pinned_count),
                 .body_rigid = binder.read(body.rigid),
-                .body_asleep = binder.read(body.asleep),
+                .body_idle = binder.read_if(binder.value(any_idle), body.idle),
                 .body_unstrained = binder.read(body.unstrained),
                 .material_damping = binder.read(material.damping),
                 .position = binder.read(node.position),
@@ -49,7 +50,7 @@ struct DampingInputs {
 /// is v at the start of the step, and not the predicted velocity: damping must not act on a body at rest under load.
 /// `kick`: time between `velocity` and velocity_next [s]. `dissipated`: removed kinetic energy [J].
 ///
-/// Damps every body with damping > 0 that is awake, not in unstrained flight and not in RigidBodyTable. A body with
+/// Damps every body with damping > 0 that is not idle, not in unstrained flight and not in RigidBodyTable. A body with
 /// pinned nodes is damped towards zero velocity. For any other body v_rigid is the rigid motion with the momentum and
 /// angular momentum of the body, at the node positions of the time `lag` ago. So a body that rotates with constant
 /// centrifugal stretch has no deformation velocity. Angular momentum is taken about the present positions, where the

@@ -22,7 +22,7 @@ struct Kick {
         const auto begin = static_cast<std::size_t>(nodes.block_begin[b]),
                    end = static_cast<std::size_t>(nodes.block_end[b]);
         const auto body = static_cast<std::size_t>(nodes.block_body[b]);
-        if (!nodes.body_asleep.empty() && nodes.body_asleep[body]) return;
+        if (!nodes.body_idle.empty() && nodes.body_idle[body]) return;
         if (!nodes.body_unstrained.empty() && nodes.body_unstrained[body]) {
             fly(begin, end);
             return;

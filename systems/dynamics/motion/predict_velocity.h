@@ -22,14 +22,14 @@ struct KickInputs {
     Vec3 gravity = Vec3::Zero();
     std::span<const Vec3> load = {};  // applied force; empty if no node has one [N]
     // Column of BodyTable; empty if no body is asleep. Sleeping bodies are skipped.
-    std::span<const std::uint8_t> body_asleep = {};
+    std::span<const std::uint8_t> body_idle = {};
     // BodyTable. Elements exert no force on nodes of unstrained bodies. Empty if no body is unstrained.
     std::span<const std::uint16_t> body_unstrained = {};
 
     /// `forced`: true if the world has force elements. `any_asleep`: true if some body is asleep.
     static KickInputs bind(const Binder& binder, const NodeBlockTable& block, const ElementPatches& patches,
                            const NodeTable& node, const BodyTable& body, const Vec3& gravity, const bool& forced,
-                           const bool& any_asleep) {
+                           const bool& any_idle) {
         return {.block_begin = binder.read(block.begin),
                 .block_end = binder.read(block.end),
                 .block_body = binder.read(block.body),
@@ -39,7 +39,7 @@ struct KickInputs {
                 .inverse_mass = binder.read(node.inverse_mass),
                 .gravity = binder.value(gravity),
                 .load = binder.read_if(binder.value(forced), node.applied_force),
-                .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
+                .body_idle = binder.read_if(binder.value(any_idle), body.idle),
                 .body_unstrained = binder.read(body.unstrained)};
     }
 };

@@ -71,7 +71,6 @@ void put_to_rest(const RestInputs& bodies, std::size_t body, const RestOutputs& 
         state.velocity[n] = state.velocity_next[n] = Vec3::Zero();
     }
     state.asleep[body] = 1;
-    ++taken.bodies;
 }
 
 }  // namespace
@@ -117,15 +116,14 @@ bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> press
     return any;
 }
 
-TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
-                        const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state) {
+void find_still_sets(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
+                     const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state) {
     const std::size_t count = bodies.kind.size();
     SKERRY_CHECK(state.asleep.size() == count && state.still_time.size() == count);
     // A moving body must not fall asleep even if the sleep time is zero.
     const auto is_ready = [&](std::size_t b) {
         return state.still_time[b] >= settings.time && state.still_time[b] > 0;
     };
-    TakenByRest taken;
     std::atomic<bool> any_ready{false};
     parallel_for(executor, count, watched_per_block, [&](std::size_t begin, std::size_t end) {
         bool ready = false;
@@ -139,7 +137,8 @@ TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const Re
         }
         if (ready) any_ready.store(true, std::memory_order_relaxed);
     });
-    if (!any_ready.load()) return taken;
+    memory.any_ready = any_ready.load();
+    if (!memory.any_ready) return;
     memory.touching.start(count);
     memory.restless.assign(count, 0);
     for (std::size_t b = 0; b < count; ++b)
@@ -151,10 +150,19 @@ TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const Re
     join_touching(touches, bodies, memory);
     for (std::size_t b = 0; b < count; ++b)
         if (memory.restless[b]) memory.restless[memory.touching.root(static_cast<Index>(b))] = 1;
-    for (std::size_t b = 0; b < count; ++b)
-        if (!state.asleep[b] && bodies.kind[b] == BodyKind::deformable &&
-            !memory.restless[memory.touching.root(static_cast<Index>(b))])
-            put_to_rest(bodies, b, state, taken);
+}
+
+TakenByRest rest_bodies(const RestInputs& bodies, SleepMemory& memory, const RestOutputs& state) {
+    TakenByRest taken, taken_from_ghosts;
+    if (!memory.any_ready) return taken;
+    for (std::size_t b = 0; b < bodies.kind.size(); ++b) {
+        if (state.asleep[b] || bodies.kind[b] != BodyKind::deformable ||
+            memory.restless[memory.touching.root(static_cast<Index>(b))])
+            continue;
+        const bool is_ghost = !bodies.ghost.empty() && bodies.ghost[b] != GhostKind::none;
+        put_to_rest(bodies, b, state, is_ghost ? taken_from_ghosts : taken);
+        ++taken.bodies;
+    }
     return taken;
 }
 

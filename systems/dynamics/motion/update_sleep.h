@@ -103,6 +103,7 @@ struct RestInputs {
     std::span<const Index> body_core_nodes = {};
     // For each body, nonzero if a load or a joining object of the body changes in this step. May be empty.
     std::span<const std::uint8_t> driven = {};
+    std::span<const GhostKind> ghost = {};  // BodyTable; empty if the world is not divided among ranks
 
     static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,
                            const MaterialTable& material, const NodeTable& node, const RigidBodyTable& rigid,
@@ -128,7 +129,8 @@ struct RestInputs {
                 .rigid_rotation = binder.read(rigid.rotation),
                 .rigid_holder = binder.read(rigid.holder),
                 .body_core_nodes = binder.read(body.core_nodes),
-                .driven = binder.read(driven)};
+                .driven = binder.read(driven),
+                .ghost = binder.read(body.ghost)};
     }
 
     /// Nodes that show whether the body moves. Nodes of a round body that are only drawn may be out of date and are
@@ -173,7 +175,8 @@ struct RestOutputs {
     }
 };
 
-/// Energy and momentum removed from the bodies that fall asleep in this step, and the number of these bodies.
+/// Energy and momentum removed from the bodies that fall asleep in this step, without ghosts, and the number of these
+/// bodies.
 struct TakenByRest {
     Real energy = 0;               // kinetic energy [J]
     Vec3 momentum = Vec3::Zero();  // [kg m/s]
@@ -181,15 +184,20 @@ struct TakenByRest {
 };
 
 struct SleepMemory {
-    UnionFind touching;             // sets of bodies that touch each other
-    Column<std::uint8_t> restless;  // by body
+    bool any_ready = false;  // true if a body has been still long enough; otherwise there are no sets
+    UnionFind touching;      // sets of bodies that touch each other
+    // By body: nonzero for the first body of a set if a body of the set must stay awake.
+    Column<std::uint8_t> restless;
 };
 
-/// Counts the time for which each body has been still. Puts a body to sleep if it and all bodies that it touches,
-/// directly or through other bodies, have been still long enough. The velocities of these bodies become zero. A body
-/// that touches a moving collider, is held by a moving attachment or has a changing load stays awake. Parallel over
-/// bodies; sequential over contacts once a body has been still long enough.
-TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
-                        const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);
+/// Counts the time for which each body has been still. If a body has been still long enough, finds the sets of bodies
+/// that touch each other, directly or through other bodies, and the sets that must stay awake. A body that has not been
+/// still long enough, touches a moving collider, is held by a moving attachment or has a changing load stays awake.
+/// Parallel over bodies; sequential over contacts once a body has been still long enough.
+void find_still_sets(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
+                     const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);
+
+/// Puts the bodies of all sets to sleep that need not stay awake. The velocities of these bodies become zero.
+TakenByRest rest_bodies(const RestInputs& bodies, SleepMemory& memory, const RestOutputs& state);
 
 }  // namespace skerry

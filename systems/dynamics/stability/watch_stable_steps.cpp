@@ -14,14 +14,15 @@ void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<Wa
         const auto b = static_cast<std::size_t>(watch.body);
         const std::uint64_t pieces = pieces_of_look(inputs.elements, inputs.body_blocks[b]);
         if (watch.step[b] != StepWatch::not_evaluated) {
-            const std::uint64_t due = watch.target > watch.before ? std::min(pieces, watch.target - watch.before) : 0;
+            const std::uint64_t before = watch.first_piece[b];
+            const std::uint64_t due = watch.target > before ? std::min(pieces, watch.target - before) : 0;
             whole = due == pieces;
             parts.push_back({watch.body, due, whole, watch.look});
         }
         if (!whole) continue;
         watch.look = {};
-        watch.before += pieces;
     }
+    watch.before = watch.first_piece[static_cast<std::size_t>(watch.body)];
     parallel_for(executor, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
             WatchPart& part = parts[p];

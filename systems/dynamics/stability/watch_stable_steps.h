@@ -25,12 +25,6 @@ struct WatchInputs {
     }
 };
 
-/// Numbers of pieces of stable-step checks: of the bodies before the body in progress, of the bodies whose shape is
-/// stored, and of all bodies.
-struct WatchPieces {
-    std::uint64_t before = 0, kept = 0, total = 0;
-};
-
 /// Body whose stable step is being computed in a step, and the progress of this computation.
 struct WatchPart {
     Index body = no_index;

@@ -39,7 +39,8 @@ public:
                 velocity_[n].x() = sign * (way(now) - way(now - h)) / h;
             }
             max_speed_[0] = std::abs(velocity_[1].x());
-            const TakenByRest taken = rest_bodies(*executor_, {}, inputs(), settings_, h, memory_, state());
+            find_still_sets(*executor_, {}, inputs(), settings_, h, memory_, state());
+            const TakenByRest taken = rest_bodies(inputs(), memory_, state());
             if (taken.bodies > 0) return now;
         }
         return std::nullopt;

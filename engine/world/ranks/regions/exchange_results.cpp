@@ -66,10 +66,8 @@ public:
     void run(RankChannel& channel) {
         zero_left_out_rows();
         list_moved();
-        RankMail& mail = regions_.mail;
-        mail.start(bodies_.peers.size());
-        for (std::size_t p = 0; p < bodies_.peers.size(); ++p) send(p);
-        channel.ranks->exchange(bodies_.peers, mail.out, mail.in);
+        send();
+        channel.ranks->exchange(bodies_.peers, regions_.mail.out, regions_.mail.in);
         regions_.pushed_bodies.clear();
         regions_.unit_from.assign(regions_.unit.size(), -1);
         for (std::size_t p = 0; p < bodies_.peers.size(); ++p) receive(p);
@@ -131,51 +129,64 @@ private:
         return no_index;
     }
 
-    /// Calls visit(number) for the results of all rows of joints, ties and cables of the units for which wants(first
-    /// body of the unit) is true. All ranks that hold a unit have its rows in the same order.
+    /// Calls visit(unit, number) for the results of all rows of joints, ties and cables of the units for which
+    /// wants(unit) is true. `unit`: first body of the unit. All ranks that hold a unit have its rows in the same order.
     void for_each_result_of_units(auto&& wants, auto&& visit) {
         if (regions_.unit.empty()) return;
-        const auto wanted = [&](Index body) { return body != no_index && wants(regions_.unit[body]); };
+        const auto wanted_unit = [&](Index body) {
+            const Index unit = body == no_index ? no_index : regions_.unit[body];
+            return unit != no_index && wants(unit) ? unit : no_index;
+        };
         for (std::size_t j = 0; j < joints_.size(); ++j) {
-            if (!wanted(bodies_.body_of(joints_.block[j].moving_node()))) continue;
-            visit(out_.joint_impulse[j]);
-            visit(out_.axis_impulse[j]);
+            const Index unit = wanted_unit(bodies_.body_of(joints_.block[j].moving_node()));
+            if (unit == no_index) continue;
+            visit(unit, out_.joint_impulse[j]);
+            visit(unit, out_.axis_impulse[j]);
         }
         for (std::size_t row = regions_.contact_count; row < regions_.contact_count + rows_.tie_count; ++row)
-            if (wanted(bodies_.body_of(rows_.stencil[row].node[0]))) visit(out_.impulse[row]);
-        std::size_t c = 0;
-        for (const CableBlock& cable : cables_.solved()) {
-            if (wanted(body_of_cable(cable))) {
-                for (Real& tension : rows_of(out_.cable_impulse, cable.points)) visit(tension);
-                visit(out_.cable_work[c]);
-                visit(out_.cable_loss[c]);
-                visit(out_.cable_sum[c]);
-            }
-            ++c;
+            if (const Index unit = wanted_unit(bodies_.body_of(rows_.stencil[row].node[0])); unit != no_index)
+                visit(unit, out_.impulse[row]);
+        for (std::size_t c = 0; c < cables_.solved().size(); ++c) {
+            const CableBlock& cable = cables_.solved()[c];
+            const Index unit = wanted_unit(body_of_cable(cable));
+            if (unit == no_index) continue;
+            for (Real& tension : rows_of(out_.cable_impulse, cable.points)) visit(unit, tension);
+            visit(unit, out_.cable_work[c]);
+            visit(unit, out_.cable_loss[c]);
+            visit(unit, out_.cable_sum[c]);
         }
     }
 
-    void send(std::size_t peer) {
+    /// Writes the messages. Each has a flag, the impulses of the contacts that the peer has sent, and lists of nodes,
+    /// bodies and units, which end with an empty record. The results of the rows of the units follow.
+    void send() {
+        const std::size_t peers = bodies_.peers.size();
         RankMail& mail = regions_.mail;
-        mail.put(peer, Index{table_.pushed});
-        const std::size_t first = peer == 0 ? 0 : static_cast<std::size_t>(regions_.received_end[peer - 1]);
-        for (std::size_t i = first; i < static_cast<std::size_t>(regions_.received_end[peer]); ++i)
-            mail.put(peer, out_.impulse[regions_.received_row[i]]);
+        mail.start(peers);
+        Index contact = 0;
+        for (std::size_t p = 0; p < peers; ++p) {
+            mail.put(p, Index{table_.pushed});
+            for (; contact < regions_.received_end[p]; ++contact)
+                mail.put(p, out_.impulse[regions_.received_row[contact]]);
+        }
         for (const Index node : regions_.nodes)
-            if (bodies_.is_held_by(static_cast<int>(peer), bodies_.body_of(node)))
-                mail.put(peer, MailedNode{bodies_.name(node), out_.velocity_next[node], out_.push_out[node]});
-        mail.put(peer, MailedNode{});
+            for (const int p : bodies_.holders_of(bodies_.body_of(node)))
+                mail.put(static_cast<std::size_t>(p),
+                         MailedNode{bodies_.name(node), out_.velocity_next[node], out_.push_out[node]});
+        for (std::size_t p = 0; p < peers; ++p) mail.put(p, MailedNode{});
         for (const Index body : regions_.bodies)
-            if (bodies_.is_held_by(static_cast<int>(peer), body)) send_body(peer, body);
-        mail.put(peer, MailedBody{});
-        const auto sends = [&](Index unit) {
-            return unit != no_index && is_solved_here(unit) && bodies_.is_held_by(static_cast<int>(peer), unit);
-        };
+            for (const int p : bodies_.holders_of(body)) send_body(static_cast<std::size_t>(p), body);
+        for (std::size_t p = 0; p < peers; ++p) mail.put(p, MailedBody{});
         for (std::size_t b = 0; b < regions_.unit.size(); ++b)
-            if (regions_.unit[b] == static_cast<Index>(b) && sends(static_cast<Index>(b)))
-                mail.put(peer, bodies_.place[b]);
-        mail.put(peer, no_index);
-        for_each_result_of_units(sends, [&](const auto& number) { mail.put(peer, number); });
+            if (regions_.unit[b] == static_cast<Index>(b) && is_solved_here(static_cast<Index>(b)))
+                for (const int p : bodies_.holders_of(static_cast<Index>(b)))
+                    mail.put(static_cast<std::size_t>(p), bodies_.place[b]);
+        for (std::size_t p = 0; p < peers; ++p) mail.put(p, no_index);
+        for_each_result_of_units([&](Index unit) { return is_solved_here(unit); },
+                                 [&](Index unit, const auto& number) {
+                                     for (const int p : bodies_.holders_of(unit))
+                                         mail.put(static_cast<std::size_t>(p), number);
+                                 });
     }
 
     void send_body(std::size_t peer, Index body) {
@@ -183,12 +194,11 @@ private:
         const std::span<const Vec3> deforming =
             rows_of(std::span<const Vec3>(out_.deforming_impulse), rows_.body_implicit[static_cast<std::size_t>(body)]);
         const auto is_zero = [](const Vec3& impulse) { return impulse == Vec3::Zero(); };
-        regions_.mail.put(
-            peer, MailedBody{bodies_.place[static_cast<std::size_t>(body)],
-                             static_cast<Index>(deforming.size()) -
-                                 static_cast<Index>(std::ranges::count_if(deforming, is_zero)),
-                             out_.contact_impulse[frame], out_.contact_moment[frame], out_.push_velocity[frame],
-                             out_.push_spin[frame]});
+        regions_.mail.put(peer, MailedBody{bodies_.place[static_cast<std::size_t>(body)],
+                                           static_cast<Index>(deforming.size()) -
+                                               static_cast<Index>(std::ranges::count_if(deforming, is_zero)),
+                                           out_.contact_impulse[frame], out_.contact_moment[frame],
+                                           out_.push_velocity[frame], out_.push_spin[frame]});
         for (std::size_t n = 0; n < deforming.size(); ++n)
             if (!is_zero(deforming[n])) regions_.mail.put(peer, MailedDeformation{static_cast<Index>(n), deforming[n]});
     }
@@ -200,7 +210,8 @@ private:
             for (std::size_t c = 0; c < regions_.found.size(); ++c)
                 if (regions_.solved_row[c] == -1 - static_cast<Index>(peer))
                     regions_.found.impulse[c] = reader.take<Vec3>();
-        for (MailedNode mail = reader.take<MailedNode>(); mail.name.body != no_index; mail = reader.take<MailedNode>()) {
+        for (MailedNode mail = reader.take<MailedNode>(); mail.name.body != no_index;
+             mail = reader.take<MailedNode>()) {
             const Index node = bodies_.node_of(mail.name);
             out_.velocity_next[node] = mail.velocity;
             out_.push_out[node] = mail.push;
@@ -210,11 +221,8 @@ private:
             receive_body(mail, reader);
         for (Index place = reader.take<Index>(); place != no_index; place = reader.take<Index>())
             regions_.unit_from[bodies_.row_of(place)] = static_cast<int>(peer);
-        const auto is_from_peer = [&](Index unit) {
-            return unit != no_index && regions_.unit_from[unit] == static_cast<int>(peer);
-        };
-        for_each_result_of_units(is_from_peer,
-                                 [&]<class Number>(Number& number) { number = reader.take<Number>(); });
+        for_each_result_of_units([&](Index unit) { return regions_.unit_from[unit] == static_cast<int>(peer); },
+                                 [&]<class Number>(Index, Number& number) { number = reader.take<Number>(); });
         SKERRY_CHECK(reader.at_end());
     }
 

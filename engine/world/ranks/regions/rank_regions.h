@@ -40,10 +40,10 @@ struct MailedContact {
 
 /// The bodies of a rank and the other ranks that hold them.
 struct SharedBodies {
-    std::span<const Index> place;                // RankState
-    std::span<const std::int32_t> owner;         // RankState
+    std::span<const Index> place;                  // RankState
+    std::span<const std::int32_t> owner;           // RankState
     const std::vector<std::vector<int>>& holders;  // RankState
-    const std::vector<int>& peers;               // RankState
+    const std::vector<int>& peers;                 // RankState
     int rank;
     std::span<const BodyKind> kind;    // BodyTable
     std::span<const Range> nodes;      // BodyTable
@@ -101,10 +101,10 @@ struct RankRegions {
     Column<Index> group_of;        // by contact: a group that it touches, or no_index
     // by node; valid at the roots of `sets`: 1 if another rank touches the region too
     Column<std::uint8_t> open;
-    Column<int> changed;          // by node; valid at the roots of `sets`: last round in which the label changed
-    Column<Index> unit_count;     // by peer: number of units whose rows it solves
-    Column<Index> order, source;  // used to merge contacts
-    Column<Index> nodes, bodies;  // nodes and bodies that the regions of this rank have moved
+    Column<int> changed;           // by node; valid at the roots of `sets`: last round in which the label changed
+    Column<Index> unit_count;      // by peer: number of units whose rows it solves
+    Column<Index> order, source;   // used to merge contacts
+    Column<Index> nodes, bodies;   // nodes and bodies that the regions of this rank have moved
     Column<std::uint8_t> visited;  // by body
     Column<int> unit_from;         // by body that is first in its unit: peer that has solved the rows of the unit
 };

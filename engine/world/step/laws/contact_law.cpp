@@ -74,11 +74,10 @@ void list_memory(WorldState& w, TaskGraph& g) {
 
 }  // namespace
 
-constinit const ConstraintLaw contact_law{
-    .find = list_search,
-    .take = list_rows_taken_back,
-    .measure = list_contact_measures,
-    .check = list_crossings,
-    .remember = list_memory};
+constinit const ConstraintLaw contact_law{.find = list_search,
+                                          .take = list_rows_taken_back,
+                                          .measure = list_contact_measures,
+                                          .check = list_crossings,
+                                          .remember = list_memory};
 
 }  // namespace skerry

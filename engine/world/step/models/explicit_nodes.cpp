@@ -18,10 +18,10 @@ void list_element_forces(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     const auto if_unknown = only_if([](bool known) { return !known; }, value(p.forces_known));
     g.stage_with_result("dynamics/find_unstrained", w.scratch.findings.unstrained, find_unstrained,
-                        inputs<UnstrainedInputs>(e, m.element_nodes, m.materials, b, n),
+                        inputs<UnstrainedInputs>(e, m.element_nodes, m.materials, b, n, m.any_idle),
                         outputs<UnstrainedOutputs>(b, e), if_unknown);
     g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, kernels().compute_element_forces,
-                        inputs<ElementInputs>(e, m.element_nodes, m.materials, b, m.any_asleep), read(n.position),
+                        inputs<ElementInputs>(e, m.element_nodes, m.materials, b, m.any_idle), read(n.position),
                         read(n.velocity), value(p.kick), read(e.rotation), outputs<ElementMemory>(e),
                         outputs<PatchForces>(m.patches, m.element_nodes), if_unknown);
 }
@@ -33,9 +33,9 @@ void list_prediction(WorldState& w, TaskGraph& g) {
     NodeBlockTable& k = m.node_blocks;
     const StepParameters& p = w.scratch.parameters;
     g.stage("dynamics/predict_velocity", kernels().predict_velocity,
-            inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.forced, m.any_asleep), read(n.velocity), value(p.kick),
+            inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.forced, m.any_idle), read(n.velocity), value(p.kick),
             write(n.force), write(n.velocity_next));
-    g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
+    g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag, m.any_idle),
             read(n.velocity), value(p.kick), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
 }
 

@@ -34,7 +34,7 @@ void list_viscosity(WorldState& w, TaskGraph& g) {
     const auto if_viscous = only_if([](std::span<const ElementViscousImpulse> impulse) { return !impulse.empty(); },
                                     read(m.patches.viscous_impulse));
     g.stage_with_result("dynamics/measure_viscosity", w.scratch.findings.viscous, kernels().measure_viscosity,
-                        inputs<ElementInputs>(m.elements, m.element_nodes, m.materials, m.bodies, m.any_asleep),
+                        inputs<ElementInputs>(m.elements, m.element_nodes, m.materials, m.bodies, m.any_idle),
                         read(m.patches.blocks), read(m.patches.viscous_impulse), read(m.patches.viscous),
                         read(n.velocity), read(n.velocity_next), make(w.scratch.viscous_parts), if_viscous);
 }

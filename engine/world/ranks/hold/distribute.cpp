@@ -1,8 +1,8 @@
 #include <numeric>
 
 #include "engine/world/complaint.h"
-#include "engine/world/ranks/body_rows.h"
-#include "engine/world/ranks/ghosts.h"
+#include "engine/world/ranks/rows/body_rows.h"
+#include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/step.h"
 #include "skerry/ranks.h"
 
@@ -61,6 +61,7 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
     replace_rows(state, kept, {},
                  [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == mine.rank; });
     note_holders(mine, model.bodies, extents);
+    note_ghosts(state);
     list_step_again(state);
 }
 
@@ -90,6 +91,7 @@ std::optional<World> gathered(const World& world) {
     }
     replace_rows(copy, kept, added, [](std::uint64_t) { return true; });
     copy.ranks = {};
+    note_ghosts(copy);
     copy.model.of_ranks = {};
     return whole;
 }

@@ -1,8 +1,7 @@
-#include "engine/world/ranks/owners.h"
+#include "engine/world/ranks/hold/owners.h"
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -89,7 +88,8 @@ Column<std::int32_t> choose_owners(const WholeWorld& whole, std::span<const Body
                                    const RankSettings& settings, int rank_count) {
     std::vector<UnitExtent> units = extents_of_units(whole, extents);
     if (settings.map == OwnerMap::curve) sort_along_curve(units);
-    const Real total = std::transform_reduce(units.begin(), units.end(), Real(0), std::plus<>(), &UnitExtent::cost);
+    Real total = 0;
+    for (const UnitExtent& unit : units) total += unit.cost;
     std::vector<std::int32_t> owner_of_unit(whole.size(), 0);
     SplitMix random{settings.seed};
     Real before = 0;

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "components/bvh_table.h"
-#include "engine/world/ranks/whole_world.h"
+#include "engine/world/ranks/hold/whole_world.h"
 #include "skerry/ranks.h"
 
 namespace skerry {

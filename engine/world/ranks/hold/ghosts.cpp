@@ -1,9 +1,9 @@
-#include "engine/world/ranks/ghosts.h"
+#include "engine/world/ranks/hold/ghosts.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "engine/world/ranks/body_rows.h"
+#include "engine/world/ranks/rows/body_rows.h"
 #include "engine/world/step/step.h"
 #include "jobs/stage_arguments.h"
 #include "systems/collision/tree/box.h"
@@ -60,14 +60,14 @@ struct SearchHeader {
 };
 
 template <class T>
-void append_rows(std::span<const T> rows, RankMessage& message) {
+void put_rows(std::span<T> rows, RankMessage& message) {
     const std::span<const std::byte> bytes = std::as_bytes(rows);
     message.insert(message.end(), bytes.begin(), bytes.end());
 }
 template <class T>
 std::vector<T> take_rows(std::span<const std::byte>& message, std::uint64_t count) {
     std::vector<T> rows(count);
-    if (count > 0) std::memcpy(rows.data(), message.data(), count * sizeof(T));
+    if (count > 0) std::memcpy(static_cast<void*>(rows.data()), message.data(), count * sizeof(T));
     message = message.subspan(count * sizeof(T));
     return rows;
 }
@@ -96,10 +96,10 @@ RankSearch search_ranks(WorldState& world) {
     RankMessage mine;
     const SearchHeader header{extents.size(), requests.size(), ranks.stale.size(),
                               world.cache.crossings.row.empty() ? 0u : 1u};
-    append_rows(std::span(&header, 1), mine);
-    append_rows(std::span(extents), mine);
-    append_rows(std::span(requests), mine);
-    append_rows(std::as_const(ranks.stale).span(), mine);
+    put_rows(std::span(&header, 1), mine);
+    put_rows(std::span(extents), mine);
+    put_rows(std::span(requests), mine);
+    put_rows(ranks.stale.span(), mine);
     RankSearch all;
     for (const RankMessage& message : ranks.ranks->gather_everywhere(mine)) {
         std::span<const std::byte> bytes(message);
@@ -243,6 +243,7 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
                      [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == rank; });
     whole.searched_step = world.record.counters.steps;
     note_holders(ranks, world.model.bodies, found.extents);
+    note_ghosts(world);
 }
 
 /// Finds whether a body may leave its box in this step.

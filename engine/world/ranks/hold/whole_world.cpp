@@ -1,4 +1,4 @@
-#include "engine/world/ranks/whole_world.h"
+#include "engine/world/ranks/hold/whole_world.h"
 
 #include "components/union_find.h"
 #include "engine/world/edit/joining_rows.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/world/ranks/owners.h"
+#include "engine/world/ranks/hold/owners.h"
 #include "engine/world/world_state.h"
 #include "jobs/task_graph.h"
 

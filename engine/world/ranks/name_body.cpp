@@ -1,0 +1,21 @@
+// Names of bodies in reports, which are equal on all ranks.
+#include "engine/world/step/step.h"
+
+namespace skerry {
+
+NamedBody name_body(const WorldState& world, Index place) {
+    const Index row = place == no_index ? no_index : world.ranks.row_of(place);
+    if (row == no_index) return {};
+    const Model& model = world.model;
+    const auto b = static_cast<std::size_t>(row);
+    // The remaining bodies are the meshes of mesh colliders, which have no handle.
+    const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;
+    return {has_handle ? model.body_map.handle_of_slot(model.bodies.slot[b]) : BodyHandle{},
+            model.body_records[b].name};
+}
+
+Index place_of_stiffest(const WorldState& world, Index row) {
+    return row == no_index ? world.model.of_ranks.stiffest : world.ranks.place_of(row);
+}
+
+}  // namespace skerry

@@ -1,0 +1,51 @@
+// Labels of regions, which ranks that hold the same bodies make equal (docs/methods/ranks.md 3).
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "engine/world/ranks/regions/rank_regions.h"
+#include "engine/world/state/model.h"
+#include "systems/contact/node_groups.h"
+
+namespace skerry {
+
+/// Rows other than contacts that belong to regions, and the bodies on which they act.
+struct JoinedBodies {
+    const BodyLinks& links;
+    std::array<std::span<const Index>, 5> body;  // columns of joints, ties and cables
+
+    static JoinedBodies bind(const Binder& binder, const Model& model) {
+        return {
+            .links = binder.read(model.links),
+            .body = {binder.read(model.joints.first), binder.read(model.joints.second), binder.read(model.ties.first),
+                     binder.read(model.ties.second), binder.read(model.cables.anchor.body)}};
+    }
+};
+
+/// Nodes, and the groups of nodes that move together. All moving nodes of a unit count as one group, so that one rank
+/// solves all rows of its joints, ties and cables.
+struct RegionGroups {
+    std::span<const Real> inverse_mass;  // by node [1/kg]
+    NodeGroups groups;
+
+    static RegionGroups bind(const Binder& binder, const Model& model) {
+        binder.value(model.clusters.nodes);
+        binder.value(model.clusters.body);
+        binder.value(model.clusters.cluster_of);
+        return {.inverse_mass = binder.read(model.nodes.inverse_mass),
+                .groups = {.clusters = &model.clusters,
+                           .rigid = RigidNodes::bind(binder, model.nodes, model.bodies, model.rigid_bodies)}};
+    }
+};
+
+/// Sets RankRegions::unit. `bodies`: number of rows of BodyTable.
+void find_units(const JoinedBodies& joined, std::size_t bodies, RankRegions& regions);
+
+/// Joins the groups of nodes of each contact to regions, and labels them. The units of this rank are regions even
+/// without contacts. The ranks exchange the labels in `rounds` rounds; a label that has changed is sent in the next
+/// round. Returns the number of rounds after which no label changes, or more than `rounds` if this is not known.
+int label_regions(const SharedBodies& bodies, const RegionGroups& nodes, std::span<const Stencil> stencil, int rounds,
+                  RankRegions& regions, RankChannel& channel);
+
+}  // namespace skerry

@@ -1,0 +1,268 @@
+#include "engine/world/ranks/rows/body_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "engine/world/edit/rigid_bodies.h"
+#include "engine/world/ranks/rows/compose_rows.h"
+#include "engine/world/ranks/rows/moved_contacts.h"
+#include "engine/world/step/step.h"
+
+namespace skerry {
+
+BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked, const WantsPair& wants_pair) {
+    BodyRows rows;
+    Model& model = world.model;
+    std::array<RowSource, 1> source{{{.model = &model,
+                                   .place = world.ranks.place,
+                                   .marked = marked,
+                                   .watched = model.watch.body,
+                                   .kept = model.watch.kept,
+                                   .look = model.watch.look,
+                                   .gives_common = false}}};
+    rows.place = compose_rows(source, world.ranks.whole, rows.model);
+    rows.watch.push_back({rows.model.watch.body, rows.model.watch.kept, rows.model.watch.look});
+    const Column<Real>& valid_until = world.cache.search.body_valid_until;
+    for (std::size_t b = 0; b < world.ranks.place.size(); ++b)
+        if (marked[b] != 0) rows.valid_until.push_back(b < valid_until.size() ? valid_until[b] : SearchState::forgotten);
+    copy_contacts(world, wants_pair, rows);
+    return rows;
+}
+
+namespace {
+
+/// Moves the tables of bodies, attachments and joining rows to another model.
+void move_tables(Model& from, Model& to) {
+    to.bodies = std::move(from.bodies);
+    to.nodes = std::move(from.nodes);
+    to.node_blocks = std::move(from.node_blocks);
+    to.tetrahedra = std::move(from.tetrahedra);
+    to.elements = std::move(from.elements);
+    to.element_nodes = std::move(from.element_nodes);
+    to.rigid_bodies = std::move(from.rigid_bodies);
+    to.implicit_nodes = std::move(from.implicit_nodes);
+    to.surface = std::move(from.surface);
+    to.bvh = std::move(from.bvh);
+    to.bvh_leaves = std::move(from.bvh_leaves);
+    to.clusters = std::move(from.clusters);
+    to.attachments = std::move(from.attachments);
+    to.joints = std::move(from.joints);
+    to.surface_sets = std::move(from.surface_sets);
+    to.ties = std::move(from.ties);
+    to.cables = std::move(from.cables);
+    to.cavities = std::move(from.cavities);
+    to.pipes = std::move(from.pipes);
+    to.fibres = std::move(from.fibres);
+    to.loads = std::move(from.loads);
+    to.springs = std::move(from.springs);
+    to.watch.body = from.watch.body;
+    to.watch.kept = from.watch.kept;
+    to.watch.look = from.watch.look;
+    to.watch.position = std::move(from.watch.position);
+    to.watch.stiffness_sum = std::move(from.watch.stiffness_sum);
+    to.watch.step = std::move(from.watch.step);
+    to.watch.first_piece.clear();
+}
+
+/// Lets the handles of a table refer to its present rows. Handles of absent rows keep their slots. `slot`: by row.
+void find_rows_of_handles(auto& map, std::size_t count_before, std::span<const std::uint32_t> slot) {
+    map.rows_moved(std::vector<Index>(count_before, no_index));
+    for (std::size_t row = 0; row < slot.size(); ++row)
+        if (slot[row] != no_slot) map.rename(map.handle_of_slot(slot[row]), static_cast<Index>(row));
+}
+
+/// Adapts all data that refer to rows of bodies, and computes all data that are not stored. `before`: the old tables.
+class RowsReplaced {
+public:
+    RowsReplaced(WorldState& world, Model& before, std::span<const Index> place_before, const RowMoves& moves)
+        : world_(world), model_(world.model), before_(before), place_before_(place_before), moves_(moves) {}
+
+    void handles_and_links() const {
+        Column<std::uint32_t> slots = model_.bodies.slot;
+        for (std::size_t b = 0; b < slots.size(); ++b)
+            if (model_.bodies.kind[b] == BodyKind::kinematic) slots[b] = no_slot;
+        find_rows_of_handles(model_.body_map, before_.bodies.slot.size(), slots);
+        find_rows_of_handles(model_.attachment_map, before_.attachments.slot.size(), model_.attachments.slot);
+        std::vector<std::size_t> counts;
+        before_.for_each_joining([&](const char*, auto& table, auto&) { counts.push_back(table.slot.size()); });
+        std::size_t number = 0;
+        model_.for_each_joining([&](const char*, auto& table, auto& map) {
+            find_rows_of_handles(map, counts[number++], table.slot);
+        });
+        for (Index& body : model_.colliders.body)
+            if (body != no_index) body = moves_.body_now[static_cast<std::size_t>(body)];
+    }
+
+    void records() const {
+        std::vector<BodyRecord>& store = world_.ranks.whole.records;
+        for (std::size_t b = 0; b < place_before_.size(); ++b)
+            store[static_cast<std::size_t>(place_before_[b])] = std::move(model_.body_records[b]);
+        model_.body_records.clear();
+        for (const Index place : world_.ranks.place)
+            model_.body_records.push_back(std::move(store[static_cast<std::size_t>(place)]));
+    }
+
+    void derived_columns() const {
+        StiffBodies stiff(model_.rigid_bodies.size());
+        for (std::size_t b = 0; b < moves_.body_now.size(); ++b) {
+            if (moves_.body_now[b] == no_index || before_.bodies.implicit[b].size() == 0) continue;
+            const Index row = before_.bodies.rigid[b].begin;
+            stiff[static_cast<std::size_t>(row - moves_.down[b].rigid)] =
+                std::move(model_.stiff_bodies[static_cast<std::size_t>(row)]);
+        }
+        model_.stiff_bodies = std::move(stiff);
+        model_.known_elements.clear();
+        model_.patches = {};
+        model_.body_mass.clear();
+        model_.extend_derived();
+        model_.loaded_bodies = 0;
+        std::vector<std::uint8_t> is_old(model_.bodies.slot.size(), 0);
+        for (const Index row : moves_.body_now)
+            if (row != no_index) is_old[static_cast<std::size_t>(row)] = 1;
+        for (std::size_t b = 0; b < is_old.size(); ++b) {
+            model_.note_loads(b, false);
+            if (!is_old[b] && model_.bodies.implicit[b].size() > 0) model_.stiffen(b);
+        }
+        find_holders(model_);
+        note_forces(model_);
+        model_.links_open = true;
+        note_changed_seams(model_);
+    }
+
+    /// Lets the next step search all pairs.
+    void search() const {
+        SearchState& state = world_.cache.search;
+        const std::size_t count = model_.bodies.slot.size();
+        Column<Real> valid_until;
+        // Finite, so that the next step searches all pairs without forgetting those that are known.
+        valid_until.resize(count, std::numeric_limits<Real>::lowest());
+        Column<Vec3> origin;
+        if (!world_.cache.pairs.self.origin.empty()) origin.resize(model_.nodes.position.size(), Vec3::Zero());
+        for (std::size_t b = 0; b < moves_.body_now.size(); ++b) {
+            const Index row = moves_.body_now[b];
+            if (row == no_index) continue;
+            if (!(b < state.body_valid_until.size()) || state.body_valid_until[b] == SearchState::forgotten)
+                valid_until[row] = SearchState::forgotten;
+            if (!origin.empty())
+                std::ranges::copy(rows_of(world_.cache.pairs.self.origin, before_.bodies.nodes[b]),
+                                  rows_of(origin, model_.bodies.nodes[row]).begin());
+        }
+        state.body_valid_until = std::move(valid_until);
+        world_.cache.pairs.self.origin = std::move(origin);
+        state.memory.rebase.assign(count, 0);
+        if (state.memory.any_unmeasured) state.memory.body_unmeasured.assign(count, 1);
+    }
+
+private:
+    WorldState& world_;
+    Model& model_;
+    Model& before_;
+    std::span<const Index> place_before_;
+    const RowMoves& moves_;
+};
+
+}  // namespace
+
+void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::span<BodyRows> added,
+                  const WantsPair& keeps_pair) {
+    Model& model = world.model;
+    RankState& ranks = world.ranks;
+    const Column<Index> place_before = ranks.place;
+    std::vector<RowSource> sources{{.model = &model,
+                                 .place = place_before,
+                                 .marked = kept,
+                                 .watched = model.watch.body,
+                                 .kept = model.watch.kept,
+                                 .look = model.watch.look,
+                                 .gives_common = true}};
+    for (BodyRows& rows : added)
+        sources.push_back({.model = &rows.model,
+                           .place = rows.place,
+                           .marked = {},
+                           .watched = rows.watch[0].body,
+                           .kept = rows.watch[0].kept,
+                           .look = rows.watch[0].look,
+                           .gives_common = false});
+    Model fresh;
+    ranks.place = compose_rows(sources, ranks.whole, fresh);
+    RowMoves& moves = sources[0].moves;
+    moves.collider_now.resize(model.colliders.slot.size());
+    std::iota(moves.collider_now.begin(), moves.collider_now.end(), Index{0});
+    keep_contacts(moves, model.nodes.body, keeps_pair, world);
+    Model before;
+    move_tables(model, before);
+    move_tables(fresh, model);
+    const RowsReplaced replaced(world, before, place_before, moves);
+    replaced.handles_and_links();
+    replaced.records();
+    replaced.derived_columns();
+    replaced.search();
+    for (std::size_t s = 1; s < sources.size(); ++s)
+        for (std::size_t b = 0; b < added[s - 1].valid_until.size(); ++b)
+            if (added[s - 1].valid_until[b] == SearchState::forgotten)
+                world.cache.search.body_valid_until[sources[s].moves.body_now[b]] = SearchState::forgotten;
+    add_contacts(added, world);
+    world.scratch.regions = RegionTable{};
+    world.scratch.self_crossing_places.resize(model.bodies.slot.size());
+    world.query_trees.forget();
+    world.record.contact_view_is_current = false;
+}
+
+namespace {
+
+/// Calls visit(column) for each column of the rows.
+void for_each_column(BodyRows& rows, auto&& visit) {
+    const auto visit_all = [&](AnyTable table) {
+        for (const ColumnInfo& info : table.columns()) visit(table.column(info));
+    };
+    for (const AnyTable& table : rows.model.tables()) visit_all(table);
+    NodeClusters& clusters = rows.model.clusters;
+    for (const AnyColumn& column :
+         {AnyColumn(clusters.nodes.offset), AnyColumn(clusters.nodes.item), AnyColumn(clusters.body),
+          AnyColumn(clusters.first_entry), AnyColumn(clusters.inverse), AnyColumn(clusters.cluster_of),
+          AnyColumn(clusters.place), AnyColumn(rows.model.watch.position), AnyColumn(rows.model.watch.stiffness_sum),
+          AnyColumn(rows.model.watch.step), AnyColumn(rows.place), AnyColumn(rows.watch), AnyColumn(rows.valid_until)})
+        visit(column);
+    visit_all(rows.warm_start);
+    visit_all(rows.resting);
+    visit_all(rows.pairs);
+    visit_all(rows.contacts);
+}
+
+void append_bytes(const void* from, std::size_t count, RankMessage& to) {
+    const auto* const bytes = static_cast<const std::byte*>(from);
+    to.insert(to.end(), bytes, bytes + count);
+}
+
+}  // namespace
+
+RankMessage message_of(BodyRows& rows) {
+    RankMessage message;
+    for_each_column(rows, [&](const AnyColumn& column) {
+        const std::uint64_t count = column.size();
+        append_bytes(&count, sizeof count, message);
+        append_bytes(column.read(), count * column.type().bytes, message);
+    });
+    return message;
+}
+
+BodyRows rows_of_message(std::span<const std::byte>& message) {
+    BodyRows rows;
+    const auto take = [&](void* to, std::size_t count) {
+        if (count > 0) std::memcpy(to, message.data(), count);
+        message = message.subspan(count);
+    };
+    for_each_column(rows, [&](const AnyColumn& column) {
+        std::uint64_t count = 0;
+        take(&count, sizeof count);
+        column.resize(count);
+        take(column.write(), count * column.type().bytes);
+    });
+    return rows;
+}
+
+}  // namespace skerry

@@ -1,0 +1,255 @@
+#include "engine/world/ranks/rows/compose_rows.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "engine/world/edit/erase_gone.h"
+#include "engine/world/edit/joining_rows.h"
+#include "engine/world/save/saved_sets.h"
+
+namespace skerry {
+
+namespace {
+
+/// Appends rows of a column to another column of the same type. Parts of the range beyond the last row are left out.
+void append_rows(AnyColumn from, Range rows, AnyColumn to) {
+    const auto begin = static_cast<std::size_t>(rows.begin), end = static_cast<std::size_t>(rows.end);
+    if (begin >= std::min(end, from.size())) return;
+    const std::size_t count = std::min(end, from.size()) - begin, first = to.size(), bytes = from.type().bytes;
+    to.resize(first + count);
+    std::memcpy(to.write() + first * bytes, from.read() + begin * bytes, count * bytes);
+}
+
+/// Appends a row with its lists of entries (lists_of).
+template <class Table>
+void append_row_with_lists(Table& from, std::size_t row, Table& to) {
+    append_row(from, row, to);
+    const std::vector<RowLists> old = lists_of(from), fresh = lists_of(to);
+    for (std::size_t list = 0; list < old.size(); ++list) {
+        const Range entries = (*old[list].rows)[row];
+        const auto begin = static_cast<Index>(fresh[list].columns.front().size());
+        for (std::size_t c = 0; c < old[list].columns.size(); ++c)
+            append_rows(old[list].columns[c], entries, fresh[list].columns[c]);
+        fresh[list].rows->back() = {begin, begin + entries.size()};
+    }
+}
+
+/// A row of one of the sources, and its place in the order of the new rows.
+struct Pick {
+    Index order;
+    std::size_t source, row;
+};
+
+/// Builds the tables of a model from rows of other models, in the order of the undivided world.
+class Composition {
+public:
+    Composition(std::span<RowSource> sources, const WholeWorld& whole, Model& to)
+        : sources_(sources), whole_(whole), to_(to) {}
+
+    Column<Index> run() {
+        pick_bodies();
+        for (const Pick& pick : picks_) append_body(pick);
+        append_clusters();
+        append_watch();
+        append_attachments();
+        append_joining_rows();
+        return std::move(place_);
+    }
+
+private:
+    void pick_bodies() {
+        for (std::size_t s = 0; s < sources_.size(); ++s) {
+            RowSource& from = sources_[s];
+            from.moves.body_now.assign(from.place.size(), no_index);
+            from.moves.down.resize(from.place.size());
+            for (std::size_t b = 0; b < from.place.size(); ++b)
+                if (from.gives(b)) picks_.push_back({from.place[b], s, b});
+        }
+        std::ranges::sort(picks_, {}, &Pick::order);
+        for (std::size_t row = 0; row < picks_.size(); ++row) {
+            place_.push_back(picks_[row].order);
+            sources_[picks_[row].source].moves.body_now[picks_[row].row] = static_cast<Index>(row);
+        }
+    }
+
+    void append_body(const Pick& pick) {
+        RowSource& source = sources_[pick.source];
+        constexpr auto range_of = OfBodyTables<Range>::members();
+        constexpr auto index_of = OfBodyTables<Index>::members();
+        const OfBodyTables<Range> old = rows_of_body(*source.model, pick.row);
+        OfBodyTables<Range> rows;
+        OfBodyTables<Index>& down = source.moves.down[pick.row];
+        const std::size_t new_row = to_.bodies.slot.size();
+        for (std::size_t table = 0; table < columns_.size(); ++table) {
+            const Range of_old = old.*range_of[table];
+            const auto begin = static_cast<Index>(columns_[table].front().size());
+            for (std::size_t c = 0; c < columns_[table].size(); ++c)
+                append_rows(source.columns[table][c], of_old, columns_[table][c]);
+            rows.*range_of[table] = {begin, begin + of_old.size()};
+            down.*index_of[table] = of_old.begin - begin;
+        }
+        renumber_rows_of_body(to_, new_row, rows, down);
+    }
+
+    void append_clusters() {
+        std::vector<Pick> picks;
+        for (std::size_t s = 0; s < sources_.size(); ++s) {
+            const NodeClusters& from = sources_[s].model->clusters;
+            for (std::size_t c = 0; c < from.size(); ++c)
+                if (const Index row = sources_[s].moves.body_now[static_cast<std::size_t>(from.body[c])]; row != no_index)
+                    picks.push_back({row, s, c});
+        }
+        if (picks.empty()) return;
+        std::ranges::stable_sort(picks, {}, &Pick::order);
+        NodeClusters& clusters = to_.clusters;
+        clusters.cluster_of.resize(to_.nodes.position.size(), no_index);
+        clusters.place.resize(to_.nodes.position.size(), no_index);
+        for (const Pick& pick : picks) {
+            const RowSource& source = sources_[pick.source];
+            const NodeClusters& from = source.model->clusters;
+            const std::span<const Index> old = std::as_const(from.nodes)[pick.row];
+            const Index down = source.moves.down[static_cast<std::size_t>(from.body[pick.row])].nodes;
+            std::vector<Index> nodes(old.begin(), old.end());
+            for (std::size_t i = 0; i < nodes.size(); ++i) {
+                nodes[i] -= down;
+                clusters.cluster_of[nodes[i]] = static_cast<Index>(clusters.size());
+                clusters.place[nodes[i]] = static_cast<Index>(i);
+            }
+            append(std::span<const Index>(nodes), clusters.nodes);
+            clusters.body.push_back(pick.order);
+            clusters.first_entry.push_back(clusters.inverse.size());
+            const auto first = static_cast<Index>(from.first_entry[pick.row]);
+            const auto entries = static_cast<Index>(nodes.size() * nodes.size());
+            append_rows(source.model->clusters.inverse, {first, first + entries}, clusters.inverse);
+        }
+    }
+
+    /// Appends the progress of the checks of stable steps. The checks of all ranks have proceeded to the same place.
+    void append_watch() {
+        StepWatch& watch = to_.watch;
+        for (const Pick& pick : picks_) {
+            const RowSource& source = sources_[pick.source];
+            StepWatch& from = source.model->watch;
+            const auto row = static_cast<Index>(pick.row);
+            const Range nodes = source.model->bodies.nodes[pick.row];
+            append_rows(from.position, nodes, watch.position);
+            append_rows(from.stiffness_sum, nodes, watch.stiffness_sum);
+            append_rows(from.step, {row, row + 1}, watch.step);
+        }
+        const auto first_row = [&](auto&& is_open) {
+            return static_cast<Index>(std::ranges::find_if(picks_, is_open) - picks_.begin());
+        };
+        watch.body = first_row([&](const Pick& p) { return static_cast<Index>(p.row) >= sources_[p.source].watched; });
+        watch.kept = first_row([&](const Pick& p) { return static_cast<Index>(p.row) >= sources_[p.source].kept; });
+        if (watch.body < static_cast<Index>(picks_.size()))
+            if (const Pick& next = picks_[static_cast<std::size_t>(watch.body)];
+                static_cast<Index>(next.row) == sources_[next.source].watched)
+                watch.look = sources_[next.source].look;
+        if (watch.step.size() == picks_.size() && watch.position.size() == to_.nodes.position.size()) return;
+        watch = {};
+    }
+
+    void append_attachments() {
+        std::vector<Pick> picks;
+        for (std::size_t s = 0; s < sources_.size(); ++s) {
+            const AttachmentTable& table = sources_[s].model->attachments;
+            for (std::size_t a = 0; a < table.slot.size(); ++a)
+                if (sources_[s].moves.body_now[static_cast<std::size_t>(table.body[a])] != no_index)
+                    picks.push_back({order_of(whole_.joining_place.back(), table.slot[a]), s, a});
+        }
+        std::ranges::stable_sort(picks, {}, &Pick::order);
+        AttachmentTable& to = to_.attachments;
+        for (const Pick& pick : picks) {
+            const RowSource& source = sources_[pick.source];
+            AttachmentTable& from = source.model->attachments;
+            append_row_with_lists(from, pick.row, to);
+            MotionScript& script = to.script.back();
+            const Range keys{script.key_begin, script.key_end};
+            script.key_begin = static_cast<Index>(to.keyframe.size());
+            script.key_end = script.key_begin + keys.size();
+            append_rows(from.keyframe, keys, to.keyframe);
+            const auto body = static_cast<std::size_t>(to.body.back());
+            for (Index& node : rows_of(to.node, to.nodes.back())) node -= source.moves.down[body].nodes;
+            to.body.back() = source.moves.body_now[body];
+        }
+    }
+
+    /// Order of a row with a handle slot; rows without a handle come last.
+    static Index order_of(std::span<const Index> place_of_slot, std::uint32_t slot) {
+        return slot < place_of_slot.size() ? place_of_slot[slot] : std::numeric_limits<Index>::max();
+    }
+
+    void append_joining_rows() {
+        std::size_t number = 0;
+        to_.for_each_joining([&]<class Table>(const char*, Table& to, auto&) {
+            const std::span<const Index> place_of_slot = whole_.joining_place[number++];
+            std::vector<Pick> picks;
+            std::vector<std::vector<Index>> row_now(sources_.size());
+            std::vector<Table*> tables;
+            for (std::size_t s = 0; s < sources_.size(); ++s) {
+                Table& from = table_like(to, *sources_[s].model);
+                tables.push_back(&from);
+                row_now[s].assign(from.slot.size(), no_index);
+                for (const std::size_t row : rows_given(from, sources_[s]))
+                    picks.push_back({order_of(place_of_slot, from.slot[row]), s, row});
+            }
+            std::ranges::stable_sort(picks, {}, &Pick::order);
+            for (std::size_t row = 0; row < picks.size(); ++row) {
+                append_row_with_lists(*tables[picks[row].source], picks[row].row, to);
+                row_now[picks[row].source][picks[row].row] = static_cast<Index>(row);
+            }
+            for_each_joined(to, ColumnRole::body, [&](std::size_t row, Index& body) {
+                body = sources_[picks[row].source].moves.body_now[static_cast<std::size_t>(body)];
+            });
+            if constexpr (requires { to.leader; })
+                for (std::size_t row = 0; row < picks.size(); ++row)
+                    if (to.leader[row] != no_index)
+                        to.leader[row] = row_now[picks[row].source][static_cast<std::size_t>(to.leader[row])];
+        });
+    }
+
+    template <class Table>
+    static Table& table_like(const Table&, Model& model) {
+        Table* found = nullptr;
+        model.for_each_joining([&](const char*, auto& table, auto&) {
+            if constexpr (std::is_same_v<std::remove_reference_t<decltype(table)>, Table>) found = &table;
+        });
+        return *found;
+    }
+
+    /// Rows that join a body that the source gives. The world itself also gives the rows that join no body.
+    template <class Table>
+    static std::vector<std::size_t> rows_given(Table& table, const RowSource& source) {
+        std::vector<std::uint8_t> gives(table.slot.size(), source.gives_common ? 1 : 0);
+        for_each_joined(table, ColumnRole::body, [&](std::size_t row, Index body) {
+            gives[row] = source.moves.body_now[static_cast<std::size_t>(body)] != no_index;
+        });
+        std::vector<std::size_t> rows;
+        for (std::size_t row = 0; row < gives.size(); ++row)
+            if (gives[row]) rows.push_back(row);
+        return rows;
+    }
+
+    std::span<RowSource> sources_;
+    const WholeWorld& whole_;
+    Model& to_;
+    std::vector<std::vector<AnyColumn>> columns_ = columns_by_body_table(to_);
+    std::vector<Pick> picks_;  // by new row of BodyTable
+    Column<Index> place_;
+};
+
+}  // namespace
+
+Column<Index> compose_rows(std::span<RowSource> sources, const WholeWorld& whole, Model& to) {
+    return Composition(sources, whole, to).run();
+}
+
+void append_row(AnyTable from, std::size_t row, AnyTable to) {
+    for (const ColumnInfo& info : from.columns())
+        if (info.has_row_each)
+            append_rows(from.column(info), {static_cast<Index>(row), static_cast<Index>(row) + 1}, to.column(info));
+}
+
+}  // namespace skerry

@@ -1,0 +1,36 @@
+// Composition of the tables of a model from rows of other models.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "components/any_table.h"
+#include "engine/world/edit/row_moves.h"
+#include "engine/world/ranks/hold/whole_world.h"
+#include "engine/world/state/model.h"
+
+namespace skerry {
+
+/// A model of which a new model gets rows.
+struct RowSource {
+    Model* model;
+    std::span<const Index> place;
+    std::span<const std::uint8_t> marked;  // by row of BodyTable: nonzero for a body that the new model gets; empty: all
+    Index watched, kept;                   // StepWatch::body and StepWatch::kept
+    StepEvaluation look;
+    bool gives_common;                     // true: also gives the rows that join no body
+    RowMoves moves{};   // new numbers of the rows; the lists of removed rows are not set
+    std::vector<std::vector<AnyColumn>> columns = columns_by_body_table(*model);
+
+    bool gives(std::size_t body) const { return marked.empty() || marked[body] != 0; }
+};
+
+/// Fills the tables of bodies, attachments and rows that join bodies of an empty model with the rows that the sources
+/// give, in the order of the undivided world. Sets RowSource::moves. Returns the place of each body.
+Column<Index> compose_rows(std::span<RowSource> sources, const WholeWorld& whole, Model& to);
+
+/// Appends a row to all columns that have one row per row of the table.
+void append_row(AnyTable from, std::size_t row, AnyTable to);
+
+}  // namespace skerry

@@ -1,0 +1,158 @@
+// Sleep of bodies with several holders. Each rank knows only the contacts that it owns. A set of touching bodies is
+// therefore joined from the sets of all ranks, and a body wakes on all its holders if one rank wakes it. Both are rare:
+// the reduction of findings tells whether any rank needs them.
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <span>
+
+#include "engine/world/step/seams.h"
+#include "engine/world/step/step.h"
+#include "systems/dynamics/motion/update_sleep.h"
+
+namespace skerry {
+
+namespace {
+
+/// Bodies, with the ranks that hold them.
+struct HeldBodies {
+    std::span<const Index> place;                  // RankState
+    const std::vector<std::vector<int>>& holders;  // RankState
+    std::span<const BodyKind> kind;                // BodyTable
+    std::span<const std::uint8_t> asleep;
+    std::span<const Real> still_time;  // [s]
+
+    static HeldBodies bind(const Binder& binder, const RankState& ranks, const BodyTable& body) {
+        return {.place = binder.read(ranks.place),
+                .holders = binder.value(ranks.holders),
+                .kind = binder.read(body.kind),
+                .asleep = binder.read(body.asleep),
+                .still_time = binder.read(body.still_time)};
+    }
+    bool is_shared(std::size_t body) const { return kind[body] == BodyKind::deformable && !holders[body].empty(); }
+};
+
+/// Length of the step, and the settings of sleep.
+struct SleepStep {
+    const SleepSettings& sleep;
+    const Real& h;  // [s]
+
+    static SleepStep bind(const Binder& binder, const StepParameters& parameters) {
+        return {binder.value(parameters.sleep), binder.value(parameters.h)};
+    }
+};
+
+template <class Row>
+void copy(std::span<const Row> from, Column<Row>& to) {
+    to.resize(from.size());
+    std::ranges::copy(from, to.begin());
+}
+
+/// Calls take(row) for each row of a message.
+template <class Row>
+void for_each_row(const RankMessage& message, auto&& take) {
+    for (std::size_t at = 0; at + sizeof(Row) <= message.size(); at += sizeof(Row)) {
+        Row row;
+        std::memcpy(&row, message.data() + at, sizeof row);
+        take(row);
+    }
+}
+
+/// Lists the sleeping bodies with several holders that this rank wakes, apart from bodies that are joined to awake ones:
+/// all holders know these. Also notes whether such a body may fall asleep in this step.
+void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<const std::uint8_t> pressed,
+                std::span<const std::uint8_t> driven, const AttachmentTable& attachments, const SleepStep& step,
+                RankSleep& memory, RankFindings& mine) {
+    for (std::size_t b = 0; b < bodies.place.size(); ++b)
+        mine.may_rest |= bodies.is_shared(b) && !bodies.asleep[b] && bodies.still_time[b] + step.h >= step.sleep.time;
+    memory.woken.clear();
+    if (std::ranges::none_of(bodies.asleep, [](std::uint8_t each) { return each != 0; })) return;
+    copy(bodies.asleep, memory.asleep);
+    copy(bodies.still_time, memory.still_time);
+    TouchInputs without_links = touches;
+    without_links.linked_first = without_links.linked_second = {};
+    if (!wake_bodies(without_links, pressed, driven, attachments.body, attachments.motion, memory.asleep,
+                     memory.still_time))
+        return;
+    for (std::size_t b = 0; b < bodies.place.size(); ++b)
+        if (bodies.is_shared(b) && bodies.asleep[b] && !memory.asleep[b]) memory.woken.push_back(bodies.place[b]);
+    mine.wakes = !memory.woken.empty();
+}
+
+/// Marks the bodies that other ranks wake in `pressed`.
+void join_wakes(const HeldBodies& bodies, const RankSleep& memory, Column<std::uint8_t>& pressed,
+                RankChannel& channel) {
+    pressed.resize(bodies.place.size(), 0);
+    const std::span<const Index> woken = memory.woken;
+    for (const RankMessage& message : channel.ranks->gather_everywhere(std::as_bytes(woken)))
+        for_each_row<Index>(message, [&](Index place) {
+            if (const Index row = row_of_place(bodies.place, place); row != no_index) pressed[row] = 1;
+        });
+}
+
+/// Joins sets of touching bodies that share a body, and marks the sets of this rank that must stay awake because of a
+/// body of another rank.
+void join_sets(const HeldBodies& bodies, SleepMemory& sets, RankSleep& memory, RankChannel& channel) {
+    memory.members.clear();
+    for (std::size_t b = 0; sets.any_ready && b < bodies.place.size(); ++b) {
+        if (!bodies.is_shared(b)) continue;
+        const Index root = sets.touching.root(static_cast<Index>(b));
+        memory.members.push_back({bodies.place[b], root, sets.restless[root]});
+    }
+    const std::span<const SetMember> mine = memory.members;
+    const std::vector<RankMessage> all = channel.ranks->gather_everywhere(std::as_bytes(mine));
+    // The nodes of `joined` are the members of all messages, in order.
+    Index count = 0, last_place = -1;
+    for (const RankMessage& message : all)
+        for_each_row<SetMember>(message, [&](const SetMember& member) {
+            ++count;
+            last_place = std::max(last_place, member.place);
+        });
+    memory.joined.start(static_cast<std::size_t>(count));
+    memory.restless.assign(static_cast<std::size_t>(count), 0);
+    memory.node_of_place.assign(static_cast<std::size_t>(last_place + 1), no_index);
+    Index node = 0;
+    for (const RankMessage& message : all) {
+        memory.node_of_set.clear();
+        for_each_row<SetMember>(message, [&](const SetMember& member) {
+            const auto set = static_cast<std::size_t>(member.set);
+            if (memory.node_of_set.size() <= set) memory.node_of_set.resize(set + 1, no_index);
+            for (Index* const known : {&memory.node_of_place[member.place], &memory.node_of_set[set]}) {
+                if (*known == no_index) *known = node;
+                memory.joined.join(*known, node);
+            }
+            memory.restless[node] = member.must_stay_up != 0;
+            ++node;
+        });
+    }
+    for (Index n = 0; n < count; ++n)
+        if (memory.restless[n]) memory.restless[memory.joined.root(n)] = 1;
+    for (const SetMember& member : mine)
+        sets.restless[member.set] |= memory.restless[memory.joined.root(memory.node_of_place[member.place])];
+}
+
+}  // namespace
+
+void list_wakes(WorldState& w, TaskGraph& g) {
+    if (!w.ranks.on()) return;
+    g.stage("ranks/find_wakes", find_wakes, inputs<HeldBodies>(w.ranks, w.model.bodies),
+            inputs<TouchInputs>(w.scratch.contacts, w.model.links), read(w.scratch.pressed), read(w.scratch.driven),
+            read(w.model.attachments), inputs<SleepStep>(w.scratch.parameters), make(w.ranks.sleep),
+            make(w.ranks.mine), if_sleepy(w));
+}
+
+void list_joined_wakes(WorldState& w, TaskGraph& g) {
+    if (!w.ranks.on()) return;
+    const auto if_any = only_if([](const bool& wakes) { return wakes; }, read(w.ranks.all.wakes));
+    g.stage("ranks/join_wakes", join_wakes, inputs<HeldBodies>(w.ranks, w.model.bodies), read(w.ranks.sleep),
+            make(w.scratch.pressed), make(w.ranks.channel), if_taken(w), if_any);
+}
+
+void list_joined_sets(WorldState& w, TaskGraph& g) {
+    if (!w.ranks.on()) return;
+    const auto if_any = only_if([](const bool& may_rest) { return may_rest; }, read(w.ranks.all.may_rest));
+    g.stage("ranks/join_sets", join_sets, inputs<HeldBodies>(w.ranks, w.model.bodies), make(w.scratch.sleep_memory),
+            make(w.ranks.sleep), make(w.ranks.channel), if_taken(w), if_any);
+}
+
+}  // namespace skerry
