@@ -215,8 +215,7 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
     for (const int partner : partners) {
         std::vector<std::uint8_t> sent;
         for (std::size_t b = 0; b < ranks.place.size(); ++b)
-            sent.push_back(ranks.owner[b] == rank && change.is_sent(ranks.place[b], partner) &&
-                           whole.owner[ranks.place[b]] == rank);
+            sent.push_back(whole.owner[ranks.place[b]] == rank && change.is_sent(ranks.place[b], partner));
         BodyRows rows = rows_of_bodies(world, sent, [&](std::uint64_t pair) {
             return whole.pair_owner(pair, whole.owner) == rank && whole.pair_owner(pair, change.owner()) == partner;
         });
@@ -281,15 +280,13 @@ void note_holders(RankState& ranks, const BodyTable& bodies, std::span<const Bod
             if (rank != ranks.rank) insert(rank, ranks.peers);
         if (owner != ranks.rank) continue;
         const auto body = std::ranges::lower_bound(extents, place, {}, &BodyExtent::place);
-        ranks.travel_limit[b] =
-            bodies.travel[b] + bodies.frame[b].path - 2 * bodies.displacement[b] + body->margin;
+        ranks.travel_limit[b] = bodies.travel[b] + bodies.frame[b].path - 2 * bodies.displacement[b] + body->margin;
     }
     for (const Index place : ranks.place) {
         std::vector<int>& holders = ranks.holders.emplace_back();
         for (const int rank : whole.holders[static_cast<std::size_t>(place)])
             if (rank != ranks.rank)
-                holders.push_back(
-                    static_cast<int>(std::ranges::lower_bound(ranks.peers, rank) - ranks.peers.begin()));
+                holders.push_back(static_cast<int>(std::ranges::lower_bound(ranks.peers, rank) - ranks.peers.begin()));
     }
 }
 
