@@ -182,7 +182,6 @@ std::unique_ptr<Ranks> start_mpi() {
     // Open MPI then yields the core while it waits. Otherwise a waiting rank takes time from the threads of others.
     setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
     int level = MPI_THREAD_SINGLE;
-    int level = MPI_THREAD_SINGLE;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);
     return std::make_unique<MpiRanks>(MPI_COMM_WORLD, true);
 }
