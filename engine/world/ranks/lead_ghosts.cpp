@@ -86,6 +86,14 @@ void note_ghosts(WorldState& world) {
     }
 }
 
+void send_clustered_bodies(WorldState& world) {
+    if (!world.model.of_ranks.clusters_grew) return;
+    RankState& ranks = world.ranks;
+    for (std::size_t b = 0; b < ranks.leads.size(); ++b)
+        if (ranks.leads[b] && !can_be_led(world.model, b)) ranks.stale.push_back(ranks.place[b]);
+    update_ghosts(world);
+}
+
 void list_led_ghosts(WorldState& w, TaskGraph& g) {
     if (!w.ranks.on()) return;
     const auto if_led = only_if([](std::span<const GhostKind> ghost) { return !ghost.empty(); }, read(w.model.bodies.ghost));

@@ -34,6 +34,7 @@ bool keep_watch(WorldState& world) {
     balance.work += follow_stiffening(world.model);
     balance.work += use_evaluated_steps(world.model, world.scratch.stiffness_sum);
     reduce_limits(world);
+    send_clustered_bodies(world);
     watch.second = !watch.second;
     return !watch.second;
 }
