@@ -4,6 +4,7 @@
 #include <cstring>
 #include <span>
 
+#include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/seams.h"
 #include "engine/world/step/step.h"
 
