@@ -4,6 +4,7 @@
 #include <cstring>
 #include <span>
 
+#include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/seams.h"
 #include "engine/world/step/step.h"
 
@@ -84,6 +85,14 @@ void note_ghosts(WorldState& world) {
         ranks.leads[b] = led && ranks.owns(b);
         if (!ranks.owns(b)) world.model.bodies.ghost[b] = led ? GhostKind::led : GhostKind::twin;
     }
+}
+
+void send_clustered_bodies(WorldState& world) {
+    if (!world.model.of_ranks.clusters_grew) return;
+    RankState& ranks = world.ranks;
+    for (std::size_t b = 0; b < ranks.leads.size(); ++b)
+        if (ranks.leads[b] && !can_be_led(world.model, b)) ranks.stale.push_back(ranks.place[b]);
+    update_ghosts(world);
 }
 
 void list_led_ghosts(WorldState& w, TaskGraph& g) {

@@ -7,9 +7,10 @@ NamedBody name_body(const WorldState& world, Index place) {
     if (place == no_index) return {};
     const Model& model = world.model;
     const Index row = world.ranks.row_of(place);
-    if (row == no_index)
-        return {world.ranks.whole.handle(model, place),
-                world.ranks.whole.records[static_cast<std::size_t>(place)].name};
+    if (row == no_index) {
+        const WholeWorld& whole = world.ranks.whole;
+        return {whole.handle(model, place), whole.records[static_cast<std::size_t>(place)].name};
+    }
     const auto b = static_cast<std::size_t>(row);
     // The remaining bodies are the meshes of mesh colliders, which have no handle.
     const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;

@@ -34,6 +34,7 @@ bool keep_watch(WorldState& world) {
     balance.work += follow_stiffening(world.model);
     balance.work += use_evaluated_steps(world.model, world.scratch.stiffness_sum);
     reduce_limits(world);
+    send_clustered_bodies(world);
     watch.second = !watch.second;
     return !watch.second;
 }
@@ -294,8 +295,10 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         stiffened += world.scratch.findings.stiffened;  // energy also counts if the attempt is not committed
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::again_over_ranks &&
-            (world.ranks.all.bodies_missing || world.ranks.all.ghosts_expired))
+            (world.ranks.all.bodies_missing || world.ranks.all.ghosts_expired)) {
             update_ghosts(world);
+            world.scratch.parameters.h = 0;  // the next attempt must not reuse forces, which new ghosts do not have
+        }
         if (outcome == StepOutcome::refused) {
             blame(world, report);
             break;
