@@ -122,9 +122,9 @@ void note_inversions(WorldState& world, StepReport& report) {
         report.inverted_body = handle;
         report.inverted_name = name;
         report.inverted_element =
-            world.ranks.on() ? inversions.tetrahedron
-                             : world.model.user_tetrahedron(static_cast<std::size_t>(inversions.body),
-                                                            inversions.tetrahedron);
+            world.ranks.on()
+                ? inversions.tetrahedron
+                : world.model.user_tetrahedron(static_cast<std::size_t>(inversions.body), inversions.tetrahedron);
     }
     report.inverted += inversions.count;
     world.record.counters.inversions += static_cast<std::uint64_t>(inversions.count);
@@ -167,9 +167,7 @@ void require_countable(const WorldState& world, Real dt) {
               .object = "advance",
               .field = "dt",
               .found = short_text(dt) + " s in steps of " + short_text(step) + " s" +
-                       (of_body ? ", the stable step of body '" +
-                                      name_body(world, body).name + "'"
-                                : std::string()),
+                       (of_body ? ", the stable step of body '" + name_body(world, body).name + "'" : std::string()),
               .expected = "at most 2147483647 steps",
               .hint = of_body ? "check the size and material of this body" : "use a shorter dt or a larger step_size"}
         .raise();
