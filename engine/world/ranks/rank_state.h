@@ -121,7 +121,7 @@ struct RankState {
     RankShare share;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
-    Column<Index> stale;  // places of own bodies whose copies on other ranks have lost their validity
+    Column<Index> stale;           // places of own bodies whose copies on other ranks have lost their validity
     RankFindings mine;   // findings of this rank in this attempt at a step; complete when reduce_findings runs
     RankFindings all;    // combined findings of all ranks in this attempt at a step
     bool stops = false;  // true if a callback of this rank has asked to end the present call of World::advance

@@ -369,8 +369,7 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
     constexpr Real lasts = 128;  // assumed number of steps between two inversions of a cluster matrix
     const Range blocks = model.bodies.blocks[body];
     const Kept kept(model, body);
-    const std::size_t entries =
-        std::max<std::size_t>(model.clusters.inverse.size(), model.of_ranks.cluster_entries);
+    const std::size_t entries = std::max<std::size_t>(model.clusters.inverse.size(), model.of_ranks.cluster_entries);
     const std::size_t before =
         cluster_sizes(model.all_elements(), blocks, kept.modulus, model.nodes.inverse_mass).entries;
     const Real of_clusters = std::max(step, model.bodies.cluster_step[body]);

@@ -99,10 +99,8 @@ void build_step(WorldState& w) {
 void list_step_again(WorldState& w) {
     const CrossingTable& crossings = w.cache.crossings;
     w.ranks.channel.ranks = w.ranks.ranks;
-    w.ranks.share = {.balance = {},
-                     .tested = crossings.tested,
-                     .hits = crossings.hits,
-                     .let_through = crossings.let_through};
+    w.ranks.share = {
+        .balance = {}, .tested = crossings.tested, .hits = crossings.hits, .let_through = crossings.let_through};
     w.graph = TaskGraph();
     w.graph.track(&w, sizeof w, name_of_column);
     build_step(w);

@@ -57,7 +57,8 @@ struct WorkInputs {
 
 /// Sums impulse and work of the loads on all nodes, and of the forces that hold the nodes listed in `held`. A holding
 /// force is the opposite of `force`. Nodes of sleeping bodies do not count, because the forces that hold them are
-/// unknown. Nodes of ghosts do not count either, because the owner counts them. Loads are summed over fixed groups of nodes, in a fixed order.
+/// unknown. Nodes of ghosts do not count either, because the owner counts them. Loads are summed over fixed groups of
+/// nodes, in a fixed order.
 ///
 /// A force F has the impulse kick F, with the force interval `kick` [s]. A constant force does the work h F .
 /// velocity_next, since h velocity_next is the displacement in symplectic Euler. If a force has changed by dF since the

@@ -219,9 +219,10 @@ struct StrainFindings {
     Index unsolved = no_index;  // first row of BodyTable for which Newton's method failed
 };
 
-/// Computes velocities and displacements at the end of the step. The sums leave out ghosts, which the owner counts. Adds the elastic forces on held nodes to `force`,
-/// which then contains forces that act for the time loads.kick. Writes the elastic moments on held frames to
-/// `hold_moment`. `parts`: work memory by row of RigidBodyTable. Parallel over bodies.
+/// Computes velocities and displacements at the end of the step. The sums leave out ghosts, which the owner counts.
+/// Adds the elastic forces on held nodes to `force`, which then contains forces that act for the time loads.kick.
+/// Writes the elastic moments on held frames to `hold_moment`. `parts`: work memory by row of RigidBodyTable. Parallel
+/// over bodies.
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                                       const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                                       const ImplicitStrains& out, Column<StrainPart>& parts);
