@@ -5,6 +5,7 @@
 
 #include "engine/world/world_state.h"
 #include "tests/ranks/everywhere.h"
+#include "tests/ranks/rank_scenes.h"
 #include "tests/ranks/thread_ranks.h"
 #include "tests/support/lively_scene.h"
 
@@ -34,6 +35,33 @@ TEST_CASE("each close pair of bodies belongs to one rank", "[ranks]") {
     std::ranges::sort(divided);
     CHECK(divided == alone);
     CHECK(std::ranges::min(of_rank) > 0);
+}
+
+TEST_CASE("ranks add rounds of labels until a region that spans all of them has one label", "[ranks]") {
+    const RankScene scene = scene_of_file("tests/ranks/scenes/one_region.json");
+    std::vector<int> rounds(8);
+    run_on_ranks(8, [&](Ranks& ranks) {
+        World world = scene.make(1);
+        hold_everywhere(world, ranks);
+        REQUIRE(world.advance(5e-3).ok());
+        rounds[static_cast<std::size_t>(ranks.rank())] = WorldAccess::state_of(world).ranks.label_rounds.count;
+    });
+    CHECK(rounds.front() > LabelRounds::least);
+    CHECK(std::ranges::count(rounds, rounds.front()) == 8);
+}
+
+TEST_CASE("the number of rounds of labels follows the need", "[ranks]") {
+    LabelRounds rounds;
+    rounds.note(3);  // one more than there were
+    CHECK(rounds.count == 4);
+    for (int step = 0; step < 499; ++step) rounds.note(step == 100 ? 3 : 1);
+    CHECK(rounds.count == 4);
+    rounds.note(1);
+    CHECK(rounds.count == 4);  // the number that was just doubled stays for one period
+    for (int step = 0; step < 500; ++step) rounds.note(step == 100 ? 3 : 1);
+    CHECK(rounds.count == 3);
+    for (int step = 0; step < 500; ++step) rounds.note(1);
+    CHECK(rounds.count == LabelRounds::least);
 }
 
 }  // namespace everywhere_test

@@ -14,6 +14,7 @@
 #include "tests/ranks/rank_scenes.h"
 #include "tests/ranks/thread_ranks.h"
 #include "tests/support/draws.h"
+#include "tests/support/lively_scene.h"
 
 namespace skerry::test {
 namespace {
@@ -81,11 +82,23 @@ TEST_CASE("the scenes for ranks have what they are for", "[ranks]") {
     CHECK(sleep.woken);
 }
 
+std::vector<RankScene> own_scenes() {
+    std::vector<RankScene> scenes;
+    for (const char* name :
+         {"pile", "shots", "sleep", "stiff", "linked", "surfaces", "refused", "one_region", "constraints"})
+        scenes.push_back(own_scene(name));
+    const auto slivers = [](int threads) {
+        Settings settings;
+        settings.threads = threads;
+        return thrown_slivers(settings);
+    };
+    scenes.push_back({"bodies with clusters", slivers, 0.02});
+    return scenes;
+}
+
 TEST_CASE("a scene has the same bits on any number of ranks as without ranks", "[.][ranks]") {
     std::size_t turn = 0;
-    for (const char* name :
-         {"pile", "shots", "sleep", "stiff", "linked", "surfaces", "refused", "one_region", "constraints"}) {
-        const RankScene scene = own_scene(name);
+    for (const RankScene& scene : own_scenes()) {
         const WholeRun whole = run_whole(scene);
         for (const Division& division : divisions(turn++)) {
             INFO("owners: " << division.owners);
