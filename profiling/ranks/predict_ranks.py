@@ -32,8 +32,8 @@ class Costs:
     label_rounds: int = 2
     # bytes of a predicted velocity, of a label, of a contact with its results, and of a node that a contact moved
     prediction: int = 24
-    label: int = 16
-    row: int = 304
+    label: int = 20
+    row: int = 280
     result: int = 56
 
 

@@ -125,7 +125,7 @@ TEST_CASE("random scenes have the same bits on three ranks as without ranks", "[
 
 /// Bytes that a rank sends in a step by the model of docs/scaling.md, for explicit bodies in a step with these contacts.
 double modelled_bytes(const WorldState& state) {
-    constexpr double prediction = 24, label = 20, result = 56, row = 400;  // of a node, and of a contact
+    constexpr double prediction = 24, label = 20, result = 56, row = 280;  // of a node, and of a contact
     constexpr double nodes_in_body = 2;                                    // of a contact
     const BodyTable& bodies = state.model.bodies;
     const RankState& ranks = state.ranks;

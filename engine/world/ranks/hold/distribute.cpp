@@ -10,23 +10,24 @@ namespace skerry {
 
 namespace {
 
-[[noreturn]] void refuse(const char* field, const char* found, const char* expected, const char* hint) {
-    Complaint{.file = {}, .object = "distribute", .field = field, .found = found, .expected = expected, .hint = hint}
+[[noreturn]] void refuse_division(const char* field, const char* found, const char* expected, const char* hint) {
+    Complaint{
+        .file = {}, .object = "distribute", .field = field, .found = found, .expected = expected, .hint = hint}
         .raise();
 }
 
 /// Refuses worlds that ranks cannot divide.
 void require_divisible(const WorldState& world) {
     const Settings& settings = world.model.settings;
-    if (world.ranks.on()) refuse("world", "a world that is already divided", "an undivided world", "call it once");
+    if (world.ranks.on()) refuse_division("world", "a world that is already divided", "an undivided world", "call it once");
     if (settings.integrator == Integrator::leapfrog)
-        refuse("settings.integrator", "leapfrog", "symplectic_euler", "several ranks have only this integrator");
+        refuse_division("settings.integrator", "leapfrog", "symplectic_euler", "several ranks have only this integrator");
     if (settings.contact_regions == ContactRegions::global)
-        refuse("settings.contact_regions", "global", "separate", "ranks solve regions concurrently");
+        refuse_division("settings.contact_regions", "global", "separate", "ranks solve regions concurrently");
     if (world.record.forces.on())
-        refuse("measure_forces", "forces that are measured", "none", "measure forces with one process");
+        refuse_division("measure_forces", "forces that are measured", "none", "measure forces with one process");
     if (world.record.problem_watch.take)
-        refuse("watch_problems", "a subscription to contact problems", "none", "export problems with one process");
+        refuse_division("watch_problems", "a subscription to contact problems", "none", "export problems with one process");
 }
 
 }  // namespace
