@@ -96,15 +96,15 @@ private:
     struct Client {
         std::uint64_t number = 0;
         LiveLink* link = nullptr;
-        bool closed = false;               // its thread ends
+        bool closed = false;                          // its thread ends
         FrameContent content = FrameContent::motion;  // fields that it shows
-        bool pulls = false;                // its last pull has not been released
-        std::deque<std::string> texts;     // messages that wait for its thread
-        std::uint64_t run = 0;             // run that it shows
-        std::uint64_t snapshot = 0;        // number of the last snapshot that it got
-        std::uint64_t version = 0;         // version of that snapshot
-        std::uint64_t sent = 0, seen = 0;  // numbers of frames
-        std::vector<BodyHandle> bodies;    // by number in its stream
+        bool pulls = false;                           // its last pull has not been released
+        std::deque<std::string> texts;                // messages that wait for its thread
+        std::uint64_t run = 0;                        // run that it shows
+        std::uint64_t snapshot = 0;                   // number of the last snapshot that it got
+        std::uint64_t version = 0;                    // version of that snapshot
+        std::uint64_t sent = 0, seen = 0;             // numbers of frames
+        std::vector<BodyHandle> bodies;               // by number in its stream
         std::thread thread;
 
         bool is_ready() const { return sent - seen < 2; }

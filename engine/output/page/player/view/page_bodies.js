@@ -6,7 +6,8 @@ function make_bodies(scene, scales, is_coarse, redraw) {
   const bodies = [];  // by number, without those that were removed
   // `visual`: visual surface or undefined; `first`: the body in the first frame that has it.
   function add(number, shape, visual, first) {
-    bodies[number] = make_body(scene, shape, visual, number, first, (...drawn) => make_drawing(...drawn, is_coarse, redraw));
+    const draw = (...surface) => make_drawing(...surface, is_coarse, redraw);
+    bodies[number] = make_body(scene, shape, visual, number, first, draw);
   }
   function remove(number) {
     const { group, boundary, visual } = bodies[number];
