@@ -51,7 +51,10 @@ public:
           result_(result),
           probes_(scene),
           errors_(scene.world) {
-        if (options.series_figures && !scene.recorded.empty()) figures_.emplace(world_, scene.recorded);
+        if (options.series_figures && !scene.recorded.empty()) {
+            figures_.emplace(world_, scene.recorded);
+            figures_->sample(world_);
+        }
     }
 
     void run() {
@@ -87,7 +90,7 @@ public:
         result_.probes = probes_.records();
         errors_.finish(world_);
         result_.errors = errors_.bodies();
-        if (figures_) result_.series = figures_->all();
+        if (figures_) result_.series = named_figures(*figures_);
     }
 
 private:
@@ -148,7 +151,7 @@ private:
     RunResult& result_;
     ProbeRecorder probes_;
     ErrorEstimator errors_;
-    std::optional<SeriesFigures> figures_;
+    std::optional<Recorder> figures_;  // probes of a case of a sweep
     std::uint64_t steps_ = 0;  // number of steps since the run was started or resumed
 };
 

@@ -1,8 +1,8 @@
 #include "engine/program/series_figures.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+
+#include "engine/output/series/series_figures.h"
 
 namespace skerry {
 
@@ -16,43 +16,29 @@ std::string ending(std::string unit) {
     return "_" + unit;
 }
 
+std::vector<Real> values_of(const Recorder& recorder, std::size_t column) {
+    std::vector<Real> values;
+    for (std::size_t row = 0; row < recorder.row_count(); ++row) values.push_back(recorder.row(row)[column]);
+    return values;
+}
+
 }  // namespace
 
-SeriesFigures::SeriesFigures(World& world, const std::vector<RecordedProbe>& probes) : recorder_(world, probes) {
-    recorder_.sample(world);
-}
-
-void SeriesFigures::sample(const World& world) {
-    recorder_.sample(world);
-}
-
-std::vector<std::pair<std::string, double>> SeriesFigures::all() const {
-    std::vector<std::pair<std::string, double>> figures;
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t c = 1; c < recorder_.columns().size(); ++c) {  // column 0 is the time
-        double least = none, most = none, end = none, sum = 0, seconds = 0;
-        std::size_t count = 0;
-        for (std::size_t row = 0; row < recorder_.row_count(); ++row) {
-            const double value = recorder_.row(row)[c];
-            if (!std::isfinite(value)) continue;
-            least = count > 0 ? std::min(least, value) : value;
-            most = count > 0 ? std::max(most, value) : value;
-            end = value;
-            const double since = row > 0 ? recorder_.row(row)[0] - recorder_.row(row - 1)[0] : 0;
-            sum += since * value;
-            seconds += since;
-            ++count;
-        }
-        const SeriesColumn& column = recorder_.columns()[c];
+std::vector<std::pair<std::string, double>> named_figures(const Recorder& recorder) {
+    std::vector<std::pair<std::string, double>> named;
+    const std::vector<Real> time = values_of(recorder, 0);
+    for (std::size_t c = 1; c < recorder.columns().size(); ++c) {
+        const SeriesColumn& column = recorder.columns()[c];
+        const SeriesFigures figures = series_figures(time, values_of(recorder, c));
         const auto add = [&](const char* which, double value) {
-            figures.emplace_back(column.probe + "." + column.quantity + which + ending(column.unit), value);
+            named.emplace_back(column.probe + "." + column.quantity + which + ending(column.unit), value);
         };
-        add("_end", end);
-        add("_min", least);
-        add("_max", most);
-        add("_mean", seconds > 0 ? sum / seconds : end);
+        add("_end", figures.end);
+        add("_min", figures.least);
+        add("_max", figures.most);
+        add("_mean", figures.mean);
     }
-    return figures;
+    return named;
 }
 
 }  // namespace skerry

@@ -125,6 +125,7 @@ std::string study_page(const StudyResult& result) {
         {"scene", result.scene},
         {"parameters", {"settings", "mesh level", "step", "tolerance", "assignments"}},
         {"figures", figures},
+        {"tabled", {cpu_time, "steps", "tetrahedra"}},
         {"rows", run_rows(result)},
         {"start",
          {{"x", cpu_time},
