@@ -56,6 +56,18 @@ PageJson run_rows(const StudyResult& result) {
     return rows;
 }
 
+/// The table without the columns that are empty in all rows but the heading.
+PageJson without_empty_columns(const PageJson& rows) {
+    PageJson kept = PageJson::array();
+    for (const PageJson& row : rows) {
+        PageJson& cells = kept.emplace_back(PageJson::array());
+        for (std::size_t c = 0; c < row.size(); ++c)
+            if (std::any_of(rows.begin() + 1, rows.end(), [c](const PageJson& any) { return any[c] != ""; }))
+                cells.push_back(row[c]);
+    }
+    return kept;
+}
+
 PageJson summary_table(const StudyResult& result) {
     PageJson rows = {{"quantity", "value", "error bar", "relative", "verdict", "mesh", "step", "contacts", "start",
                       "best value", "orders", "remark"}};
@@ -67,7 +79,7 @@ PageJson summary_table(const StudyResult& result) {
                         text.mesh, text.step, text.contact, text.noise,
                         text.best.empty() ? "" : text.best + " " + bar(text.best_error), text.orders, q.sentence});
     }
-    return rows;
+    return without_empty_columns(rows);
 }
 
 PageJson time_series(const StudyResult& result) {
