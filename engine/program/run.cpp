@@ -51,10 +51,7 @@ public:
           result_(result),
           probes_(scene),
           errors_(scene.world) {
-        if (options.series_figures && !scene.recorded.empty()) {
-            figures_.emplace(world_, scene.recorded);
-            figures_->sample(world_);
-        }
+        if (options.series_figures && !scene.recorded.empty()) figures_.emplace(world_, scene.recorded);
     }
 
     void run() {
@@ -90,7 +87,7 @@ public:
         result_.probes = probes_.records();
         errors_.finish(world_);
         result_.errors = errors_.bodies();
-        if (figures_) result_.series = named_figures(*figures_);
+        if (figures_) result_.series = figures_->all();
     }
 
 private:
@@ -151,7 +148,7 @@ private:
     RunResult& result_;
     ProbeRecorder probes_;
     ErrorEstimator errors_;
-    std::optional<Recorder> figures_;  // probes of a case of a sweep
+    std::optional<SeriesFigures> figures_;
     std::uint64_t steps_ = 0;  // number of steps since the run was started or resumed
 };
 

@@ -55,7 +55,7 @@ struct RunResult {
     std::vector<std::string> contact_areas;   // one sentence for each body with too small contact areas for its mesh
     std::vector<std::string> notes;           // remarks about the input that do not question the result
     std::string nearest;                      // result of nearest_text() for a run without any contact, else empty
-    std::vector<std::pair<std::string, double>> series;  // figures of the time series of the probes, see named_figures()
+    std::vector<std::pair<std::string, double>> series;  // figures of the time series of the probes, see SeriesFigures
     std::vector<std::string> written;                    // description of each written output
 };
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/output/series/series_figures.h"
+#include "engine/output/series/series_summary.h"
 
 namespace skerry {
 
@@ -16,29 +16,36 @@ std::string ending(std::string unit) {
     return "_" + unit;
 }
 
-std::vector<Real> values_of(const Recorder& recorder, std::size_t column) {
-    std::vector<Real> values;
-    for (std::size_t row = 0; row < recorder.row_count(); ++row) values.push_back(recorder.row(row)[column]);
-    return values;
-}
-
 }  // namespace
 
-std::vector<std::pair<std::string, double>> named_figures(const Recorder& recorder) {
-    std::vector<std::pair<std::string, double>> named;
-    const std::vector<Real> time = values_of(recorder, 0);
-    for (std::size_t c = 1; c < recorder.columns().size(); ++c) {
-        const SeriesColumn& column = recorder.columns()[c];
-        const SeriesFigures figures = series_figures(time, values_of(recorder, c));
+SeriesFigures::SeriesFigures(World& world, const std::vector<RecordedProbe>& probes) : recorder_(world, probes) {
+    recorder_.sample(world);
+}
+
+void SeriesFigures::sample(const World& world) {
+    recorder_.sample(world);
+}
+
+std::vector<std::pair<std::string, double>> SeriesFigures::all() const {
+    std::vector<std::pair<std::string, double>> figures;
+    const auto values_of = [this](std::size_t column) {
+        std::vector<Real> values;
+        for (std::size_t row = 0; row < recorder_.row_count(); ++row) values.push_back(recorder_.row(row)[column]);
+        return values;
+    };
+    const std::vector<Real> time = values_of(0);
+    for (std::size_t c = 1; c < recorder_.columns().size(); ++c) {
+        const SeriesSummary summary = summary_of_series(time, values_of(c));
+        const SeriesColumn& column = recorder_.columns()[c];
         const auto add = [&](const char* which, double value) {
-            named.emplace_back(column.probe + "." + column.quantity + which + ending(column.unit), value);
+            figures.emplace_back(column.probe + "." + column.quantity + which + ending(column.unit), value);
         };
-        add("_end", figures.end);
-        add("_min", figures.least);
-        add("_max", figures.most);
-        add("_mean", figures.mean);
+        add("_end", summary.end);
+        add("_min", summary.least);
+        add("_max", summary.most);
+        add("_mean", summary.mean);
     }
-    return named;
+    return figures;
 }
 
 }  // namespace skerry

@@ -9,8 +9,20 @@
 
 namespace skerry {
 
-/// Returns the figures of each column of a recorder by name, for example grip.force_x_max_N: value at the end, smallest,
-/// largest and mean value. Samples without a value, such as forces before the first step, do not count.
-std::vector<std::pair<std::string, double>> named_figures(const Recorder& recorder);
+/// Figures of each column of the probes: value at the end, smallest, largest and mean value of all samples. In the mean
+/// each sample has the weight of the time since the previous sample. Samples without a value, such as forces before the
+/// first step, do not count.
+class SeriesFigures {
+public:
+    /// Takes the first sample.
+    SeriesFigures(World& world, const std::vector<RecordedProbe>& probes);
+    /// Must be called after every call of World::advance.
+    void sample(const World& world);
+    /// Returns the figures by name, for example grip.force_x_max_N. A figure without any sample is NaN.
+    std::vector<std::pair<std::string, double>> all() const;
+
+private:
+    Recorder recorder_;
+};
 
 }  // namespace skerry

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "engine/output/number_text.h"
-#include "engine/output/series/series_figures.h"
+#include "engine/output/series/series_summary.h"
 
 namespace skerry {
 
@@ -37,7 +37,7 @@ std::size_t row_of_time(const StudyRun& run, Real time) {
 Real figure_value(const StudyRun& run, std::size_t column, StudyFigure figure, Real agree_until) {
     const std::vector<Real>& values = run.columns[column].values;
     if (figure == StudyFigure::agreed) return values[row_of_time(run, agree_until)];
-    const SeriesFigures found = series_figures(run.time, values);
+    const SeriesSummary found = summary_of_series(run.time, values);
     return figure == StudyFigure::end       ? found.end
            : figure == StudyFigure::mean    ? found.mean
            : figure == StudyFigure::largest ? found.most

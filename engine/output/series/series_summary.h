@@ -1,4 +1,4 @@
-// Figures of one time series.
+// Summary of one time series.
 #pragma once
 
 #include <span>
@@ -8,12 +8,12 @@
 namespace skerry {
 
 /// Last, smallest, largest and mean value of a time series. In the mean each value has the weight of the time since the
-/// row before. Values that are not finite do not count; without any value all figures are NaN.
-struct SeriesFigures {
+/// row before. Values that are not finite do not count; without any value all are NaN.
+struct SeriesSummary {
     Real end, least, most, mean;
 };
 
 /// `time`: of the rows [s]; as many as `values`.
-SeriesFigures series_figures(std::span<const Real> time, std::span<const Real> values);
+SeriesSummary summary_of_series(std::span<const Real> time, std::span<const Real> values);
 
 }  // namespace skerry

@@ -1,13 +1,13 @@
-#include "engine/output/series/series_figures.h"
+#include "engine/output/series/series_summary.h"
 
 #include <cmath>
 #include <limits>
 
 namespace skerry {
 
-SeriesFigures series_figures(std::span<const Real> time, std::span<const Real> values) {
+SeriesSummary summary_of_series(std::span<const Real> time, std::span<const Real> values) {
     constexpr Real none = std::numeric_limits<Real>::quiet_NaN();
-    SeriesFigures found{none, none, none, none};
+    SeriesSummary found{none, none, none, none};
     Real sum = 0, seconds = 0;
     for (std::size_t row = 0; row < values.size(); ++row) {
         const Real value = values[row];
