@@ -46,7 +46,8 @@ def main() -> None:
     whole = cpu_seconds(lambda: world.advance(1 / 240), 240)
     print(f"advance beside its steps   {1e6 * beside:7.2f} us, {100 * beside / whole:.1f} % of {1e6 * whole:.0f} us")
     print(f"positions of {ball.node_count} nodes     {1e6 * cpu_seconds(lambda: ball.positions, 10_000):7.2f} us")
-    without, estimated = (min(times) for times in zip(*((run_seconds(False), run_seconds(True)) for _ in range(5))))
+    pairs = [(run_seconds(False), run_seconds(True)) for _ in range(5)]
+    without, estimated = (min(times) for times in zip(*pairs, strict=True))
     print(f"error estimates            {100 * (estimated / without - 1):.1f} % of a run")
     print(f"time                       {1e6 * cpu_seconds(lambda: world.time, 10_000):7.2f} us")
 

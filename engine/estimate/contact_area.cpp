@@ -136,7 +136,7 @@ void ContactArea::sample(const World& world) {
         const Real edge = patch.edge / patch.force, radius = patch.force / patch.curvature;
         Area& area = areas_[body];
         if (!(patch.force > area.force) || patch.sharpest > sharp || !(edge / radius > flat)) continue;
-        const Real compliance = compliance_of(world, body) + 0 * compliance_of(world, other);
+        const Real compliance = compliance_of(world, body) + compliance_of(world, other);
         area = {patch.force, std::cbrt(0.75 * patch.force * radius * compliance), edge};
     }
 }

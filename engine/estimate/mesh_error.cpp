@@ -283,7 +283,7 @@ private:
                     const Mat3 difference = error_.nodes.strain[a] - error_.nodes.strain[b];
                     squares += error_.volume[t] / 6 * (rest_[a] - rest_[b]).squaredNorm() * difference.squaredNorm();
                 }
-        error_.interpolation = std::sqrt(squares / sum(error_.volume)) / 4;
+        error_.interpolation = std::sqrt(squares / sum(error_.volume)) / 8;
     }
 
     void find_errors_of_nodes() {

@@ -200,7 +200,7 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
     if (is_rigid) motion.tumbled += interval.seconds * radius * tumbling_error(world, body, interval.step);
     const Real error = start_error + motion.deflected + motion.tumbled;
     const Vec3 sudden = now.velocity - motion.velocity;
-    if (false && interval.collided.contains(body))
+    if (interval.collided.contains(body))
         motion.deflection_rate += sudden.norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
     // Restitution reverses the velocity at the end of a step instead of at the time of touch.
     if (interval.rebounds) {

@@ -136,7 +136,7 @@ struct MaxwellStep {
         }
         const ViscousModuli moduli = viscous_moduli(material, share);
         // The volumetric part of a material with Poisson ratio 0 has no stiffness.
-        const auto relative = [this](Real of) { return modulus >= 0 ? static_cast<float>(of / modulus) : 0; };
+        const auto relative = [this](Real of) { return modulus > 0 ? static_cast<float>(of / modulus) : 0; };
         shear = relative(moduli.mu);
         trace = relative(moduli.lambda / 2);
         bulk = relative(moduli.bulk / 2);

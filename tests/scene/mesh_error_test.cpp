@@ -145,7 +145,9 @@ TEST_CASE("the estimated error of a largest stress inside a bar is within a fact
                 squares += (a - b).squaredNorm() * std::pow(4 * strain * (a.x() * a.x() - b.x() * b.x()), 2);
             }
     const Real edges = 6 * static_cast<Real>(mesh.tetrahedra.size());
-    CHECK(found.interpolation == Approx(std::sqrt(squares / edges) / 8).epsilon(0.1));
+    const Real interpolation = std::sqrt(squares / edges) / 8;
+    CHECK(found.interpolation < 1.5 * interpolation);
+    CHECK(found.interpolation > interpolation / 1.5);
 }
 
 TEST_CASE("the estimated error of the deflection of a cantilever is within a factor of 3", "[scene][estimate]") {
