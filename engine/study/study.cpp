@@ -147,8 +147,8 @@ private:
         choose_columns_by_name(settings_.probes, scene_.path, runs_[0].columns);
         const OpenParts open = open_parts(runs_, settings_);
         std::erase_if(plan_, [&](const PlannedRun& planned) {
-            return planned.stage == StudyStage::last && ((planned.variant.draw != 0 && !open.noise) ||
-                                                         (planned.variant.step != 1 && !open.step));
+            return planned.stage == StudyStage::last &&
+                   ((planned.variant.draw != 0 && !open.noise) || (planned.variant.step != 1 && !open.step));
         });
     }
 
@@ -372,8 +372,8 @@ void write_cheapest_scene(const std::filesystem::path& scene, const StudyResult&
                   .field = "error",
                   .found = result.cheapest ? percent(result.wanted_error) + ", which no settings reach"
                                            : "no quantity with a known error",
-                  .expected = result.cheapest ? "at least " + percent(result.cheapest->error)
-                                              : "a quantity with a known error",
+                  .expected =
+                      result.cheapest ? "at least " + percent(result.cheapest->error) : "a quantity with a known error",
                   .hint = {}}
             .raise();
     write_scene(file, scene, result.cheapest->assignments);

@@ -177,12 +177,11 @@ void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
              {std::pair{Part::mean, "mean_"}, std::pair{Part::least, "least_"}, std::pair{Part::largest, "largest_"}}) {
             if (from.size() < 2) continue;
             const bool doubled = what.quantity.starts_with(name);
-            sources_.push_back(
-                {{.what = {what.probe, doubled ? what.quantity : name + what.quantity, what.unit},
-                  .size = size_,
-                  .is_statistic = true},
-                 part,
-                 from});
+            sources_.push_back({{.what = {what.probe, doubled ? what.quantity : name + what.quantity, what.unit},
+                                 .size = size_,
+                                 .is_statistic = true},
+                                part,
+                                from});
         }
 }
 

@@ -134,8 +134,9 @@ This page shows how far you can trust the error bars of [`skerry study`](study.m
 [error estimates](methods/error_estimates.md) of every run. `scripts/error_bars` studies {all} items with known
 solutions and writes this page; {count} have results. The scenes have coarse meshes and default settings. They were
 chosen before the first study, except the quantities of some items, and the stiff block and slow push of
-`incline_slide`. The last {checks} items ([check_items.py](../profiling/error_bars/check_items.py)) played no part in the
-choice of the rules; their first study showed that one needs friction, and that the formula of another one is less exact. [error_bars.csv](error_bars/error_bars.csv) lists values, formulas and orders.
+`incline_slide`. The last {checks} items ([check_items.py](../profiling/error_bars/check_items.py)) played no part in
+the choice of the rules; their first study showed that one needs friction, and that the formula of another one is less
+exact. [error_bars.csv](error_bars/error_bars.csv) lists values, formulas and orders.
 
 | claim | all items | the last {checks} |
 |---|---:|---:|

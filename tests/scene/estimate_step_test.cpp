@@ -29,10 +29,10 @@ struct Case {
     Real slope = 0;     // [degree]
     bool floor = false;
     Settings settings{};
-    Real restitution = 0;  // of the pair of the body and the floor
+    Real restitution = 0;         // of the pair of the body and the floor
     std::optional<Vec3> other{};  // centre of a sphere in the way of the body [m]
-    int order = 1;         // order of the error in the length of the steps
-    Real within = 1.25;    // largest ratio of estimated and true error
+    int order = 1;                // order of the error in the length of the steps
+    Real within = 1.25;           // largest ratio of estimated and true error
 };
 
 struct Run {
@@ -51,9 +51,8 @@ Run run(const Case& of, Real factor) {
     const BodyHandle body = of.mesh.nodes.empty() ? world.add_body(Sphere{.radius = 0.05}, settings_of_body)
                                                   : world.add_body(of.mesh, settings_of_body);
     if (of.other)
-        world.add_body(Sphere{.radius = 0.05}, {.material = settings_of_body.material,
-                                                .position = *of.other,
-                                                .dynamics = BodyDynamics::rigid});
+        world.add_body(Sphere{.radius = 0.05},
+                       {.material = settings_of_body.material, .position = *of.other, .dynamics = BodyDynamics::rigid});
     if (of.held) {
         Real left = infinity;
         for (const Vec3& x : of.mesh.nodes) left = std::min(left, x.x());

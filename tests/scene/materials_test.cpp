@@ -112,8 +112,7 @@ TEST_CASE("a Poisson ratio of exactly 0 gives the motion of a tiny one, with eac
             World world = weightless();
             const auto material = world.add_material({.young_modulus = 1e5, .poisson_ratio = poisson_ratio});
             const BodyHandle body = world.add_body(
-                mesh,
-                {.material = material, .dynamics = BodyDynamics::explicit_elastic, .element = kind});
+                mesh, {.material = material, .dynamics = BodyDynamics::explicit_elastic, .element = kind});
             world.set_velocities(body, random_velocities(mesh, 0.5));
             REQUIRE(world.advance(0.02).ok());
             return std::vector<Vec3>(world.positions(body).begin(), world.positions(body).end());

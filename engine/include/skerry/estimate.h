@@ -25,8 +25,8 @@ struct ErrorEstimate {
     // Error of a displacement under given loads, due to the mesh. Positive if the mesh is too stiff, negative if it is
     // too soft. Times `deformation` it is the error of the motion.
     Real deflection = not_estimated;
-    // Error of the displacement of a single node besides `deflection`, due to the mesh: root mean square of the error of
-    // linear interpolation along the edges [m].
+    // Error of the displacement of a single node besides `deflection`, due to the mesh: root mean square of the error
+    // of linear interpolation along the edges [m].
     Real interpolation = not_estimated;
     Real stress = not_estimated;  // error of the largest von Mises stress at the nodes, due to the mesh
     // Error of the motion, due to the length of the steps: largest distance of the nodes from where infinitely short

@@ -48,9 +48,8 @@ Measured measure_all(const StudyFamily& family, const StudySettings& settings) {
         if (is_place(family.scene->columns[column]))
             found.agree_until = std::min(found.agree_until, found.until.back());
     }
-    const bool reports_bodies = std::ranges::any_of(family.scene->columns, [&](const StudyColumn& column) {
-        return column.reported && is_place(column);
-    });
+    const bool reports_bodies = std::ranges::any_of(
+        family.scene->columns, [&](const StudyColumn& column) { return column.reported && is_place(column); });
     for (std::size_t column = 0; column < found.scales.size(); ++column) {
         const StudyColumn& what = family.scene->columns[column];
         if (!what.reported || (what.is_statistic && !found.is_chaotic(family) && reports_bodies)) continue;

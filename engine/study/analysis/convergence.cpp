@@ -56,7 +56,8 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
     if (coarse_difference * difference < 0 && !fast) {
         shape_ = ConvergenceShape::oscillating;
         used_order_ = 0;
-        // A second term of the other sign explains the change. The error of a h^2 + b h^3 is then below that of order 1.
+        // A second term of the other sign explains the change. The error of a h^2 + b h^3 is then below that of
+        // order 1.
     } else if (order_ < near_least * theory.least) {
         // Low orders would predict errors without bounds.
         shape_ = ConvergenceShape::slow;

@@ -305,7 +305,7 @@ std::vector<Real> column_scales(const StudyFamily& family) {
     const PerturbedRuns perturbed = family.perturbed();
     std::vector<Real> scales = family.sizes;
     std::map<std::string, Real> of_unit;  // largest size of the columns with this unit
-    std::map<std::string, Real> energy;  // largest energy of each probe [J]
+    std::map<std::string, Real> energy;   // largest energy of each probe [J]
     for (std::size_t c = 0; c < scales.size(); ++c) {
         const StudyColumn& column = run.columns[c];
         of_unit[column.what.unit] = std::max(of_unit[column.what.unit], scales[c]);
@@ -316,8 +316,9 @@ std::vector<Real> column_scales(const StudyFamily& family) {
     for (std::size_t c = 0; c < scales.size(); ++c) {
         const StudyColumn& column = run.columns[c];
         const std::string& unit = column.what.unit;
-        const Real least = unit == "J" ? rounding * energy[column.what.probe]
-                                       : std::max(unit == "m" ? rounding * column.size : 0, least_share * of_unit[unit]);
+        const Real least = unit == "J"
+                               ? rounding * energy[column.what.probe]
+                               : std::max(unit == "m" ? rounding * column.size : 0, least_share * of_unit[unit]);
         scales[c] = std::max({scales[c], least, first_difference(perturbed, c) / agreement_share});
     }
     return scales;

@@ -69,8 +69,7 @@ std::string quantities_text(const StudyResult& result) {
     }
     std::stable_partition(shown.begin(), shown.end(), [](const StudyQuantity* q) { return !is_minor(*q); });
     // Statistics of all bodies come first: they are reported if there are too many bodies, or if they move chaotically.
-    std::stable_partition(shown.begin(), shown.end(),
-                          [&](const StudyQuantity* q) { return is_statistic(*q, result); });
+    std::stable_partition(shown.begin(), shown.end(), [&](const StudyQuantity* q) { return is_statistic(*q, result); });
     const std::size_t left = shown.size() > most_quantities ? shown.size() - most_quantities : 0;
     shown.resize(shown.size() - left);
     for (const StudyQuantity* q : shown) width = std::max(width, q->name.size());

@@ -149,12 +149,12 @@ TEST_CASE("a change of the sign by a second term of the error leaves a bar that 
 
 TEST_CASE("further perturbations and steps are needed only if they would change an error bar", "[unit][study]") {
     const auto open = [](Real mesh, Real step, Real noise) {
-        return open_parts(runs_of({column("displacement_z", "m")}, {{}, {.refine = 1}, {.step = 0.5}, {.draw = 1}},
-                                  [&](const StudyVariant& v, Real t) {
-                                      return std::vector<Real>{limit * t *
-                                                               (1 + mesh * edge(v) + step * v.step + noise * v.draw)};
-                                  }),
-                          {.error = 0.01});
+        return open_parts(
+            runs_of({column("displacement_z", "m")}, {{}, {.refine = 1}, {.step = 0.5}, {.draw = 1}},
+                    [&](const StudyVariant& v, Real t) {
+                        return std::vector<Real>{limit * t * (1 + mesh * edge(v) + step * v.step + noise * v.draw)};
+                    }),
+            {.error = 0.01});
     };
     CHECK_FALSE((open(0, 1e-4, 0).step || open(0, 0, 1e-5).noise));
     CHECK(open(0, 0.01, 0).step);
