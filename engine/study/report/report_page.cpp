@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "engine/output/number_text.h"
 #include "engine/output/table/table_page.h"
@@ -69,15 +70,21 @@ PageJson without_empty_columns(const PageJson& rows) {
 }
 
 PageJson summary_table(const StudyResult& result) {
-    PageJson rows = {{"quantity", "value", "error bar", "relative", "verdict", "mesh", "step", "contacts", "start",
-                      "best value", "orders", "remark"}};
+    PageJson rows = {{"quantity", "value", "relative", "verdict", "parts", "best value", "orders", "remark"}};
     for (const StudyQuantity& q : result.quantities) {
         if (is_zero(q)) continue;
         const QuantityText text = quantity_text(q);
-        const auto bar = [](const std::string& error) { return error.empty() ? error : "\u00b1 " + error; };
-        rows.push_back({q.name, text.value + " " + text.unit, bar(text.error), text.share, name_of(q.verdict),
-                        text.mesh, text.step, text.contact, text.noise,
-                        text.best.empty() ? "" : text.best + " " + bar(text.best_error), text.orders, q.sentence});
+        const auto with_bar = [](const std::string& value, const std::string& error) {
+            return error.empty() ? value : value + " \u00b1 " + error;
+        };
+        std::string parts;
+        for (const auto& [name, part] : {std::pair{"mesh ", text.mesh}, std::pair{"step ", text.step},
+                                         std::pair{"contacts ", text.contact}, std::pair{"start ", text.noise}})
+            if (!part.empty()) parts += (parts.empty() ? "" : ", ") + (name + part);
+        // The notes above the table have the remarks on quantities that are not known.
+        rows.push_back({q.name, with_bar(text.value, text.error) + " " + text.unit, text.share, name_of(q.verdict),
+                        parts, with_bar(text.best, text.best_error), text.orders,
+                        q.verdict == StudyVerdict::known ? q.sentence : std::string()});
     }
     return without_empty_columns(rows);
 }
