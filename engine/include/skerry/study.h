@@ -52,6 +52,7 @@ struct StudyColumn {
     Real size = 0;  // diagonal of the bounding box of the body at the start, or of all bodies for other columns [m]
     // False for a column that gets no error bar of its own, such as the place of one of many bodies.
     bool reported = true;
+    bool is_statistic = false;   // true for a mean, least or largest value of all bodies, which chaos leaves meaningful
     std::vector<Real> values{};  // one per time; NaN if unknown
     // For a column of a largest stress: number within the body, and position at the start [m], of the node that had the
     // largest value of the run. Else no_index.
@@ -198,8 +199,8 @@ std::string study_page(const StudyResult& result);
 /// the rows of the first run. A number that is not finite becomes null.
 std::string study_json(const StudyResult& result);
 
-/// Writes the scene with the cheapest settings, which `result` must have. Paths in the new file lead to the files of
-/// the scene. Throws SceneError.
+/// Writes the scene with the cheapest settings. Paths in the new file lead to the files of the scene. Throws
+/// SceneError, also if no settings reach the wanted error.
 void write_cheapest_scene(const std::filesystem::path& scene, const StudyResult& result,
                           const std::filesystem::path& file);
 
