@@ -79,6 +79,42 @@ TEST_CASE("bodies that get new owners while they touch move as without ranks", "
     }
 }
 
+/// Two boxes that fly towards each other and collide after 0.095 s.
+World approaching_boxes() {
+    World world({.gravity = Vec3::Zero()});
+    const MaterialHandle rubber = world.add_material({});
+    for (const Real side : {-1.0, 1.0})
+        world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}),
+                       {.material = rubber, .position = {side, 0, 0}, .velocity = {-10 * side, 0, 0}});
+    return world;
+}
+
+TEST_CASE("bodies of two ranks that come from afar collide as without ranks", "[ranks]") {
+    constexpr Real before = 0.02, after = 0.1;
+    World whole = approaching_boxes();
+    whole.advance(before);
+    whole.advance(after);
+    REQUIRE(whole.report().contact_sum > 0);
+    std::uint64_t hash = 0;
+    std::size_t held_before = 0, held_after = 0;
+    run_on_ranks(2, [&](Ranks& ranks) {
+        World world = approaching_boxes();
+        distribute(world, ranks);
+        world.advance(before);
+        const std::size_t first = world.bodies().size();
+        world.advance(after);
+        const std::size_t second = world.bodies().size();
+        if (std::optional<World> all = gathered(world)) {
+            hash = all->state_hash();
+            held_before = first;
+            held_after = second;
+        }
+    });
+    CHECK(held_before == 1);
+    CHECK(held_after == 2);
+    CHECK(hash == whole.state_hash());
+}
+
 TEST_CASE("each rank of a row of bodies holds only its neighbours", "[ranks]") {
     constexpr std::size_t bodies = 12;
     std::vector<std::size_t> held(4), owned(4), peers(4);
