@@ -17,8 +17,9 @@ namespace {
 constexpr int searches_of_requests = 8;
 /// Greatest number of steps between two rank searches.
 constexpr std::uint64_t steps_between_searches = 1000;
-/// Number of steps for which the margin of a body lasts if the body keeps its speed.
-constexpr Real steps_of_margin = 100;
+/// Least number of steps for which the margin of a body lasts. The edge length of explicit elements, which is a part of
+/// the margin, lasts longer, because waves cross it in one step.
+constexpr Real steps_of_margin = 20;
 /// Cost of a contact, in units of the cost of an explicit element. The solver visits a contact several times.
 constexpr Real contact_cost = 10;
 /// Cost of a body without elements, in the same units.
