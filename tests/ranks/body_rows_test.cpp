@@ -12,8 +12,7 @@ namespace body_rows_test {
 
 void start(WorldState& world) {
     world.ranks.whole = whole_world_of(world.model);
-    for (std::size_t b = 0; b < world.model.bodies.slot.size(); ++b)
-        world.ranks.place.push_back(static_cast<Index>(b));
+    for (std::size_t b = 0; b < world.model.bodies.slot.size(); ++b) world.ranks.place.push_back(static_cast<Index>(b));
 }
 
 /// Moves random units of a world to a message, and back from it.

@@ -1,8 +1,8 @@
 #include <numeric>
 
 #include "engine/world/complaint.h"
-#include "engine/world/ranks/rows/body_rows.h"
 #include "engine/world/ranks/hold/ghosts.h"
+#include "engine/world/ranks/rows/body_rows.h"
 #include "engine/world/step/step.h"
 #include "skerry/ranks.h"
 
@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-[[noreturn]] void refuse(const char* field, const char* found, const char* expected, const char* hint) {
+[[noreturn]] void refuse_division(const char* field, const char* found, const char* expected, const char* hint) {
     Complaint{
         .file = {}, .object = "distribute", .field = field, .found = found, .expected = expected, .hint = hint}
         .raise();
@@ -19,15 +19,15 @@ namespace {
 /// Refuses worlds that ranks cannot divide.
 void require_divisible(const WorldState& world) {
     const Settings& settings = world.model.settings;
-    if (world.ranks.on()) refuse("world", "a world that is already divided", "an undivided world", "call it once");
+    if (world.ranks.on()) refuse_division("world", "a world that is already divided", "an undivided world", "call it once");
     if (settings.integrator == Integrator::leapfrog)
-        refuse("settings.integrator", "leapfrog", "symplectic_euler", "several ranks have only this integrator");
+        refuse_division("settings.integrator", "leapfrog", "symplectic_euler", "several ranks have only this integrator");
     if (settings.contact_regions == ContactRegions::global)
-        refuse("settings.contact_regions", "global", "separate", "ranks solve regions concurrently");
+        refuse_division("settings.contact_regions", "global", "separate", "ranks solve regions concurrently");
     if (world.record.forces.on())
-        refuse("measure_forces", "forces that are measured", "none", "measure forces with one process");
+        refuse_division("measure_forces", "forces that are measured", "none", "measure forces with one process");
     if (world.record.problem_watch.take)
-        refuse("watch_problems", "a subscription to contact problems", "none", "export problems with one process");
+        refuse_division("watch_problems", "a subscription to contact problems", "none", "export problems with one process");
 }
 
 }  // namespace
@@ -58,9 +58,8 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
     std::vector<std::uint8_t> kept;
     for (std::size_t b = 0; b < moves.size(); ++b)
         kept.push_back(!moves[b] || std::ranges::binary_search(whole.holders[b], mine.rank));
-    replace_rows(state, kept, {},
-                 [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == mine.rank; });
-    note_holders(mine, model.bodies, extents);
+    replace_rows(state, kept, {}, [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == mine.rank; });
+    note_holders(mine, extents);
     note_ghosts(state);
     list_step_again(state);
 }
