@@ -72,8 +72,8 @@ public:
     void mark_changed();
 
     struct Wish {
-        bool frame = false;     // a browser waits for a frame
-        bool stresses = false;  // it shows stress, strain or the mesh error
+        bool frame = false;                           // a browser waits for a frame
+        FrameContent content = FrameContent::motion;  // fields that it shows
     };
     /// Counts a missed frame for each browser that is busy with earlier frames.
     Wish wish();
@@ -97,7 +97,7 @@ private:
         std::uint64_t number = 0;
         LiveLink* link = nullptr;
         bool closed = false;               // its thread ends
-        bool stresses = false;             // it shows stress, strain or the mesh error
+        FrameContent content = FrameContent::motion;  // fields that it shows
         bool pulls = false;                // its last pull has not been released
         std::deque<std::string> texts;     // messages that wait for its thread
         std::uint64_t run = 0;             // run that it shows

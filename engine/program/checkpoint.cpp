@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/output/number_text.h"
 #include "engine/world/save/world_file.h"
 #include "skerry/error.h"
 
@@ -166,17 +167,26 @@ bool CheckpointWriter::due(double time) const {
     return time >= next_ - slack * every_;
 }
 
-void CheckpointWriter::write(World& world, const RunMemory& memory) {
-    if (file_.empty()) return;
+std::string CheckpointWriter::last_words() const {
+    const std::string text = "skerry: the job was ended from outside, or by the failure of another rank; ";
+    if (written_ == 0) return text + "there is no checkpoint of this run (--checkpoint FILE writes them)\n";
+    return text + "to continue from the checkpoint at " + with_unit(last_, "s") + ": skerry run --restart " +
+           file_.string() + "\n";
+}
+
+void CheckpointWriter::write(World* world, double time, const RunMemory& memory) {
     try {
-        save_world(WorldAccess::state_of(world), {to_json(memory).dump()}, file_);
-        ++written_;
+        if (world != nullptr) {
+            save_world(WorldAccess::state_of(*world), {to_json(memory).dump()}, file_);
+            ++written_;
+            last_ = time;
+        }
     } catch (const std::exception& error) {
         ++failed_;
-        std::fprintf(stderr, "skerry: the checkpoint at %g s could not be written: %s; the run continues\n",
-                     world.time(), error.what());
+        std::fprintf(stderr, "skerry: the checkpoint at %g s could not be written: %s; the run continues\n", time,
+                     error.what());
     }
-    next_ = multiple_after(world.time(), every_);
+    next_ = multiple_after(time, every_);
 }
 
 }  // namespace skerry

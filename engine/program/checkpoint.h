@@ -44,19 +44,24 @@ public:
     /// `every` is the simulated time between checkpoints [s]. The first checkpoint is due at the first multiple of
     /// `every` after `time`. If the file name is empty, no checkpoints are written.
     CheckpointWriter(std::filesystem::path file, double every, double time);
+    bool wanted() const { return !file_.empty(); }
     bool due(double time) const;
-    /// Writes a checkpoint. If this fails, reports the error on standard error and leaves the previous checkpoint in
-    /// place.
-    void write(World& world, const RunMemory& memory);
+    /// Writes a checkpoint of the world at `time`. If this fails, reports the error on standard error and leaves the
+    /// previous checkpoint in place. `world`: null on a rank that writes no files; then only the next checkpoint is
+    /// scheduled.
+    void write(World* world, double time, const RunMemory& memory);
     int written() const { return written_; }
     int failed() const { return failed_; }
     /// Returns a description of the checkpoint file for the user.
     std::string summary() const;
+    /// Returns a line for the user of a run that was killed. It names the last checkpoint.
+    std::string last_words() const;
 
 private:
     std::filesystem::path file_;
     double every_;
-    double next_;  // time at which the next checkpoint is due [s]
+    double next_;      // time at which the next checkpoint is due [s]
+    double last_ = 0;  // time of the last checkpoint that was written [s]
     int written_ = 0, failed_ = 0;
 };
 

@@ -13,6 +13,7 @@
 #include "skerry/fill.h"
 #include "skerry/output.h"
 #include "skerry/problem.h"
+#include "skerry/ranks.h"
 #include "skerry/scene.h"
 #include "skerry/study.h"
 
@@ -52,13 +53,14 @@ struct RunOptions {
     std::optional<Real> film_max;       // value at the upper end of the colours of films and glTF files
     std::optional<int> problems_every;  // number of steps between two exported steps
     bool quiet = false;
-    bool profile = false;              // also print step limits, solver statistics, energies and stage times
-    bool strict = false;               // warnings count as failure: the run ends with exit_failed
-    bool series_figures = false;       // RunResult::series is computed, for the table of a sweep
-    std::filesystem::path checkpoint;  // file for checkpoints; empty: no checkpoints
-    std::optional<Real> every;         // simulated time between two checkpoints [s]
-    bool from_rest = false;            // true: the run starts from a static equilibrium
-    std::filesystem::path restart;     // checkpoint from which the run resumes; empty: a new run
+    bool profile = false;               // also print step limits, solver statistics, energies and stage times
+    bool strict = false;                // warnings count as failure: the run ends with exit_failed
+    bool series_figures = false;        // RunResult::series is computed, for the table of a sweep
+    std::filesystem::path checkpoint;   // file for checkpoints; empty: no checkpoints
+    std::optional<Real> every;          // simulated time between two checkpoints [s]
+    bool from_rest = false;             // true: the run starts from a static equilibrium
+    std::filesystem::path restart;      // checkpoint from which the run resumes; empty: a new run
+    OwnerMap owners = OwnerMap::curve;  // division of the bodies among several ranks
 };
 int run(const RunOptions& options);
 

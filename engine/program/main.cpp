@@ -17,6 +17,7 @@
 #include "engine/program/commands.h"
 #include "engine/program/examples.h"
 #include "engine/program/output_formats.h"
+#include "engine/program/ranks/run_ranks.h"
 #include "engine/program/sweep/cases/sweep_file.h"
 #include "engine/scene/place.h"
 #include "skerry/instruction_set.h"
@@ -194,6 +195,10 @@ void add_run(CLI::App& app, RunOptions& options) {
     command.add_flag("--from-rest", options.from_rest,
                      "move the bodies to a static equilibrium under the loads at time 0 before the run");
     CLI::Option* restart = add_checkpoints(command, options);
+    add_choice<OwnerMap>(
+        command, "--owners", options.owners,
+        "with several ranks (docs/cluster.md): rule that divides the bodies among them; default: curve, "
+        "neighbours have the same owner");
     command.callback([scene, restart] {
         if (scene->count() == 0 && restart->count() == 0) throw CLI::RequiredError("SCENE");
     });
@@ -451,12 +456,13 @@ int run_command_line(int argc, char** argv) {
         return app.exit(error) == 0 ? exit_ok : exit_bad_input;
     }
     if (app.got_subcommand("run")) return run(run_options);
+    if (app.got_subcommand("sweep")) return sweep(sweep_options);
+    if (!is_one_process(app.get_subcommands().front()->get_name())) return exit_bad_input;
     if (app.got_subcommand("view")) return view(view_options);
     if (app.got_subcommand("solve")) return solve(solve_options);
     if (app.got_subcommand("inspect")) return inspect(inspect_options);
     if (app.got_subcommand("fill")) return fill(fill_options);
     if (app.got_subcommand("materials")) return materials(materials_as_json);
-    if (app.got_subcommand("sweep")) return sweep(sweep_options);
     if (app.got_subcommand("study")) return study(study_options);
     std::cout << (schema_of_sweeps ? sweep_schema() : scene_schema());
     return exit_ok;

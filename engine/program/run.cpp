@@ -16,6 +16,7 @@
 #include "engine/program/nearest_text.h"
 #include "engine/program/plan_warnings.h"
 #include "engine/program/progress.h"
+#include "engine/program/ranks/run_ranks.h"
 #include "engine/program/run_outputs.h"
 #include "engine/program/run_plan.h"
 #include "engine/program/run_result.h"
@@ -38,21 +39,27 @@ const char* const advice =
 /// Simulates the frames of a run, from the progress in `memory` on. An error is stored in result.status. If a run stops
 /// within a call of advance(), no new checkpoint is written. advance() divides its duration into equal steps, so a
 /// resumed run could not reproduce the remaining steps of that call.
+///
+/// With several ranks all of them run this loop. The world is gathered for each sample, frame and checkpoint.
 class FrameLoop {
 public:
-    FrameLoop(Scene& scene, const RunOptions& options, const RunPlan& plan, RunMemory memory, RunOutputs& outputs,
-              CheckpointWriter& checkpoints, Progress& progress, RunResult& result)
-        : world_(scene.world),
+    /// Divides the world of the scene among the ranks. `outputs`: null on ranks other than 0.
+    FrameLoop(Scene& scene, RunRanks& ranks, const RunOptions& options, const RunPlan& plan, RunMemory memory,
+              RunOutputs* outputs, CheckpointWriter& checkpoints, RunResult& result)
+        : ranks_(ranks),
           plan_(plan),
           memory_(std::move(memory)),
           outputs_(outputs),
           checkpoints_(checkpoints),
-          progress_(progress),
           result_(result),
+          progress_(!options.quiet, plan.seconds, plan.steps(scene.world), plan.longest_step(scene.world),
+                    scene.world.time()),
           probes_(scene),
-          errors_(scene.world) {
-        if (options.series_figures && !scene.recorded.empty()) figures_.emplace(world_, scene.recorded);
-    }
+          errors_(scene.world),
+          figures_(options.series_figures && !scene.recorded.empty()
+                       ? std::make_optional<SeriesFigures>(scene.world, scene.recorded)
+                       : std::nullopt),
+          world_(ranks.divide(scene, options.owners)) {}
 
     void run() {
         const SignalGuard guard;
@@ -85,7 +92,8 @@ public:
         result_.checkpoints = checkpoints_.written();
         result_.checkpoints_failed = checkpoints_.failed();
         result_.probes = probes_.records();
-        errors_.finish(world_);
+        result_.ranks = ranks_.report(result_.seconds_wall, waiting_, steps_);
+        if (const World* whole = ranks_.whole()) errors_.finish(*whole);
         result_.errors = errors_.bodies();
         if (figures_) result_.series = figures_->all();
     }
@@ -94,6 +102,7 @@ private:
     /// Tolerance for rounding errors when the present time is compared with the end of a call of advance [s].
     double slack_of_time() const { return RunPlan::slack * plan_.longest_call(); }
     void begin() {
+        ranks_.set_last_words(checkpoints_.last_words());
         result_.peak_kinetic_energy = memory_.peak_kinetic_energy;
         if (result_.restarted_at)
             probes_.go_on(memory_.probes);
@@ -101,9 +110,11 @@ private:
             add_frame();
     }
     void add_frame() {
-        outputs_.add_frame(world_);
-        result_.peak_kinetic_energy = std::max(result_.peak_kinetic_energy, world_.energy().kinetic);
-        if (result_.status == "ok" && outputs_.all_failed())
+        if (const World* whole = ranks_.whole()) {
+            outputs_->add_frame(*whole);
+            result_.peak_kinetic_energy = std::max(result_.peak_kinetic_energy, whole->energy().kinetic);
+        }
+        if (ranks_.any(result_.status == "ok" && outputs_ != nullptr && outputs_->all_failed()))
             result_.status =
                 "stopped at " + short_number(world_.time(), 6) + " s, because none of the outputs can be written";
     }
@@ -114,8 +125,11 @@ private:
         };
         const Stopwatch watch;
         const Real start = world_.time();
+        const double waited = ranks_.seconds();
+        ranks_.before_advance();
         const StepReport step = world_.advance(duration, go_on);
         result_.seconds_wall += watch.seconds();
+        waiting_ += ranks_.seconds() - waited;
         steps_ += static_cast<std::uint64_t>(step.steps);
         if (step.status == StepStatus::stopped)
             result_.status = "stopped by a signal at " + short_number(world_.time(), 6) + " s";
@@ -123,10 +137,12 @@ private:
             result_.status = step.message() + " (" + advice + ")";
         const Real sampled = step.ok() ? duration : world_.time() - start;
         if (!(sampled > 0)) return;
-        probes_.sample(world_, sampled);
-        outputs_.sample(world_);
-        errors_.sample(world_);
-        if (figures_) figures_->sample(world_);
+        const World* const whole = ranks_.whole();
+        if (whole == nullptr) return;
+        probes_.sample(*whole, sampled);
+        outputs_->sample(*whole);
+        errors_.sample(*whole);
+        if (figures_) figures_->sample(*whole);
     }
     void write_checkpoint(long frame, int sample) {
         memory_.frame = frame;
@@ -135,21 +151,24 @@ private:
         memory_.peak_kinetic_energy = result_.peak_kinetic_energy;
         memory_.probes = probes_.saved();
         const Stopwatch watch;
-        checkpoints_.write(world_, memory_);
+        if (checkpoints_.wanted()) checkpoints_.write(ranks_.whole(), world_.time(), memory_);
+        ranks_.set_last_words(checkpoints_.last_words());
         result_.seconds_output += watch.seconds();
     }
 
-    World& world_;
+    RunRanks& ranks_;
     const RunPlan& plan_;
     RunMemory memory_;
-    RunOutputs& outputs_;
+    RunOutputs* outputs_;
     CheckpointWriter& checkpoints_;
-    Progress& progress_;
     RunResult& result_;
+    Progress progress_;
     ProbeRecorder probes_;
     ErrorEstimator errors_;
     std::optional<SeriesFigures> figures_;
+    World& world_;             // the part of the world that this rank advances
     std::uint64_t steps_ = 0;  // number of steps since the run was started or resumed
+    double waiting_ = 0;       // wall time of the steps within calls of other ranks [s]
 };
 
 /// Moves the bodies to a static equilibrium. If there is none, the run ends with this status before its first step.
@@ -243,9 +262,9 @@ std::vector<BrokenTie> broken_ties(const ScenePlan& plan, World& world) {
 
 }  // namespace
 
-RunResult simulate(const RunOptions& asked) {
+RunResult simulate(const RunOptions& asked, RunRanks& ranks) {
     const Stopwatch loading;
-    RunOptions options = asked;
+    RunOptions options = ranks.options_for(asked);
     std::optional<Restart> restart;
     if (!options.restart.empty()) {
         restart = read_restart(options.restart, {options.overrides.backend, options.overrides.threads});
@@ -292,15 +311,15 @@ RunResult simulate(const RunOptions& asked) {
     if (const std::string note = stiff_note(plan, world, start.step_count, run_plan.longest_call()); !note.empty())
         result.notes.push_back(note);
     if (!options.quiet) print_lines("NOTE", result.notes);
-    RunOutputs outputs(options, scene, start, result);
+    ranks.compare_starts(world, options.scene, options.overrides.assignments);
+    std::optional<RunOutputs> outputs;
+    if (ranks.is_first()) outputs.emplace(options, scene, start, result);
     CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(run_plan.seconds / 10), world.time());
 
     result.seconds_setup = setting_up.seconds();
-    {
-        Progress progress(!options.quiet, run_plan.seconds, start.step_count, run_plan.longest_step(world),
-                          world.time());
-        FrameLoop(scene, options, run_plan, std::move(memory), outputs, checkpoints, progress, result).run();
-    }
+    FrameLoop(scene, ranks, options, run_plan, std::move(memory), outputs ? &*outputs : nullptr, checkpoints, result)
+        .run();
+    if (!outputs) return result;
 
     result.report = world.report();
     result.thin_parts = thin_parts(plan, world, result.errors);
@@ -314,13 +333,15 @@ RunResult simulate(const RunOptions& asked) {
     result.state_hash = world.state_hash();
     result.seconds_simulated = world.time();
     result.stopped_by = caught_signal;
-    outputs.finish(world);
+    outputs->finish(world);
     if (checkpoints.written() > 0) result.written.push_back(checkpoints.summary());
     return result;
 }
 
-int run(const RunOptions& options) {
-    const RunResult result = simulate(options);
+namespace {
+
+/// Prints the result of a run, and returns the exit code.
+int conclude(const RunResult& result, const RunOptions& options) {
     const std::vector<std::string> warnings = warnings_of(result);
     if (options.quiet)
         for (const std::string& warning : warnings) std::cerr << "skerry: WARNING: " << warning << "\n";
@@ -331,6 +352,18 @@ int run(const RunOptions& options) {
     if (!result.outputs_failed.empty()) return exit_output;
     if (result.distrusted) return exit_untrusted;
     return result.status == "ok" && (warnings.empty() || !options.strict) ? exit_ok : exit_failed;
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+    RunRanks ranks = RunRanks::join();
+    try {
+        const RunResult result = simulate(options, ranks);
+        return ranks.last_code(ranks.is_first() ? conclude(result, options) : exit_ok);
+    } catch (const std::exception& error) {
+        return ranks.fail(error);
+    }
 }
 
 }  // namespace skerry

@@ -10,6 +10,7 @@
 #include "engine/output/writer.h"
 #include "engine/program/commands.h"
 #include "engine/program/probe_recorder.h"
+#include "engine/program/ranks/run_ranks.h"
 #include "skerry/estimate.h"
 #include "skerry/scene.h"
 
@@ -30,7 +31,8 @@ struct RunResult {
     bool distrusted = false;    // true if the run reached its end, but WorldReport::distrust() is not empty
     int stopped_by = 0;         // signal that stopped the run; 0 if there was none
     Settings settings;
-    int threads = 0;  // number of threads that the run used
+    int threads = 0;  // number of threads that the run used, of each rank
+    RanksReport ranks;
     double seconds_simulated = 0;
     double seconds_wall = 0;    // wall time of the steps, without outputs [s]
     double seconds_load = 0;    // wall time for reading the scene and its meshes [s]
@@ -59,8 +61,9 @@ struct RunResult {
     std::vector<std::string> written;                    // description of each written output
 };
 
-/// Simulates a scene and writes the requested outputs. Throws SceneError if the scene or an option is invalid.
-RunResult simulate(const RunOptions& options);
+/// Simulates a scene and writes the requested outputs. Throws SceneError if the scene or an option is invalid. With
+/// several ranks all of them call this function. The result is complete on rank 0.
+RunResult simulate(const RunOptions& options, RunRanks& ranks);
 
 /// Returns the reasons not to rely on the run, one sentence each, with a remedy. Returns nothing if all error estimates
 /// are small.

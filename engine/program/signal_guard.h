@@ -1,11 +1,17 @@
 // Ends a run at a signal, between two steps.
 #pragma once
 
+#include <unistd.h>
+
+#include <atomic>
 #include <csignal>
+#include <cstring>
 
 namespace skerry {
 
 inline volatile std::sig_atomic_t caught_signal = 0;
+// text that a signal writes to standard error at once; null: none
+inline std::atomic<const char*> signal_note = nullptr;
 
 /// Handles signals during a run. The first SIGINT or SIGTERM ends the run between two steps, and the second kills the
 /// process. SIGXFSZ is ignored, so that exceeding the file size limit becomes an ordinary write error.
@@ -13,7 +19,11 @@ class SignalGuard {
 public:
     SignalGuard() {
         struct sigaction action = {};
-        action.sa_handler = [](int number) { caught_signal = number; };
+        action.sa_handler = [](int number) {
+            caught_signal = number;
+            const char* const note = signal_note;
+            if (note != nullptr && ::write(STDERR_FILENO, note, std::strlen(note)) < 0) signal_note = nullptr;
+        };
         action.sa_flags = static_cast<int>(SA_RESETHAND);
         sigaction(SIGINT, &action, &old_interrupt_);
         sigaction(SIGTERM, &action, &old_terminate_);

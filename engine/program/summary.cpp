@@ -35,6 +35,7 @@ std::string time_text(const RunResult& result) {
     constexpr double least = 1e-3;  // a shorter computing time for output is not mentioned [s]
     return with_unit(result.seconds_wall, "s") + " for the steps on " +
            count_of(static_cast<std::size_t>(result.threads), "thread", "threads") +
+           (result.ranks.count > 1 ? " of each rank" : "") +
            (result.seconds_output < least ? "" : ", " + with_unit(result.seconds_output, "s") + " for output");
 }
 
@@ -151,6 +152,18 @@ std::string warning_lines(const RunResult& result) {
     return summary_line("warnings", result.status == "ok" ? "none" : "none for the simulated part of the run");
 }
 
+/// Line about the processes that shared the run. Empty for a single one.
+std::string ranks_line(const RanksReport& ranks) {
+    if (ranks.count == 1) return {};
+    return summary_line("ranks", count_of(static_cast<std::size_t>(ranks.count), "rank", "ranks") + " on " +
+                                     count_of(static_cast<std::size_t>(ranks.hosts), "host", "hosts") + "; " +
+                                     short_number(ranks.messages) + " messages with " + short_number(ranks.bytes) +
+                                     " bytes and " + short_number(ranks.reductions) +
+                                     " reductions in a step on average; waiting takes " + percent(ranks.waiting) +
+                                     " of the time, and the busiest rank computes " + short_number(ranks.imbalance) +
+                                     " times as long as the mean");
+}
+
 /// Lines with statistics of the steps. Empty if no step was made.
 std::string step_lines(const RunResult& result) {
     const WorldReport& r = result.report;
@@ -159,9 +172,9 @@ std::string step_lines(const RunResult& result) {
     return summary_line("steps", grouped(r.steps) + " of " +
                                      with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
                                      " on average") +
-           summary_line("time", time_text(result)) + summary_line("contacts", contacts_text(result)) +
-           summary_line("penetration", penetration_text(result)) + summary_line("balance", balance_text(r)) +
-           (errors.empty() ? "" : summary_line("errors", errors));
+           summary_line("time", time_text(result)) + ranks_line(result.ranks) +
+           summary_line("contacts", contacts_text(result)) + summary_line("penetration", penetration_text(result)) +
+           summary_line("balance", balance_text(r)) + (errors.empty() ? "" : summary_line("errors", errors));
 }
 
 std::string file_lines(const RunResult& result) {

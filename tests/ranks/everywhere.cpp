@@ -34,7 +34,8 @@ void hold_everywhere(World& world, Ranks& ranks) {
         mine.place.push_back(static_cast<Index>(b));
     }
     // no rank needs to search for other bodies
-    mine.travel_limit.assign(bodies.slot.size(), infinity);
+    mine.margin.assign(bodies.slot.size(), infinity);
+    mine.moved.assign(bodies.slot.size(), 0);
     mine.whole.searched_step = std::numeric_limits<std::uint64_t>::max() / 2;
     note_ghosts(state);
     list_step_again(state);

@@ -2,12 +2,17 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/world/world_state.h"
+#include "skerry/ranks.h"
 #include "tests/ranks/everywhere.h"
 #include "tests/ranks/rank_scenes.h"
+#include "tests/ranks/thread_ranks.h"
 #include "tests/support/draws.h"
 
 namespace skerry::test {
@@ -23,17 +28,29 @@ RankScene own_scene(const std::string& name) {
 /// Number of ranks, threads of each rank, and division of the bodies.
 struct Division {
     int ranks, threads;
+    std::string owners;
     std::function<void(World&, Ranks&)> divide;
 };
 
-/// Divisions of which each run of the tests takes a part, and all if the tests run in full. `turn`: number of the
-/// scene, so that each scene takes other ones.
+Division division_by(OwnerMap map, int ranks, int threads) {
+    return {ranks, threads, std::string(name_of(map)), [map](World& world, Ranks& mine) {
+                distribute(world, mine, {.map = map});
+            }};
+}
+
+/// Divisions of which each run of the tests takes one for each scene, and all if the tests run in full. `turn`: number
+/// of the scene, so that each scene takes another one.
 std::vector<Division> divisions(std::size_t turn) {
     std::vector<Division> all;
-    for (const int ranks : {2, 3, 4, 8, 1})
-        for (const int threads : {1, 2}) all.push_back({ranks, threads, hold_everywhere});
+    for (const int threads : {1, 2})
+        for (const int ranks : {3, 2, 4, 8, 1}) {
+            all.push_back({ranks, threads, "everywhere", hold_everywhere});
+            for (const OwnerMap map : {OwnerMap::curve, OwnerMap::round_robin, OwnerMap::random})
+                all.push_back(division_by(map, ranks, threads));
+        }
     if (full_tests()) return all;
-    return {all[turn % all.size()]};
+    constexpr std::size_t stride = 7;  // so that neighbouring turns differ in both the owners and the number of ranks
+    return {all[(1 + stride * turn) % all.size()]};
 }
 
 TEST_CASE("a run on ranks that differs is reported with the step, the body and the column", "[ranks]") {
@@ -70,8 +87,10 @@ TEST_CASE("a scene has the same bits on any number of ranks as without ranks", "
          {"pile", "shots", "sleep", "stiff", "linked", "surfaces", "refused", "one_region", "constraints"}) {
         const RankScene scene = own_scene(name);
         const WholeRun whole = run_whole(scene);
-        for (const Division& division : divisions(turn++))
+        for (const Division& division : divisions(turn++)) {
+            INFO("owners: " << division.owners);
             CHECK(run_on_ranks_differs(scene, whole, division.ranks, division.threads, division.divide) == "");
+        }
     }
 }
 
@@ -86,8 +105,64 @@ TEST_CASE("random scenes have the same bits on three ranks as without ranks", "[
             continue;
         }
         ++built;
-        CHECK(run_on_ranks_differs(*scene, run_whole(*scene), 3, 1, hold_everywhere) == "");
+        const Division division = division_by(seed % 2 == 0 ? OwnerMap::random : OwnerMap::curve, 3, 1);
+        CHECK(run_on_ranks_differs(*scene, run_whole(*scene), division.ranks, division.threads, division.divide) == "");
     }
+}
+
+/// Bytes that a rank sends in a step by the model of docs/scaling.md, for explicit bodies in a step with these contacts.
+double modelled_bytes(const WorldState& state) {
+    constexpr double prediction = 24, label = 20, result = 56, row = 400;  // of a node, and of a contact
+    constexpr double nodes_in_body = 2;                                    // of a contact
+    const BodyTable& bodies = state.model.bodies;
+    const RankState& ranks = state.ranks;
+    const auto copies = [&](Index body) {
+        return static_cast<double>(ranks.holders[static_cast<std::size_t>(body)].size());
+    };
+    double bytes = 0;
+    for (std::size_t b = 0; b < bodies.slot.size(); ++b)
+        if (ranks.leads[b]) bytes += prediction * bodies.nodes[b].size() * copies(static_cast<Index>(b));
+    const ContactTable& contacts = state.scratch.contacts;
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+        const Index first = contacts.first_body[c], second = contacts.second_body[c];
+        bytes += nodes_in_body * (label + result) * (copies(first) + (second == no_index ? 0 : copies(second)));
+        // One half of the contacts that cross ranks is found by the rank that does not solve them.
+        if (second != no_index && ranks.owner[first] != ranks.owner[second]) bytes += row / 2;
+    }
+    return bytes;
+}
+
+TEST_CASE("messages and bytes of a step follow the model, and no step has more than six round trips", "[ranks]") {
+    const RankScene scene = own_scene("pile");
+    std::mutex mutex;
+    double modelled = 0, sent = 0;
+    for (const OwnerMap map : {OwnerMap::curve, OwnerMap::round_robin})
+        run_on_ranks(3, [&](Ranks& ranks) {
+            World world = scene.make(1);
+            distribute(world, ranks, {.map = map});
+            world.advance(scene.seconds / 2);
+            const RankTraffic before = ranks.traffic();
+            double bytes = 0, peers = 0;
+            world.watch_steps([&](const StepReport&) {
+                const WorldState& state = WorldAccess::state_of(std::as_const(world));
+                bytes += modelled_bytes(state);
+                peers += static_cast<double>(state.ranks.peers.size());
+            });
+            const StepReport report = world.advance(scene.seconds / 2);
+            const RankTraffic after = ranks.traffic();
+            const std::scoped_lock lock(mutex);
+            modelled += bytes;
+            sent += static_cast<double>(after.bytes - before.bytes);
+            const double exchanges = static_cast<double>(after.exchanges - before.exchanges),
+                         waits = exchanges + static_cast<double>(after.reductions - before.reductions) +
+                                 static_cast<double>(after.collectives - before.collectives);
+            CAPTURE(report.steps, report.retried, exchanges, waits);
+            CHECK(waits < 6.5 * report.steps);  // rare messages, such as those of new copies, are the rest
+            CHECK(static_cast<double>(after.messages - before.messages) < 5.5 * peers);
+        });
+    CAPTURE(modelled, sent);
+    CHECK(sent < 1.5 * modelled);
+    CHECK(sent > modelled / 1.5);
 }
 
 }  // namespace rank_scenes_test

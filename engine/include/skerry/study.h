@@ -137,6 +137,7 @@ struct CheapestSettings {
     std::vector<std::string> assignments{};  // for `skerry run --set`; filled in by study()
 };
 
+/// Error bars of the quantities of a scene, and the runs that they come from.
 struct StudyResult {
     std::string scene;           // name of the scene
     std::vector<StudyRun> runs;  // the first is the scene as it is
@@ -158,6 +159,7 @@ struct StudyProgress {
     double share = 0;  // share of the predicted CPU time that is done, from 0 to 1
 };
 
+/// Extent of a study, and its stopping.
 struct StudySettings {
     double error = 0.01;                // wanted relative error, for the choice of the cheapest settings, > 0
     std::vector<std::string> probes{};  // names NAME or NAME.QUANTITY of the probes; empty: all and the default ones

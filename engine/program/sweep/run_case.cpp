@@ -27,7 +27,8 @@ int run_to_file(const CaseJob& job) {
     CaseResult result;
     Json report;
     try {
-        const RunResult run = simulate(options_of(job));
+        RunRanks alone;
+        const RunResult run = simulate(options_of(job), alone);
         if (run.stopped_by != 0) return exit_signal + run.stopped_by;
         if (!run.outputs_failed.empty()) return exit_output;
         result = result_of(run, cpu_seconds());

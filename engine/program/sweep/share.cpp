@@ -52,29 +52,6 @@ void require_within(const Share& share, const std::string& who) {
                      "a rank from 0 to " + std::to_string(share.of - 1), by_hand);
 }
 
-/// Returns the share from the rank of this process among the tasks of one job. The launchers are sorted from the
-/// innermost to the outermost, because an outer launcher may have started an inner one.
-Share task_share(const Variables& variables) {
-    struct Launcher {
-        const char *rank, *of;
-    };
-    constexpr Launcher launchers[] = {
-        {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, {"PMI_RANK", "PMI_SIZE"}, {"SLURM_PROCID", "SLURM_NTASKS"}};
-    for (const Launcher& launcher : launchers) {
-        const bool slurm = std::strcmp(launcher.rank, "SLURM_PROCID") == 0;
-        // A batch script started by sbatch is not a task: it has rank 0, and SLURM_NTASKS is only the number of
-        // possible tasks.
-        if (slurm && variables.has("SLURM_JOB_ID") && !variables.has("SLURM_STEP_ID")) continue;
-        const char* const count = slurm && variables.has("SLURM_STEP_NUM_TASKS") ? "SLURM_STEP_NUM_TASKS" : launcher.of;
-        const std::optional<int> rank = variables.number(launcher.rank), of = variables.number(count);
-        if (!rank || !of) continue;
-        const Share share{*rank, *of, std::string(launcher.rank) + ", " + count, 1};
-        require_within(share, share.said_by);
-        return share;
-    }
-    return {};
-}
-
 /// Returns the share from the rank of this process among the jobs of a SLURM array. The job numbers of an array may
 /// start with any number and have a constant stride.
 Share array_share(const Variables& variables) {
@@ -96,6 +73,32 @@ Share array_share(const Variables& variables) {
 
 }  // namespace
 
+Share task_share(const Environment& environment) {
+    const Variables variables(environment);
+    // The launchers are sorted from the innermost to the outermost, because an outer launcher may have started an inner
+    // one.
+    struct Launcher {
+        const char *rank, *of;
+    };
+    constexpr Launcher launchers[] = {
+        {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, {"PMI_RANK", "PMI_SIZE"}, {"SLURM_PROCID", "SLURM_NTASKS"}};
+    std::optional<int> cores = variables.number("SLURM_CPUS_PER_TASK");
+    if (cores == 0) cores.reset();
+    for (const Launcher& launcher : launchers) {
+        const bool slurm = std::strcmp(launcher.rank, "SLURM_PROCID") == 0;
+        // A batch script started by sbatch is not a task: it has rank 0, and SLURM_NTASKS is only the number of
+        // possible tasks.
+        if (slurm && variables.has("SLURM_JOB_ID") && !variables.has("SLURM_STEP_ID")) continue;
+        const char* const count = slurm && variables.has("SLURM_STEP_NUM_TASKS") ? "SLURM_STEP_NUM_TASKS" : launcher.of;
+        const std::optional<int> rank = variables.number(launcher.rank), of = variables.number(count);
+        if (!rank || !of) continue;
+        const Share share{*rank, *of, std::string(launcher.rank) + ", " + count, cores.value_or(1)};
+        require_within(share, share.said_by);
+        return share;
+    }
+    return {0, 1, {}, cores};
+}
+
 Share share_of(std::optional<int> rank, std::optional<int> of, const Environment& environment) {
     const Variables variables(environment);
     Share share;
@@ -107,13 +110,11 @@ Share share_of(std::optional<int> rank, std::optional<int> of, const Environment
         require_within(share, "command line");
         return share;
     }
-    const Share array = array_share(variables), task = task_share(variables);
+    const Share array = array_share(variables), task = task_share(environment);
     share.rank = array.rank * task.of + task.rank;
     share.of = array.of * task.of;
     share.said_by = array.said_by + (array.said_by.empty() || task.said_by.empty() ? "" : "; ") + task.said_by;
     share.cores = task.cores;
-    if (const std::optional<int> cores = variables.number("SLURM_CPUS_PER_TASK"); cores && *cores > 0)
-        share.cores = cores;
     return share;
 }
 

@@ -22,13 +22,15 @@ struct Share {
 /// Function that returns the value of an environment variable, or null if the variable is not set.
 using Environment = std::function<const char*(const char*)>;
 
+/// Returns the rank of this process among the tasks that mpirun (Open MPI, or the PMI of MPICH and Intel MPI) or srun
+/// has started. A batch script of SLURM is one process, regardless of the number of tasks that it may start.
+Share task_share(const Environment& environment);
+
 /// Returns the share of this process.
 /// - If `rank` and `of` are given, these define the share.
-/// - Otherwise the share combines the position in a SLURM array with the rank among the tasks that mpirun (Open MPI, or
-/// the PMI of MPICH and Intel MPI) or srun has started.
+/// - Otherwise the share combines the position in a SLURM array with task_share().
 ///
-/// A batch script of SLURM is one process, regardless of the number of tasks that it may start. Throws SceneError for
-/// values that are not numbers or are inconsistent.
+/// Throws SceneError for values that are not numbers or are inconsistent.
 Share share_of(std::optional<int> rank, std::optional<int> of, const Environment& environment);
 
 }  // namespace skerry

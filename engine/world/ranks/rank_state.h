@@ -106,9 +106,9 @@ struct RankState {
     std::vector<std::vector<int>> holders;
     // For each row of BodyTable: place of the body, its row in the undivided world. The places ascend.
     Column<Index> place;
-    // For each row of BodyTable: SearchMemory::body_travel_bound at which the body leaves the box that was used to find
-    // its holders [m].
-    Column<Real> travel_limit;
+    // For each row of BodyTable: distance by which the body may move before its holders must be found again; infinite
+    // for ghosts. `moved`: bound of the distance by which it has moved since they were found [m].
+    Column<Real> margin, moved;
     WholeWorld whole;  // empty if `ranks` is null
     // For each place: number of pieces of the stable-step checks of all bodies before it (count_pieces).
     Column<std::uint64_t> pieces_before;

@@ -89,6 +89,7 @@ void build_step(WorldState& w) {
     of_models<&MotionModel::integrate>(w, g);
     g.begin_phase("Remember for the next step");
     measure_travel(w, g);
+    list_ghost_paths(w, g);
     put_to_rest(w, g);
     keep_forces(w, g);
     of_laws<&ConstraintLaw::remember>(w, g);

@@ -1,0 +1,249 @@
+#include "engine/program/ranks/run_ranks.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "components/hash.h"
+#include "engine/output/number_text.h"
+#include "engine/program/commands.h"
+#include "engine/program/signal_guard.h"
+#include "engine/program/sweep/share.h"
+#include "engine/scene/case_hash.h"
+#include "jobs/ranks/mpi_ranks.h"
+#include "skerry/error.h"
+#include "skerry/instruction_set.h"
+
+namespace skerry {
+
+namespace {
+
+/// Error that all ranks know, so that rank 0 alone reports it.
+struct AgreedError : std::runtime_error {
+    AgreedError(const std::string& text, int exit_code) : std::runtime_error(text), code(exit_code) {}
+    int code;
+};
+
+std::string host_name() {
+    std::array<char, 256> name{};
+    gethostname(name.data(), name.size() - 1);
+    return name.data();
+}
+
+std::string rank_name(std::size_t rank, const std::string& host) {
+    return "rank " + std::to_string(rank) + " on " + host;
+}
+
+int code_of(const std::exception& error) {
+    return dynamic_cast<const SceneError*>(&error) != nullptr ? exit_bad_input : exit_failed;
+}
+
+std::string file_content(const char* file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string hash_of_text(const std::string& text) {
+    Hash hash;
+    hash.add(text.data(), text.size());
+    return hash_text(hash.value());
+}
+
+std::string command_line() {
+    std::string text = file_content("/proc/self/cmdline");  // each argument ends with a zero
+    std::ranges::replace(text, '\0', ' ');
+    return text;
+}
+
+std::vector<Json> gather_everywhere(Ranks& ranks, const Json& mine) {
+    const std::string text = mine.dump();
+    std::vector<Json> all;
+    for (const RankMessage& message : ranks.gather_everywhere(std::as_bytes(std::span(text)))) {
+        const char* const begin = reinterpret_cast<const char*>(message.data());
+        all.push_back(Json::parse(begin, begin + message.size()));
+    }
+    return all;
+}
+
+void take_larger(std::byte* into, const std::byte* from) {
+    int a = 0, b = 0;
+    std::memcpy(&a, into, sizeof a);
+    std::memcpy(&b, from, sizeof b);
+    a = std::max(a, b);
+    std::memcpy(into, &a, sizeof a);
+}
+
+}  // namespace
+
+RunRanks RunRanks::join() {
+    const Share tasks = task_share(std::getenv);
+    if (tasks.of == 1) return {};
+    std::unique_ptr<Ranks> ranks = start_mpi();
+    if (ranks->size() != tasks.of)
+        Complaint{.file = {},
+                  .object = tasks.said_by,
+                  .field = {},
+                  .found = std::to_string(tasks.of) + " processes, of which MPI has connected " +
+                           std::to_string(ranks->size()),
+                  .expected = "connections between all of them",
+                  .hint = "use the launcher of the MPI library that Skerry was built with; for srun try --mpi=pmix"}
+            .raise();
+    return RunRanks(std::move(ranks));
+}
+
+void RunRanks::agree(const Json& mine) const {
+    const std::vector<Json> all = gather_everywhere(*ranks_, mine);
+    const auto failed = [](const Json& rank) { return rank.contains("error"); };
+    const auto first = std::ranges::find_if(all, failed);
+    if (first != all.end()) {
+        const std::string text = first->at("error");
+        const bool is_alike = std::ranges::all_of(
+            all, [&](const Json& rank) { return failed(rank) && rank["error"] == first->at("error"); });
+        const std::string who = rank_name(static_cast<std::size_t>(first - all.begin()), first->at("host"));
+        throw AgreedError(is_alike ? text : who + ": " + text, first->at("code"));
+    }
+    for (std::size_t r = 1; r < all.size(); ++r)
+        for (const auto& [fact, expected] : all[0].at("alike").items())
+            if (const Json& found = all[r].at("alike").at(fact); found != expected)
+                throw AgreedError(Complaint{.file = {},
+                                            .object = rank_name(r, all[r].at("host")),
+                                            .field = fact,
+                                            .found = found,
+                                            .expected = expected.get<std::string>() + " as " +
+                                                        rank_name(0, all[0].at("host")) + " has",
+                                            .hint = "all ranks need the same program, options, files and instruction "
+                                                    "set; SKERRY_INSTRUCTION_SET chooses one that all hosts have"}
+                                      .text(),
+                                  exit_bad_input);
+}
+
+void RunRanks::compare_starts(const World& world, const std::filesystem::path& scene,
+                              std::span<const std::string> assignments) {
+    if (!several()) return;
+    agree({{"host", host_name()},
+           {"alike",
+            {{"program", SKERRY_VERSION " with the hash " + hash_of_text(file_content("/proc/self/exe"))},
+             {"command line", command_line()},
+             {"instruction set", instruction_set()},
+             {"hash of the scene and its files", CaseHasher(scene).hash(assignments)},
+             {"hash of all bodies at the start", hash_text(world.state_hash())}}}});
+}
+
+RunOptions RunRanks::options_for(const RunOptions& asked) const {
+    RunOptions options = asked;
+    if (!several()) return options;
+    for (const char* option : {"--trace", "--export-problems"})
+        if (const auto output = asked.outputs.find(option); output != asked.outputs.end() && !output->second.empty())
+            Complaint{.file = {},
+                      .object = option,
+                      .field = {},
+                      .found = std::to_string(ranks_->size()) + " ranks",
+                      .expected = "one process, because this output shows the steps of one process only",
+                      .hint = {}}
+                .raise();
+    if (!options.overrides.threads) options.overrides.threads = task_share(std::getenv).cores;
+    if (!is_first()) options.quiet = true;
+    return options;
+}
+
+World& RunRanks::divide(Scene& scene, OwnerMap owners) {
+    scene_ = &scene;
+    if (!several()) return scene.world;
+    part_.emplace(std::move(scene.world));
+    distribute(*part_, *ranks_, {.map = owners});
+    agree({{"alike", Json::object()}});
+    divided_ = true;
+    return *part_;
+}
+
+World* RunRanks::whole() {
+    if (several() && !is_gathered_) {
+        std::optional<World> world = gathered(*part_);
+        if (world) scene_->world = std::move(*world);
+        is_gathered_ = true;
+    }
+    return is_first() ? &scene_->world : nullptr;
+}
+
+bool RunRanks::any(bool mine) const {
+    return last_code(mine ? 1 : 0) != 0;
+}
+
+RanksReport RunRanks::report(double wall, double waiting, std::uint64_t steps) const {
+    if (!several() || steps == 0) return {};
+    const RankTraffic& traffic = ranks_->traffic();
+    const std::vector<Json> all = gather_everywhere(*ranks_, {{"host", host_name()},
+                                                              {"messages", traffic.messages},
+                                                              {"bytes", traffic.bytes},
+                                                              {"wall", wall},
+                                                              {"waiting", waiting}});
+    const auto count = static_cast<double>(steps);
+    RanksReport report{.count = ranks_->size(), .reductions = static_cast<double>(traffic.reductions) / count};
+    std::set<std::string> hosts;
+    double longest = 0, sum = 0;
+    for (const Json& rank : all) {
+        hosts.insert(rank["host"]);
+        report.messages += rank["messages"].get<double>() / count;
+        report.bytes += rank["bytes"].get<double>() / count;
+        const double waited = rank["waiting"], computed = rank["wall"].get<double>() - waited;
+        if (computed + waited > 0) report.waiting += waited / (computed + waited) / report.count;
+        longest = std::max(longest, computed);
+        sum += computed;
+    }
+    report.hosts = static_cast<int>(hosts.size());
+    if (sum > 0) report.imbalance = longest * report.count / sum;
+    return report;
+}
+
+void RunRanks::set_last_words(std::string text) {
+    if (!several() || !is_first()) return;
+    std::swap(last_words_[0], last_words_[1]);
+    last_words_[0] = std::move(text);
+    signal_note = last_words_[0].c_str();
+}
+
+int RunRanks::fail(const std::exception& error) {
+    const auto* agreed = dynamic_cast<const AgreedError*>(&error);
+    if (!several() || agreed != nullptr) {
+        if (is_first()) std::cerr << "skerry: " << error.what() << std::endl;
+        return agreed != nullptr ? agreed->code : code_of(error);
+    }
+    if (divided_)
+        ranks_->abort("skerry: " + rank_name(static_cast<std::size_t>(ranks_->rank()), host_name()) + ": " +
+                          error.what() + "\n" + last_words_[0],
+                      exit_failed);
+    try {
+        agree({{"host", host_name()}, {"error", error.what()}, {"code", code_of(error)}});
+    } catch (const AgreedError& known) {
+        return fail(known);
+    }
+    return exit_failed;
+}
+
+int RunRanks::last_code(int mine) const {
+    if (several()) reduce(*ranks_, mine, take_larger);
+    return mine;
+}
+
+bool is_one_process(const std::string& command) {
+    const Share tasks = task_share(std::getenv);
+    if (tasks.of > 1 && tasks.rank == 0)
+        Complaint{.file = {},
+                  .object = tasks.said_by,
+                  .field = {},
+                  .found = std::to_string(tasks.of) + " processes of `skerry " + command + "`",
+                  .expected = "one process",
+                  .hint = "only `skerry run` and `skerry sweep` share their work among processes"}
+            .raise();
+    return tasks.of == 1;
+}
+
+}  // namespace skerry
