@@ -5,11 +5,16 @@
 // its steps alone. The engines run in turn, round after round. A pile is chaotic, so results are compared by the height
 // of the centre of mass and the speed at the end, by overlaps, and by inverted tetrahedra.
 #include <CLI/CLI.hpp>
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "profiling/measure.h"
 #include "profiling/stiff_peers/measures.h"
