@@ -171,7 +171,7 @@ std::vector<Case> cases() {
          .body = colliding,
          .floor = true,
          .other = Vec3(0, 0, 0.05),
-         .within = 2},
+         .within = 3},
         {.name = "elastic, stopped by friction",
          .step = 2e-4,
          .frame = 0.01,
