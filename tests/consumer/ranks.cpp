@@ -1,4 +1,5 @@
 // Divides a world among the processes of an MPI program.
+#define OMPI_SKIP_MPICXX 1  // the C++ interface that MPI has removed needs another library
 #include <mpi.h>
 #include <skerry/mesh.h>
 #include <skerry/mpi.h>
