@@ -1,5 +1,5 @@
-// Runs the test cases of Ranks on MPI processes. It is started by mpirun. Arguments: the number of ranks, and `abort` if
-// the last rank shall abort while the others wait for it.
+// Runs the test cases of Ranks on MPI processes. It is started by mpirun. Arguments: the number of ranks, and `abort`
+// if the last rank shall abort while the others wait for it.
 #include <iostream>
 #include <stdexcept>
 #include <string>
