@@ -1,9 +1,8 @@
 // Facts about all bodies of a world that is divided among ranks. All ranks have the same facts, except for the records.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "engine/world/state/model.h"
