@@ -36,7 +36,7 @@ struct WholeWorld {
     // Row in the undivided world of each row that joins bodies: by table of Model::for_each_joining and handle slot.
     // The last list is that of the attachments.
     std::vector<std::vector<Index>> joining_place;
-    // By place: the ranks that hold the body, ascending.
+    // Ranks that hold the body at each place, ascending.
     std::vector<std::vector<int>> holders;
     std::vector<FetchedUnit> fetched;
     std::uint64_t searched_step = 0;  // number of steps of the run at the last rank search
