@@ -46,11 +46,11 @@ struct SetMember {
 
 /// Working memory of the sleep of bodies with several holders.
 struct RankSleep {
-    Column<std::uint8_t> asleep, pressed;  // by body
-    Column<Real> still_time;               // by body [s]
-    Column<Index> woken;                   // places of the bodies with several holders that this rank wakes
-    Column<SetMember> members;             // of the sets that this rank has found
-    // By place, and by set of one rank: a node of `joined`, or no_index
+    Column<std::uint8_t> asleep;  // by body
+    Column<Real> still_time;      // by body [s]
+    Column<Index> woken;          // places of the bodies with several holders that this rank wakes
+    Column<SetMember> members;    // of the sets that this rank has found
+    // for each place, and for each set of one rank: a node of `joined`, or no_index
     Column<Index> node_of_place, node_of_set;
     Column<std::uint8_t> restless;  // by node of `joined`
     UnionFind joined;               // sets of all ranks, joined where they share a body

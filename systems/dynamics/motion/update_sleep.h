@@ -187,7 +187,7 @@ struct TakenByRest {
 struct SleepMemory {
     bool any_ready = false;  // true if a body has been still long enough; otherwise there are no sets
     UnionFind touching;      // sets of bodies that touch each other
-    // By body: nonzero for the first body of a set if a body of the set must stay awake.
+    // for each body: nonzero for the first body of a set if a body of the set must stay awake
     Column<std::uint8_t> restless;
 };
 
