@@ -10,7 +10,6 @@
 
 #include "engine/world/world_state.h"
 #include "skerry/ranks.h"
-#include "tests/ranks/everywhere.h"
 #include "tests/ranks/rank_scenes.h"
 #include "tests/ranks/thread_ranks.h"
 #include "tests/support/draws.h"
@@ -43,11 +42,9 @@ Division division_by(OwnerMap map, int ranks, int threads) {
 std::vector<Division> divisions(std::size_t turn) {
     std::vector<Division> all;
     for (const int threads : {1, 2})
-        for (const int ranks : {3, 2, 4, 8, 1}) {
-            all.push_back({ranks, threads, "everywhere", hold_everywhere});
+        for (const int ranks : {3, 2, 4, 8, 1})
             for (const OwnerMap map : {OwnerMap::curve, OwnerMap::round_robin, OwnerMap::random})
                 all.push_back(division_by(map, ranks, threads));
-        }
     if (full_tests()) return all;
     constexpr std::size_t stride = 7;  // so that neighbouring turns differ in both the owners and the number of ranks
     return {all[(1 + stride * turn) % all.size()]};
@@ -81,7 +78,7 @@ TEST_CASE("the scenes for ranks have what they are for", "[ranks]") {
     CHECK(sleep.woken);
 }
 
-TEST_CASE("a scene has the same bits on any number of ranks as without ranks", "[.][ranks]") {
+TEST_CASE("a scene has the same bits on any number of ranks as without ranks", "[ranks][long]") {
     std::size_t turn = 0;
     for (const char* name :
          {"pile", "shots", "sleep", "stiff", "linked", "surfaces", "refused", "one_region", "constraints"}) {
@@ -94,7 +91,7 @@ TEST_CASE("a scene has the same bits on any number of ranks as without ranks", "
     }
 }
 
-TEST_CASE("random scenes have the same bits on three ranks as without ranks", "[.][ranks]") {
+TEST_CASE("random scenes have the same bits on three ranks as without ranks", "[ranks][slow]") {
     constexpr int steps = 2000, scenes = 200;
     int built = 0;
     for (std::uint64_t seed = 1; built < draws(scenes); ++seed) {
