@@ -205,7 +205,7 @@ void write_json(const std::string& file, const Roofline& roofline, const std::ve
 
 int main(int argc, char** argv) {
     CLI::App app{"Times the elastic kernels and compares them with the machine's bandwidth and flop rate."};
-    int threads = 1, cached_cells = 12, large_cells = 55, repeats = 15;
+    int threads = 1, cached_cells = 4, large_cells = 55, repeats = 15;
     std::string json;
     app.add_option("--threads", threads, "workers")->capture_default_str()->check(CLI::PositiveNumber);
     app.add_option("--json", json, "write the figures to this file");

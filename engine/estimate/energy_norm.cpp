@@ -27,7 +27,7 @@ EnergyNorm::EnergyNorm(const MaterialConstants& material, bool splits)
     const MaterialConstants volumetric = part_of(material, ElementPart::volume);
     const Real bulk = lambda + 2 * mu / 3, modulus = splits ? volumetric.lame_lambda : bulk;
     of_shear_ = 1 / std::sqrt(2 * mu);
-    of_volume_ = 1 / std::sqrt(modulus);
+    of_volume_ = modulus > 0 ? 1 / std::sqrt(modulus) : 0;  // without stiffness there is no volumetric stress
     pressure_ = modulus / (3 * bulk);
     if (!is_anisotropic_) return;
     Eigen::Matrix<Real, 6, 6> stiffness = Eigen::Matrix<Real, 6, 6>::Zero();

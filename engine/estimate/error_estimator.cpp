@@ -52,6 +52,7 @@ public:
             if (found == found_.end()) continue;
             body.mesh = found->second.mesh;
             body.deflection = found->second.deflection;
+            body.interpolation = found->second.interpolation;
             body.stress = found->second.stress;
             body.worst_tetrahedron = found->second.worst;
             body.time = found->second.time;
@@ -60,7 +61,7 @@ public:
 
 private:
     struct Found {
-        Real stored, mesh, deflection, stress;
+        Real stored, mesh, deflection, interpolation, stress;
         Index worst;
         Real time;
     };
@@ -71,6 +72,7 @@ private:
         found_[body] = {.stored = error.stored,
                         .mesh = error.mesh(),
                         .deflection = yields ? not_estimated : error.deflection(),
+                        .interpolation = error.interpolation,
                         .stress = error.stress,
                         .worst = static_cast<Index>(std::ranges::max_element(relative) - relative.begin()),
                         .time = time};

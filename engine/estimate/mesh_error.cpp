@@ -131,6 +131,7 @@ private:
         // recovered stress is scaled.
         if (mixed_ > 0) error_.missing = error_.stored * (error_.stored * recovered_ / (mixed_ * mixed_) - 1);
         find_peak(of_tetrahedra, recovered);
+        find_interpolation_error();
         find_errors_of_nodes();
     }
     std::size_t block_at(std::size_t place) const {
@@ -268,6 +269,21 @@ private:
             volume += error_.volume[t];
         }
         error_.stress = std::min<Real>(1, std::sqrt(squares / volume) / error_.largest_stress);
+    }
+
+    /// A displacement with the strain that is recovered at both ends of an edge of length L differs from the linear one
+    /// by up to L/8 times the difference of the strains.
+    void find_interpolation_error() {
+        Real squares = 0;
+        for (std::size_t t = 0; t < record_.tetrahedra.size(); ++t)
+            for (std::size_t i = 0; i < 4; ++i)
+                for (std::size_t j = 0; j < i; ++j) {
+                    const auto a = static_cast<std::size_t>(record_.tetrahedra[t][i]);
+                    const auto b = static_cast<std::size_t>(record_.tetrahedra[t][j]);
+                    const Mat3 difference = error_.nodes.strain[a] - error_.nodes.strain[b];
+                    squares += error_.volume[t] / 6 * (rest_[a] - rest_[b]).squaredNorm() * difference.squaredNorm();
+                }
+        error_.interpolation = std::sqrt(squares / sum(error_.volume)) / 8;
     }
 
     void find_errors_of_nodes() {

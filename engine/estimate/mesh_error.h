@@ -17,6 +17,8 @@ struct MeshError {
     Real stored = 0;  // energy of the elements [J]
     // Energy that the body would store in addition under the same loads, if its mesh were infinitely fine [J].
     Real missing = 0;
+    // Root mean square of the error of linear interpolation of the displacements along the edges [m].
+    Real interpolation = 0;
     // Largest von Mises stress at the nodes [Pa], and its relative error.
     Real largest_stress = 0, stress = 0;
     NodeFields nodes;            // recovered fields, in world axes

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -50,13 +51,16 @@ bool on_from(const std::string& field, const CommandJson& value) {
     return value.get<bool>();
 }
 
-bool stresses_from(const std::string& field, const CommandJson& value) {
-    const auto is_known = [](const CommandJson& name) {
-        return name == "speed" || name == "stress" || name == "strain" || name == "error";
-    };
-    if (!value.is_array() || !std::ranges::all_of(value, is_known))
+FrameContent content_from(const std::string& field, const CommandJson& value) {
+    static const std::map<CommandJson, FrameContent> known{{"speed", FrameContent::motion},
+                                                           {"stress", FrameContent::node_fields},
+                                                           {"strain", FrameContent::node_fields},
+                                                           {"error", FrameContent::mesh_error}};
+    FrameContent content = FrameContent::motion;
+    if (!value.is_array() || !std::ranges::all_of(value, [](const auto& name) { return known.contains(name); }))
         refuse_value(field, value, "a list of speed, stress, strain and error");
-    return std::ranges::any_of(value, [](const CommandJson& name) { return name != "speed"; });
+    for (const CommandJson& name : value) content = std::max(content, known.at(name));
+    return content;
 }
 
 /// A member of a command, and the function that reads it.
@@ -75,7 +79,7 @@ void read_to(const std::string& field, const CommandJson& value, LiveCommand& co
 std::vector<CommandMember> members_of(LiveAction action) {
     constexpr CommandMember number{"number", read_to<&LiveCommand::number, count_from>},
         value{"value", read_to<&LiveCommand::value, number_from>}, on{"on", read_to<&LiveCommand::on, on_from>},
-        names{"names", read_to<&LiveCommand::stresses, stresses_from>},
+        names{"names", read_to<&LiveCommand::content, content_from>},
         body{"body", read_to<&LiveCommand::body_number, count_from>},
         point{"point", read_to<&LiveCommand::point, point_from>}, to{"to", read_to<&LiveCommand::to, point_from>};
     switch (action) {

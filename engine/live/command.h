@@ -7,13 +7,14 @@
 #include <utility>
 
 #include "components/options.h"
+#include "engine/output/collect_frame.h"
 #include "skerry/world.h"
 
 namespace skerry {
 
 enum class LiveAction {
     seen,     // the browser has drawn the frame `number` and all before it
-    fields,   // the browser shows stress, strain or the mesh error, or none of them
+    fields,   // the browser shows the fields `names`
     play,     // go on
     pause,    // stop
     step,     // advance by one step, then pause
@@ -50,7 +51,7 @@ struct LiveCommand {
     std::uint64_t number = 0;  // of a frame, or of a slider from 0
     Real value = 0;
     bool on = false;
-    bool stresses = false;                         // true if `names` contains a field other than speed
+    FrameContent content = FrameContent::motion;   // content of frames with the fields `names`
     std::uint64_t body_number = 0;                 // in the stream of the browser
     BodyHandle body{};                             // the body with this number
     Vec3 point = Vec3::Zero(), to = Vec3::Zero();  // [m]

@@ -76,7 +76,7 @@ void LiveHub::receive(std::uint64_t number, std::string_view text) {
     if (problem.empty() && command.action == LiveAction::seen) {
         if (command.number <= client->sent) client->seen = std::max(client->seen, command.number);
     } else if (problem.empty() && command.action == LiveAction::fields) {
-        client->stresses = command.stresses;
+        client->content = command.content;
         client->version = 0;  // the present state is shown again, with the values that it now wants
     } else if (problem.empty()) {
         if (command.action == LiveAction::pull) {
@@ -155,7 +155,7 @@ LiveHub::Wish LiveHub::wish() {
             continue;
         }
         wish.frame = true;
-        wish.stresses |= client.stresses;
+        wish.content = std::max(wish.content, client.content);
     }
     return wish;
 }

@@ -72,8 +72,8 @@ public:
     void mark_changed();
 
     struct Wish {
-        bool frame = false;     // a browser waits for a frame
-        bool stresses = false;  // it shows stress, strain or the mesh error
+        bool frame = false;                           // a browser waits for a frame
+        FrameContent content = FrameContent::motion;  // fields that it shows
     };
     /// Counts a missed frame for each browser that is busy with earlier frames.
     Wish wish();
@@ -96,15 +96,15 @@ private:
     struct Client {
         std::uint64_t number = 0;
         LiveLink* link = nullptr;
-        bool closed = false;               // its thread ends
-        bool stresses = false;             // it shows stress, strain or the mesh error
-        bool pulls = false;                // its last pull has not been released
-        std::deque<std::string> texts;     // messages that wait for its thread
-        std::uint64_t run = 0;             // run that it shows
-        std::uint64_t snapshot = 0;        // number of the last snapshot that it got
-        std::uint64_t version = 0;         // version of that snapshot
-        std::uint64_t sent = 0, seen = 0;  // numbers of frames
-        std::vector<BodyHandle> bodies;    // by number in its stream
+        bool closed = false;                          // its thread ends
+        FrameContent content = FrameContent::motion;  // fields that it shows
+        bool pulls = false;                           // its last pull has not been released
+        std::deque<std::string> texts;                // messages that wait for its thread
+        std::uint64_t run = 0;                        // run that it shows
+        std::uint64_t snapshot = 0;                   // number of the last snapshot that it got
+        std::uint64_t version = 0;                    // version of that snapshot
+        std::uint64_t sent = 0, seen = 0;             // numbers of frames
+        std::vector<BodyHandle> bodies;               // by number in its stream
         std::thread thread;
 
         bool is_ready() const { return sent - seen < 2; }

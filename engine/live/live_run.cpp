@@ -246,7 +246,7 @@ void LiveRun::show(const World& world, bool between_calls) {
     sample_speed(world);
     if (!wish.frame) return;
     const std::shared_ptr<Snapshot> snapshot = hub_.free_snapshot();
-    taker_.take(world, wish.stresses, *snapshot);
+    taker_.take(world, wish.content, *snapshot);
     snapshot->speed = speed_;
     snapshot->probes.resize(probes_.size());
     for (std::size_t p = 0; p < probes_.size(); ++p) {

@@ -2,17 +2,16 @@
 
 #include <algorithm>
 
-#include "engine/output/collect_frame.h"
 #include "engine/world/world_state.h"
 
 namespace skerry {
 
-void SnapshotTaker::take(const World& world, bool stresses, Snapshot& snapshot) {
+void SnapshotTaker::take(const World& world, FrameContent content, Snapshot& snapshot) {
     const Model& model = WorldAccess::state_of(world).model;
-    snapshot.frame = collect_frame(world, stresses ? FrameContent::node_values : FrameContent::motion);
+    snapshot.frame = collect_frame(world, content);
     Frame& frame = snapshot.frame;
     const auto now = std::chrono::steady_clock::now();
-    if (stresses) {
+    if (content >= FrameContent::mesh_error) {
         energy_ = frame.energy;
     } else if (now >= next_energy_) {
         constexpr int pause = 100;  // in durations of the calculation

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/live/pull.h"
-#include "engine/output/frame.h"
+#include "engine/output/collect_frame.h"
 
 namespace skerry {
 
@@ -39,10 +39,10 @@ struct Snapshot {
 /// Takes snapshots of a world. Surfaces and shapes, which do not change, are copied once and shared by all snapshots.
 class SnapshotTaker {
 public:
-    /// Replaces the frame of `snapshot`, whose memory is used again. `stresses`: also stress, strain and mesh error by
-    /// node. The energy takes a pass over all elements. Its calculation may take 1 % of the wall time; otherwise the
-    /// frame gets the last energy.
-    void take(const World& world, bool stresses, Snapshot& snapshot);
+    /// Replaces the frame of `snapshot`, whose memory is used again. If the content does not include the energy, which
+    /// takes a pass over all elements, the calculation may take 1 % of the wall time. Frames between two calculations
+    /// get the last energy.
+    void take(const World& world, FrameContent content, Snapshot& snapshot);
     /// Returns true if time went back, or if a body has another number of nodes or triangles than in an earlier
     /// snapshot. The world was then reset or replaced by its owner, and a stream cannot continue.
     bool is_other_run(const World& world) const;

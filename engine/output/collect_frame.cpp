@@ -5,6 +5,7 @@
 #include "engine/estimate/mesh_error.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/objects.h"
+#include "engine/world/elements_of_body.h"
 #include "engine/world/world_state.h"
 #include "jobs/parallel_for.h"
 
@@ -40,20 +41,21 @@ std::vector<T> values_of_cells(std::vector<T> of_tetrahedra, const BodyFrame& bo
 Frame collect_frame(const World& world, FrameContent content) {
     Frame frame{.time = world.time(),
                 .gravity = world.settings().gravity,
-                .energy = content >= FrameContent::node_values ? world.energy() : Energy{},
+                .energy = content >= FrameContent::mesh_error ? world.energy() : Energy{},
                 .bodies = {},
                 .colliders = {},
                 .contacts = world.contacts(),
                 .lines = collect_lines(world)};
     const std::vector<BodyHandle> bodies = world.bodies();
-    const bool yields =
-        std::ranges::any_of(WorldAccess::state_of(world).model.materials.constants, &MaterialConstants::yields);
+    const Model& model = WorldAccess::state_of(world).model;
+    const bool yields = std::ranges::any_of(model.materials.constants, &MaterialConstants::yields);
     std::vector<MeshError> fields(bodies.size());
-    if (content >= FrameContent::node_stress)
+    if (content >= FrameContent::node_fields)
         parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t b = begin; b < end; ++b)
-                if (content == FrameContent::node_stress)
-                    fields[b].nodes.stress = world.node_stress(bodies[b]);
+                if (const auto row = static_cast<std::size_t>(model.row(bodies[b], "frame"));
+                    content == FrameContent::node_fields)
+                    fields[b].nodes = fields_of_nodes(model, row, all_nodes(model, row));
                 else
                     fields[b] = measure_mesh_error(world, bodies[b]);
         });
@@ -85,7 +87,7 @@ Frame collect_frame(const World& world, FrameContent content) {
                                    .shape = &world.shape(collider),
                                    .pose = world.pose(collider)});
     if (content < FrameContent::cell_values) return frame;
-    for (const FibreHandle fibres : handles_of<FibreHandle>(WorldAccess::state_of(world).model)) {
+    for (const FibreHandle fibres : handles_of<FibreHandle>(model)) {
         const FibreState state = fibre_state(WorldAccess::state_of(world), fibres);
         BodyFrame& body = *std::ranges::find(frame.bodies, state.body, &BodyFrame::handle);
         body.fibre_stretch.resize(body.count_cells(), 1);

@@ -11,8 +11,8 @@ namespace skerry {
 /// Values of the bodies in a frame. Each content includes those above it, and takes longer to collect.
 enum class FrameContent {
     motion,       // positions, velocities, contacts and lines
-    node_stress,  // stress by node
-    node_values,  // strain and error of the mesh by node, and the energy of the world
+    node_fields,  // stress and strain by node
+    mesh_error,   // error of the mesh by node, and the energy of the world
     cell_values,  // values by cell
 };
 /// Values that the content does not include are left empty.

@@ -126,6 +126,7 @@ private:
         const Stopwatch watch;
         const Real start = world_.time();
         const double waited = ranks_.seconds();
+        ranks_.before_advance();
         const StepReport step = world_.advance(duration, go_on);
         result_.seconds_wall += watch.seconds();
         waiting_ += ranks_.seconds() - waited;

@@ -9,8 +9,8 @@
 
 #include "engine/output/writer.h"
 #include "engine/program/commands.h"
-#include "engine/program/probe_recorder.h"
 #include "engine/program/ranks/run_ranks.h"
+#include "engine/scene/probe_recorder.h"
 #include "skerry/estimate.h"
 #include "skerry/scene.h"
 

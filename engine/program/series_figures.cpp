@@ -1,8 +1,8 @@
 #include "engine/program/series_figures.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+
+#include "engine/output/series/series_summary.h"
 
 namespace skerry {
 
@@ -28,29 +28,22 @@ void SeriesFigures::sample(const World& world) {
 
 std::vector<std::pair<std::string, double>> SeriesFigures::all() const {
     std::vector<std::pair<std::string, double>> figures;
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t c = 1; c < recorder_.columns().size(); ++c) {  // column 0 is the time
-        double least = none, most = none, end = none, sum = 0, seconds = 0;
-        std::size_t count = 0;
-        for (std::size_t row = 0; row < recorder_.row_count(); ++row) {
-            const double value = recorder_.row(row)[c];
-            if (!std::isfinite(value)) continue;
-            least = count > 0 ? std::min(least, value) : value;
-            most = count > 0 ? std::max(most, value) : value;
-            end = value;
-            const double since = row > 0 ? recorder_.row(row)[0] - recorder_.row(row - 1)[0] : 0;
-            sum += since * value;
-            seconds += since;
-            ++count;
-        }
+    const auto values_of = [this](std::size_t column) {
+        std::vector<Real> values;
+        for (std::size_t row = 0; row < recorder_.row_count(); ++row) values.push_back(recorder_.row(row)[column]);
+        return values;
+    };
+    const std::vector<Real> time = values_of(0);
+    for (std::size_t c = 1; c < recorder_.columns().size(); ++c) {
+        const SeriesSummary summary = summary_of_series(time, values_of(c));
         const SeriesColumn& column = recorder_.columns()[c];
         const auto add = [&](const char* which, double value) {
             figures.emplace_back(column.probe + "." + column.quantity + which + ending(column.unit), value);
         };
-        add("_end", end);
-        add("_min", least);
-        add("_max", most);
-        add("_mean", seconds > 0 ? sum / seconds : end);
+        add("_end", summary.end);
+        add("_min", summary.least);
+        add("_max", summary.most);
+        add("_mean", summary.mean);
     }
     return figures;
 }

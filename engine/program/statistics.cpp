@@ -22,6 +22,7 @@ Json errors_of(const RunResult& result) {
         errors.push_back({{"body", of.name},
                           {"mesh", number_or_null(of.mesh)},
                           {"deflection", number_or_null(of.deflection)},
+                          {"interpolation", number_or_null(of.interpolation)},
                           {"stress", number_or_null(of.stress)},
                           {"step", number_or_null(of.step)},
                           {"contact", number_or_null(of.contact)},

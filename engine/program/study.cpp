@@ -71,7 +71,7 @@ std::vector<std::filesystem::path> write_results(const StudyOptions& options, co
     write_file(files.json, [&](std::ostream& out) { out << study_json(result); });
     write_file(files.csv, [&](std::ostream& out) { out << quantities_csv(result); });
     write_file(files.page, [&](std::ostream& out) { out << study_page(result); });
-    if (result.cheapest) {
+    if (result.cheapest && result.cheapest->reaches) {
         write_cheapest_scene(options.scene, result, files.cheapest);
         written.push_back(files.cheapest);
     } else if (earlier_study) {

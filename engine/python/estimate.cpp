@@ -12,8 +12,9 @@ namespace {
 /// Columns by name, each with one value for each body.
 nb::dict table_of(const ErrorEstimator& estimator) {
     using Column = std::pair<const char*, Real ErrorEstimate::*>;
-    constexpr std::array<Column, 11> columns{{{"mesh", &ErrorEstimate::mesh},
+    constexpr std::array<Column, 12> columns{{{"mesh", &ErrorEstimate::mesh},
                                               {"deflection", &ErrorEstimate::deflection},
+                                              {"interpolation", &ErrorEstimate::interpolation},
                                               {"stress", &ErrorEstimate::stress},
                                               {"step", &ErrorEstimate::step},
                                               {"deformation", &ErrorEstimate::deformation},

@@ -5,6 +5,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "engine/scene/run_plan.h"
@@ -36,12 +37,16 @@ void add_element_runs(const StudiedScene& scene, std::vector<PlannedRun>& plan) 
     }
 }
 
+/// Largest ratio of the costs of two levels: a level has eight times the tetrahedra of the next coarser one, and
+/// explicit bodies take steps half as long.
+double most_cost_of_level(const StudiedScene& scene) {
+    return scene.has_explicit ? 16 : 8;
+}
+
 /// Adds the run with the meshes at a level, or the reason why the scene does not have it.
-void add_level_run(const StudiedScene& scene, int level, std::vector<PlannedRun>& plan) {
+void add_level_run(const StudiedScene& scene, int level, StudyStage stage, std::vector<PlannedRun>& plan) {
     if (scene.levels.meshes.empty()) return;
-    // A level has eight times the tetrahedra of the next coarser one, and explicit bodies take steps half as long.
-    const double factor = scene.has_explicit ? 16 : 8;
-    plan.push_back({{.refine = level}, std::pow(factor, level), {}});
+    plan.push_back({{.refine = level}, std::pow(most_cost_of_level(scene), level), {}, stage});
     if (level < scene.levels.coarsest) plan.back().reason = "no coarser meshes: " + scene.levels.why_not_coarser;
     if (level > scene.levels.finest) plan.back().reason = "no finer meshes: " + scene.levels.why_not_finer;
 }
@@ -85,18 +90,39 @@ StudiedScene read_studied_scene(const std::filesystem::path& path, const StudySe
 }
 
 std::vector<PlannedRun> plan_study(const StudiedScene& scene) {
-    std::vector<PlannedRun> plan{{{}, 1, {}}, {{.draw = 1}, 1, {}}, {{.draw = 2}, 1, {}}};
+    std::vector<PlannedRun> plan{{{}, 1, {}, StudyStage::start}, {{.draw = 1}, 1, {}, StudyStage::start}};
     add_element_runs(scene, plan);
     plan.push_back({{.step = 0.5}, 2, {}});
     constexpr double solving = 1.5;  // a contact solver needs about twice the sweeps, which take half of the time
     plan.push_back({{.tolerance = 0.01}, solving, {}});
-    add_level_run(scene, -1, plan);
-    if (scene.levels.coarsest <= -2) add_level_run(scene, -2, plan);
-    add_level_run(scene, 1, plan);
+    add_level_run(scene, -1, StudyStage::basic, plan);
+    if (scene.levels.coarsest <= -2) add_level_run(scene, -2, StudyStage::basic, plan);
     if (!scene.has_explicit) plan.push_back({{.step = 2}, 0.5, {}});
-    plan.push_back({{.step = 0.25}, 4, {}});
-    if (scene.levels.finest >= 2) add_level_run(scene, 2, plan);
+    add_level_run(scene, 1, StudyStage::finer, plan);
+    plan.push_back({{.draw = 2}, 1, {}, StudyStage::last});
+    plan.push_back({{.step = 0.25}, 4, {}, StudyStage::last});
+    if (scene.levels.finest >= 2) add_level_run(scene, 2, StudyStage::last, plan);
     return plan;
+}
+
+void predict_levels(const StudiedScene& scene, std::span<const StudyRun> runs, std::span<PlannedRun> plan) {
+    const auto seconds = [&](int level) -> double {
+        for (std::size_t i = 0; i < runs.size(); ++i)
+            if (plan[i].variant == StudyVariant{.refine = level} && plan[i].reason.empty() &&
+                runs[i].status == StudyRunStatus::ok)
+                return runs[i].cpu_seconds;
+        return 0;  // the run was not made
+    };
+    for (PlannedRun& planned : plan) {
+        const int level = planned.variant.refine;
+        if (level < 1) continue;
+        // Parts of the time that do not grow with the mesh lose weight, so the ratio grows from level to level.
+        constexpr double growth = 1.5;
+        const double made = seconds(level), coarser = seconds(level - 1), coarsest = seconds(level - 2);
+        const double most = most_cost_of_level(scene);
+        const double ratio = coarsest > 0 ? std::clamp(growth * coarser / coarsest, most / 2, most) : most;
+        if (coarser > 0) planned.cost = (made > 0 ? made : ratio * coarser) / runs[0].cpu_seconds;
+    }
 }
 
 bool gets_all_threads(double cost, double total, int threads) {
@@ -116,14 +142,17 @@ double wall_time(std::vector<double> costs, int threads) {
     return wall + total / threads;
 }
 
-void keep_to_budget(double budget, int threads, std::vector<PlannedRun>& plan) {
-    std::vector<double> first, second;
+void keep_to_budget(double budget, int threads, std::size_t first, std::span<PlannedRun> plan) {
+    std::map<StudyStage, std::vector<double>> costs;
     for (std::size_t i = 0; i < plan.size(); ++i) {
-        std::vector<double>& phase = i < independent_runs ? first : second;
-        phase.push_back(plan[i].cost);
-        const double wall = wall_time(first, threads) + wall_time(second, threads);
-        if (i < independent_runs || wall <= budget) continue;
-        phase.pop_back();
+        if (!plan[i].reason.empty()) continue;
+        std::vector<double>& stage = costs[plan[i].stage];
+        stage.push_back(plan[i].cost);
+        if (i < first) continue;
+        double wall = 0;
+        for (const auto& [of, together] : costs) wall += wall_time(together, threads);
+        if (wall <= budget) continue;
+        stage.pop_back();
         plan[i].reason = "with it the study would take about " + short_text(wall) +
                          " times as long as one run, more than the budget of " + short_text(budget);
     }

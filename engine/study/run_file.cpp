@@ -35,6 +35,7 @@ Json columns_json(const StudyRun& run) {
                            {"unit", column.what.unit},
                            {"size", column.size},
                            {"reported", column.reported},
+                           {"statistic", column.is_statistic},
                            {"node", column.node},
                            {"place", {column.place.x(), column.place.y(), column.place.z()}},
                            {"values", column.values}});  // a value that is not finite becomes null
@@ -48,6 +49,7 @@ StudyColumn column_from(const Json& json) {
     json.at("unit").get_to(column.what.unit);
     json.at("size").get_to(column.size);
     json.at("reported").get_to(column.reported);
+    json.at("statistic").get_to(column.is_statistic);
     json.at("node").get_to(column.node);
     for (int axis = 0; axis < 3; ++axis) json.at("place").at(static_cast<std::size_t>(axis)).get_to(column.place[axis]);
     for (const Json& value : json.at("values"))

@@ -94,10 +94,11 @@ public:
     StudyResult run() {
         if (settings_.redo && !settings_.folder.empty())
             for (const PlannedRun& planned : plan_) remove_run(settings_.folder, planned.variant);
-        make_runs(0, independent_runs);
+        std::size_t made = make_stage(StudyStage::start, 0);
         if (!stop_ && runs_[0].status == StudyRunStatus::ok) {
             drop_pointless();
-            make_runs(independent_runs, plan_.size());
+            for (const StudyStage stage : {StudyStage::basic, StudyStage::finer, StudyStage::last})
+                made = make_stage(stage, made);
         }
         StudyResult result;
         result.stopped = stop_;
@@ -106,7 +107,7 @@ public:
         } else if (!stop_) {
             result.sentences.push_back("The scene itself could not be run to its end: " + runs_[0].message +
                                        ". Correct it first; no errors were determined.");
-            result.runs.assign(runs_.begin(), runs_.begin() + independent_runs);
+            result.runs.assign(runs_.begin(), runs_.begin() + static_cast<std::ptrdiff_t>(made));
         }
         if (!lost_.empty()) result.sentences.insert(result.sentences.begin(), lost_);
         result.scene = scene_.file.name;
@@ -114,6 +115,20 @@ public:
     }
 
 private:
+    /// Makes the runs of a stage, which begin with number `first`. Returns the number of the run after them.
+    std::size_t make_stage(StudyStage stage, std::size_t first) {
+        if (stop_) return first;
+        if (stage == StudyStage::last) drop_unneeded();
+        const auto after = std::ranges::find_if(plan_, [&](const PlannedRun& run) { return run.stage > stage; });
+        const auto end = static_cast<std::size_t>(after - plan_.begin());
+        if (first > 0) {
+            predict_levels(scene_, std::span(runs_).first(plan_.size()), plan_);
+            keep_to_budget(budget_, threads_, first, std::span(plan_).first(end));
+        }
+        make_runs(first, end);
+        return end;
+    }
+
     /// Removes runs from the plan that the first run has shown to be pointless: other tolerances without contacts, and
     /// steps longer than a call of advance.
     void drop_pointless() {
@@ -125,7 +140,16 @@ private:
         });
         constexpr double short_study = 5;  // [s]
         if (!settings_.budget) budget_ = std::max(budget_, short_study / runs_[0].cpu_seconds);
-        keep_to_budget(budget_, threads_, plan_);
+    }
+
+    /// Removes runs of the last stage from the plan that could not change the results.
+    void drop_unneeded() {
+        choose_columns_by_name(settings_.probes, scene_.path, runs_[0].columns);
+        const OpenParts open = open_parts(runs_, settings_);
+        std::erase_if(plan_, [&](const PlannedRun& planned) {
+            return planned.stage == StudyStage::last &&
+                   ((planned.variant.draw != 0 && !open.noise) || (planned.variant.step != 1 && !open.step));
+        });
     }
 
     /// Result of the runs, of which at least the first was made.
@@ -342,12 +366,14 @@ StudyResult study(const std::filesystem::path& scene, const StudySettings& setti
 
 void write_cheapest_scene(const std::filesystem::path& scene, const StudyResult& result,
                           const std::filesystem::path& file) {
-    if (!result.cheapest)
+    if (!result.cheapest || !result.cheapest->reaches)
         Complaint{.file = scene.string(),
                   .object = "study",
-                  .field = {},
-                  .found = "a result without cheapest settings",
-                  .expected = "at least one quantity with a known error",
+                  .field = "error",
+                  .found = result.cheapest ? percent(result.wanted_error) + ", which no settings reach"
+                                           : "no quantity with a known error",
+                  .expected =
+                      result.cheapest ? "at least " + percent(result.cheapest->error) : "a quantity with a known error",
                   .hint = {}}
             .raise();
     write_scene(file, scene, result.cheapest->assignments);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <string_view>
@@ -31,11 +32,11 @@ bool is_default(std::string_view quantity) {
     return starts_with_any(quantity, kept);
 }
 
-/// False for quantities that repeat others: a position is a displacement with an offset, an impulse is a force times a
-/// duration.
+/// False for quantities that repeat others or depend on the mesh only: a position is a displacement with an offset, an
+/// impulse is a force times a duration, and finer meshes have more contacts.
 bool is_main(std::string_view quantity) {
-    static constexpr std::array<std::string_view, 5> left_out{"position_", "velocity_", "impulse_", "moment_",
-                                                              "contacts"};
+    static constexpr std::array<std::string_view, 5> left_out{"position_", "impulse_", "contacts", "sticking",
+                                                              "sliding"};
     return !starts_with_any(quantity, left_out);
 }
 
@@ -124,7 +125,8 @@ std::vector<StudyRecorder::DefaultProbe> StudyRecorder::default_probes(const Sce
 StudyRecorder::StudyRecorder(Scene& scene)
     : world_(scene.world),
       defaults_(default_probes(scene)),
-      recorder_(scene.world, joined(probes_of(scene), defaults_)) {
+      recorder_(scene.world, joined(probes_of(scene), defaults_)),
+      contacts_(scene) {
     const std::vector<BodyHandle> bodies = world_.bodies();
     size_ = diagonal(world_, bodies);
     many_bodies_ = bodies.size() > most_reported;
@@ -132,6 +134,8 @@ StudyRecorder::StudyRecorder(Scene& scene)
 }
 
 void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
+    std::string of_all = "bodies";  // name of the columns that summarise all bodies
+    while (std::ranges::find(of_scene, of_all, &RecordedProbe::name) != of_scene.end()) of_all = "all " + of_all;
     // columns of the recorder with the same quantity of free bodies
     std::vector<std::pair<SeriesColumn, std::vector<std::size_t>>> of_bodies;
     const bool keep_bodies = defaults_.size() <= 3 * most_recorded;
@@ -165,7 +169,7 @@ void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
                 add(added.probe, added.shown, !many_bodies_);
             if (!added.free) continue;
             auto same = std::ranges::find(of_bodies, what.quantity, [](const auto& e) { return e.first.quantity; });
-            if (same == of_bodies.end()) same = of_bodies.insert(same, {{"bodies", what.quantity, what.unit}, {}});
+            if (same == of_bodies.end()) same = of_bodies.insert(same, {{of_all, what.quantity, what.unit}, {}});
             same->second.push_back(c);
         }
     for (const auto& [what, from] : of_bodies)
@@ -173,16 +177,19 @@ void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
              {std::pair{Part::mean, "mean_"}, std::pair{Part::least, "least_"}, std::pair{Part::largest, "largest_"}}) {
             if (from.size() < 2) continue;
             const bool doubled = what.quantity.starts_with(name);
-            sources_.push_back(
-                {{.what = {what.probe, doubled ? what.quantity : name + what.quantity, what.unit}, .size = size_},
-                 part,
-                 from});
+            sources_.push_back({{.what = {what.probe, doubled ? what.quantity : name + what.quantity, what.unit},
+                                 .size = size_,
+                                 .is_statistic = true},
+                                part,
+                                from});
         }
 }
 
 void StudyRecorder::sample() {
     recorder_.sample(world_);
     if (rows_ == recorder_.row_count()) return;
+    const Real before = rows_ > 0 ? recorder_.row(rows_ - 1)[0] : world_.time();
+    contacts_.sample(world_, world_.time() - before);
     const std::span<const Real> row = recorder_.row(rows_++);
     for (Stress& stress : stresses_) {
         if (!(row[stress.column] > stress.largest)) continue;
@@ -199,6 +206,7 @@ void StudyRecorder::sample() {
 std::vector<std::string> StudyRecorder::bodies() const {
     std::vector<std::string> names;
     for (const Source& source : sources_) names.push_back(source.body);
+    names.resize(names.size() + contact_columns().size());
     return names;
 }
 
@@ -229,6 +237,23 @@ std::vector<StudyColumn> StudyRecorder::columns() const {
         if (source.from.size() > 1 || stress == stresses_.end() || stress->node == no_index) continue;
         column.node = stress->node;
         column.place = stress->start[static_cast<std::size_t>(stress->node)];
+    }
+    std::ranges::move(contact_columns(), std::back_inserter(columns));
+    return columns;
+}
+
+std::vector<StudyColumn> StudyRecorder::contact_columns() const {
+    std::vector<StudyColumn> columns;
+    for (const ProbeRecord& record : contacts_.records()) {
+        const auto add = [&](const char* quantity, const char* unit, const auto& values) {
+            columns.push_back({.what = {record.name, quantity, unit},
+                               .size = size_,
+                               .reported = is_main(quantity),
+                               .values = {values.begin(), values.end()}});
+        };
+        add("sticking", "1", record.sticking);
+        add("sliding", "1", record.sliding);
+        add("slip", "m/s", record.slip);
     }
     return columns;
 }

@@ -4,13 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/probe_recorder.h"
 #include "skerry/scene.h"
 #include "skerry/study.h"
 
 namespace skerry {
 
-/// Records the probes of a scene, of those of contacts only the stresses, and the default quantities: displacement,
-/// contact force and largest stress of each body, and the energies. Each call of sample() after a step records a row.
+/// Records the probes of a scene, and the default quantities: displacement, contact force and largest stress of each
+/// body, and the energies. Each call of sample() after a step records a row.
 class StudyRecorder {
 public:
     /// `scene` must be as it was read, and must outlive the object.
@@ -53,15 +54,17 @@ private:
 
     static std::vector<DefaultProbe> default_probes(const Scene& scene);
     void add_sources(const std::vector<RecordedProbe>& of_scene);
+    std::vector<StudyColumn> contact_columns() const;
 
     World& world_;
     std::vector<DefaultProbe> defaults_;
     Recorder recorder_;
+    ProbeRecorder contacts_;  // of the probes of contacts
     bool many_bodies_ = false;
     Real size_ = 0;  // diagonal of the bounding box of all bodies at the start [m]
     std::vector<Source> sources_;
     std::vector<Stress> stresses_;
-    std::size_t rows_ = 0;  // number of rows that `stresses_` covers
+    std::size_t rows_ = 0;  // number of rows that `stresses_` and `contacts_` cover
 };
 
 /// Sets StudyColumn::reported: true for the columns that one of the names NAME or NAME.QUANTITY selects. Without names

@@ -30,19 +30,6 @@ std::vector<Mat3> tetrahedron_field(const Model& model, std::size_t row, OfEleme
     return of_tetrahedra(body.cover, values, static_cast<std::size_t>(model.bodies.tetrahedron_count[row]));
 }
 
-/// Stress and strain at the given nodes of a body, in world axes.
-NodeFields fields_of_nodes(const Model& model, std::size_t row, std::span<const Index> nodes) {
-    const ElementsOfBody body(model, row);
-    NodeFields fields = body.node_fields(nodes);
-    body.turn(fields.stress);
-    body.turn(fields.strain);
-    return fields;
-}
-
-NodeFields fields_of_nodes(const Model& model, std::size_t row) {
-    return fields_of_nodes(model, row, all_nodes(model, row));
-}
-
 }  // namespace
 
 ElementsOfBody::ElementsOfBody(const Model& model, std::size_t row)
@@ -108,6 +95,14 @@ std::vector<Index> all_nodes(const Model& model, std::size_t row) {
     return nodes;
 }
 
+NodeFields fields_of_nodes(const Model& model, std::size_t row, std::span<const Index> nodes) {
+    const ElementsOfBody body(model, row);
+    NodeFields fields = body.node_fields(nodes);
+    body.turn(fields.stress);
+    body.turn(fields.strain);
+    return fields;
+}
+
 std::vector<Mat3> World::stress(BodyHandle body) const {
     return tetrahedron_field(state_->model, static_cast<std::size_t>(state_->model.row(body, "stress")),
                              kernels().cauchy_stress, kernels().stress_of_tetrahedra);
@@ -129,7 +124,8 @@ std::vector<Real> World::plastic_strain(BodyHandle body) const {
 
 std::vector<Mat3> World::node_stress(BodyHandle body) const {
     const Model& model = state_->model;
-    return fields_of_nodes(model, static_cast<std::size_t>(model.row(body, "node_stress"))).stress;
+    const auto row = static_cast<std::size_t>(model.row(body, "node_stress"));
+    return fields_of_nodes(model, row, all_nodes(model, row)).stress;
 }
 
 std::vector<Mat3> World::node_stress(BodyHandle body, std::span<const Index> nodes) const {
@@ -141,7 +137,8 @@ std::vector<Mat3> World::node_stress(BodyHandle body, std::span<const Index> nod
 
 std::vector<Mat3> World::node_strain(BodyHandle body) const {
     const Model& model = state_->model;
-    return fields_of_nodes(model, static_cast<std::size_t>(model.row(body, "node_strain"))).strain;
+    const auto row = static_cast<std::size_t>(model.row(body, "node_strain"));
+    return fields_of_nodes(model, row, all_nodes(model, row)).strain;
 }
 
 std::vector<Real> World::node_von_mises_stress(BodyHandle body) const {

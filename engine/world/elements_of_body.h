@@ -44,5 +44,7 @@ private:
 
 /// Numbers of all nodes of a body: 0, 1, and so on.
 std::vector<Index> all_nodes(const Model& model, std::size_t row);
+/// Stress and strain at the given nodes of a body, in world axes.
+NodeFields fields_of_nodes(const Model& model, std::size_t row, std::span<const Index> nodes);
 
 }  // namespace skerry

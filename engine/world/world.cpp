@@ -68,7 +68,7 @@ WorldState::WorldState(const Settings& settings) : executor(make_executor(settin
 
 void WorldState::require_between_steps(const char* call) const {
     // calls that all ranks of a divided world can make alike
-    constexpr std::array<std::string_view, 5> on_ranks{"advance", "distribute", "settle_start", "watch_steps", "clone"};
+    constexpr std::array<std::string_view, 4> on_ranks{"advance", "distribute", "settle_start", "watch_steps"};
     if (ranks.on() && std::ranges::find(on_ranks, call) == on_ranks.end())
         Complaint{.file = {},
                   .object = call,

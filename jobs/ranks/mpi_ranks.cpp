@@ -45,8 +45,14 @@ void combine_records(void* from, void* into, int* count, MPI_Datatype* type) {
 
 class MpiRanks final : public Ranks {
 public:
-    MpiRanks() {
-        MPI_Comm_dup(MPI_COMM_WORLD, &world_);
+    MpiRanks(MPI_Comm world, bool ends_mpi) : ends_mpi_(ends_mpi) {
+        int level = MPI_THREAD_SINGLE;
+        MPI_Query_thread(&level);
+        if (level < MPI_THREAD_SERIALIZED)
+            throw std::runtime_error("MPI: found the thread level " + std::to_string(level) + ", expected at least " +
+                                     std::to_string(MPI_THREAD_SERIALIZED) +
+                                     " (MPI_THREAD_SERIALIZED); ask MPI_Init_thread for it");
+        MPI_Comm_dup(world, &world_);
         MPI_Comm_rank(world_, &rank_);
         MPI_Comm_size(world_, &size_);
         MPI_Op_create(combine_records, 1, &combine_);
@@ -55,7 +61,7 @@ public:
         if (record_ != MPI_DATATYPE_NULL) MPI_Type_free(&record_);
         MPI_Op_free(&combine_);
         MPI_Comm_free(&world_);
-        MPI_Finalize();
+        if (ends_mpi_) MPI_Finalize();
     }
     MpiRanks(const MpiRanks&) = delete;
     MpiRanks& operator=(const MpiRanks&) = delete;
@@ -161,6 +167,7 @@ private:
             act(begin, static_cast<int>(std::min(longest, bytes - begin)));
     }
 
+    bool ends_mpi_;
     MPI_Comm world_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
     MPI_Op combine_ = MPI_OP_NULL;
@@ -176,11 +183,11 @@ std::unique_ptr<Ranks> start_mpi() {
     setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
     int level = MPI_THREAD_SINGLE;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);
-    if (level < MPI_THREAD_SERIALIZED)
-        throw std::runtime_error("MPI: found the thread level " + std::to_string(level) + ", expected at least " +
-                                 std::to_string(MPI_THREAD_SERIALIZED) +
-                                 " (MPI_THREAD_SERIALIZED); use an MPI library with support of threads");
-    return std::make_unique<MpiRanks>();
+    return std::make_unique<MpiRanks>(MPI_COMM_WORLD, true);
+}
+
+std::unique_ptr<Ranks> join_mpi(int communicator) {
+    return std::make_unique<MpiRanks>(MPI_Comm_f2c(communicator), false);
 }
 
 }  // namespace skerry

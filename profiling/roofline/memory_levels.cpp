@@ -1,9 +1,26 @@
 #include "profiling/roofline/memory_levels.h"
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 
 namespace skerry::profiling {
+
+CacheSizes cache_sizes(const std::filesystem::path& folder) {
+    CacheSizes sizes;
+    std::size_t* const of_level[] = {&sizes.l1, &sizes.l2, &sizes.l3};
+    for (int index = 0; std::filesystem::exists(folder / ("index" + std::to_string(index))); ++index) {
+        const std::filesystem::path cache = folder / ("index" + std::to_string(index));
+        std::size_t level = 0, kibibytes = 0;
+        std::string type;
+        std::ifstream(cache / "level") >> level;
+        std::ifstream(cache / "type") >> type;
+        std::ifstream(cache / "size") >> kibibytes;  // for example 1024K
+        if (type != "Instruction" && level >= 1 && level <= std::size(of_level))
+            *of_level[level - 1] = 1024 * kibibytes;
+    }
+    return sizes;
+}
 
 std::vector<MemoryLevel> memory_levels(const CacheSizes& sizes, int workers) {
     std::vector<MemoryLevel> levels;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,10 @@ namespace skerry::profiling {
 struct CacheSizes {
     std::size_t l1 = 0, l2 = 0, l3 = 0;
 };
+
+/// Sizes of the caches that Linux describes in `folder`. sysconf() cannot replace this: on a virtual machine its L3
+/// cache is that of the whole host.
+CacheSizes cache_sizes(const std::filesystem::path& folder = "/sys/devices/system/cpu/cpu0/cache");
 
 /// A cache level or the memory.
 struct MemoryLevel {

@@ -1,7 +1,5 @@
 #include "profiling/roofline/roofline.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <barrier>
 #include <cmath>
@@ -104,16 +102,7 @@ double triad_rate(const PeakLoops& loops, double bytes, double transfers, int wo
     });
 }
 
-std::size_t cache_size(int name) {
-    const long size = sysconf(name);
-    return size > 0 ? static_cast<std::size_t>(size) : 0;
-}
-
 }  // namespace
-
-CacheSizes cache_sizes() {
-    return {cache_size(_SC_LEVEL1_DCACHE_SIZE), cache_size(_SC_LEVEL2_CACHE_SIZE), cache_size(_SC_LEVEL3_CACHE_SIZE)};
-}
 
 Roofline measure_roofline(const PeakLoops& loops, const CacheSizes& sizes, int workers, int repeats) {
     Roofline roofline{.separate_double = flop_rate(loops.separate_double, workers, repeats),

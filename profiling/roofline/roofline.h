@@ -17,9 +17,6 @@ struct Roofline {
     std::vector<MemoryLevel> levels;               // ascending by capacity
 };
 
-/// Sizes of the caches as the operating system reports them.
-CacheSizes cache_sizes();
-
 /// Measures all rates with `workers` threads that run the same loop at the same time. Each rate is the highest sum of
 /// all threads among the repeats, because other programs can only make a loop slower.
 Roofline measure_roofline(const PeakLoops& loops, const CacheSizes& sizes, int workers, int repeats);

@@ -193,7 +193,8 @@ Measures measure(const PrecisionScene& scene, const Record& record) {
     }
     measure_overlaps(scene, record, found);
     if (scene.name == "holds" || scene.name == "slides") measure_incline(scene, record, found);
-    if (scene.name == "stack" || scene.name == "pile") measure_rest(scene, record, found);
+    if (scene.name == "stack" || scene.name == "pile" || scene.name.starts_with("drop"))
+        measure_rest(scene, record, found);
     if (scene.name == "ball on block") measure_ball(scene, record, found);
     return found;
 }

@@ -53,7 +53,8 @@ TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& bl
         for (std::size_t a = 0; a < 4; ++a) {
             const Real weight = stencil.weight[a];
             const auto node = static_cast<std::size_t>(stencil.node[a]);
-            if (weight == 0 || !(motion.inverse_mass[node] > 0)) continue;
+            if (weight == 0 || !(motion.inverse_mass[node] > 0) || motion.ghosts.contain(motion.node_body[node]))
+                continue;
             sum.impulse += weight * impulse;
             sum.work +=
                 weight * impulse.dot(twice_mean(motion, stencil.node[a], point ? *point : motion.position[node])) / 2;

@@ -5,6 +5,7 @@
 
 #include "components/cable_table.h"
 #include "components/contact_table.h"
+#include "components/ghost_marks.h"
 #include "components/node_table.h"
 #include "components/tie_table.h"
 #include "jobs/access.h"
@@ -23,6 +24,8 @@ struct TieWorkInputs {
     std::span<const Vec3> position;                 // by node [m]
     std::span<const Vec3> velocity, velocity_next;  // by node [m/s]
     RoundSpins spins;
+    std::span<const Index> node_body;  // NodeTable
+    GhostMarks ghosts;
 
     static TieWorkInputs bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                               const RigidBodyTable& rigid) {
@@ -30,12 +33,14 @@ struct TieWorkInputs {
                 .position = binder.read(node.position),
                 .velocity = binder.read(node.velocity),
                 .velocity_next = binder.read(node.velocity_next),
-                .spins = RoundSpins::bind(binder, node, body, rigid)};
+                .spins = RoundSpins::bind(binder, node, body, rigid),
+                .node_body = binder.read(node.body),
+                .ghosts = {binder.read(body.ghost)}};
     }
 };
 
 /// Takes the rows of ties out of the contacts after the solve, and stores their impulses in `rows`. Returns the sums
-/// over all rows, and over the ties in `blocks`. Sequential, in row order.
+/// over all rows, and over the ties in `blocks`, without nodes of ghosts. Sequential, in row order.
 TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& blocks, ContactTable& contacts,
                           TieRowTable& rows);
 

@@ -152,8 +152,8 @@ struct NodeGroups {
     RigidNodes rigid{};
     std::span<const JointBlock> joints{};
     SolvedCables cables{};
-    // By row of BodyTable: 1 if another rank solves the rows of the joints, ties and cables of the body. Empty: this
-    // rank solves all rows.
+    // For each body: 1 if another rank solves the rows of its joints, ties and cables. Empty: this rank solves all
+    // rows.
     std::span<const std::uint8_t> elsewhere{};
 
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,

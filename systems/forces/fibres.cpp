@@ -97,6 +97,7 @@ Real measure_fibres(const FibreInputs& fibres, const FibreWorkInputs& step, Real
     const auto before = [&](std::size_t n) -> Vec3 { return free_part(step.free, n) * fibres.velocity[n]; };
     Real work = 0;
     for_each_tetrahedron(fibres, [&](std::size_t row, std::size_t t) {
+        if (fibres.ghosts.contain(fibres.fibre_body[row])) return;
         const Vec3& passive = step.next[t].passive;
         Real density = h * passive.dot(fibres.along(row, t, during));
         if (lag != 0) density += lag * (passive - step.passive_before[t]).dot(fibres.along(row, t, before));
@@ -109,6 +110,7 @@ Real fibre_energy(const FibreInputs& fibres, const FibreWorkInputs& last, Real l
     const auto velocity = [&](std::size_t n) -> Vec3 { return free_part(last.free, n) * fibres.velocity[n]; };
     Real energy = 0;
     for_each_tetrahedron(fibres, [&](std::size_t row, std::size_t t) {
+        if (fibres.ghosts.contain(fibres.fibre_body[row])) return;
         const Vec3 y = fibres.stretched(row, t);
         const FibreLaw law = fibres.law(row);
         Real density = law.energy(y.squaredNorm());

@@ -8,6 +8,7 @@
 #include "components/body_table.h"
 #include "components/fibre_table.h"
 #include "components/free_nodes.h"
+#include "components/ghost_marks.h"
 #include "components/node_table.h"
 #include "components/rigid_body_table.h"
 #include "jobs/access.h"
@@ -46,6 +47,7 @@ struct FibreInputs {
     // BodyTable and NodeTable
     std::span<const Range> body_nodes, body_implicit;
     std::span<const Vec3> position, velocity;
+    GhostMarks ghosts;
 
     static FibreInputs bind(const Binder& binder, const FibreTable& fibres, const BodyTable& bodies,
                             const NodeTable& nodes) {
@@ -61,7 +63,8 @@ struct FibreInputs {
                 .body_nodes = binder.read(bodies.nodes),
                 .body_implicit = binder.read(bodies.implicit),
                 .position = binder.read(nodes.position),
-                .velocity = binder.read(nodes.velocity)};
+                .velocity = binder.read(nodes.velocity),
+                .ghosts = {binder.read(bodies.ghost)}};
     }
 
     std::size_t size() const { return fibre_body.size(); }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "components/append_cable.h"
+#include "components/ghost_marks.h"
 
 namespace skerry {
 
@@ -228,9 +229,17 @@ bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const 
     return !out.control.empty();
 }
 
-CableMeasures measure_cables(const CableBlockTable& blocks) {
+CableMeasures measure_cables(const CableBlockTable& blocks, std::span<const Index> node_body,
+                             std::span<const GhostKind> body_ghost) {
+    const GhostMarks ghosts{body_ghost};
+    const auto of_ghost = [&](const CableBlock& block) {
+        for (Index p = block.points.begin; p < block.points.end; ++p)
+            if (blocks.stencil[p].weight[0] != 0) return ghosts.contain(node_body[blocks.stencil[p].node[0]]);
+        return false;
+    };
     CableMeasures sum;
     for (std::size_t b = static_cast<std::size_t>(blocks.first_solved); b < blocks.block.size(); ++b) {
+        if (of_ghost(blocks.block[b])) continue;
         sum.impulse += blocks.sum_impulse[b];
         sum.work += blocks.work[b];
         sum.dissipated += blocks.dissipated[b];

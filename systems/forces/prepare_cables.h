@@ -111,12 +111,13 @@ struct CableMemory {
 /// greatest length of all cables with a prescribed rate. Returns false if there is no cable.
 bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const CableMemory& out);
 
-/// Impulse and work of the cables of a step that the region solver has solved.
+/// Impulse and work of the cables of a step that the region solver has solved, without cables of ghosts.
 struct CableMeasures {
     Vec3 impulse = Vec3::Zero();  // impulse that cables transmit from colliders and from held nodes [N s]
     Real work = 0;                // work of the cables on the bodies [J]
     Real dissipated = 0;          // energy that friction at the points dissipates [J]
 };
-CableMeasures measure_cables(const CableBlockTable& blocks);
+CableMeasures measure_cables(const CableBlockTable& blocks, std::span<const Index> node_body,
+                             std::span<const GhostKind> body_ghost);
 
 }  // namespace skerry

@@ -137,7 +137,7 @@ bool mark_driven_bodies(const SpringInputs& springs, Real t, Real h, std::span<s
 SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& step, Real h, Real kick, Real lag) {
     SpringWork sum;
     for (std::size_t s = 0; s < springs.size(); ++s) {
-        if (springs.rests(s)) continue;
+        if (springs.rests(s) || springs.of_ghost(s)) continue;
         const SpringForce& now = step.next[s];
         const Vec3 before = springs.first.velocity(s) - springs.second.velocity(s);
         const AnchorVelocities first = velocities_in_step(springs.first, s, step, h, lag),
@@ -153,6 +153,7 @@ SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& 
 Real spring_energy(const SpringInputs& springs, const SpringWorkInputs& last, Real t, Real lag) {
     Real sum = 0;
     for (std::size_t s = 0; s < springs.size(); ++s) {
+        if (springs.of_ghost(s)) continue;
         const Stretch stretch(springs, s);
         const Real extension = stretch.length - springs.rest(s, t);
         const SpringLaw law = springs.law(s);

@@ -7,6 +7,7 @@
 #include "components/body_table.h"
 #include "components/collider_table.h"
 #include "components/free_nodes.h"
+#include "components/ghost_marks.h"
 #include "components/node_table.h"
 #include "components/rigid_body_table.h"
 #include "components/spring_table.h"
@@ -40,6 +41,7 @@ struct SpringInputs {
     std::span<const Range> rest_length;
     std::span<const TimeKey> key;
     std::span<const std::uint8_t> body_asleep;  // column of BodyTable; empty if no body is asleep
+    GhostMarks ghosts;
 
     static SpringInputs bind(const Binder& binder, const SpringTable& springs, const BodyTable& bodies,
                              const NodeTable& nodes, const ColliderTable& colliders, const bool& any_asleep) {
@@ -51,10 +53,13 @@ struct SpringInputs {
                 .strength = binder.read(springs.strength),
                 .rest_length = binder.read(springs.rest_length),
                 .key = binder.read(springs.key),
-                .body_asleep = binder.read_if(binder.value(any_asleep), bodies.asleep)};
+                .body_asleep = binder.read_if(binder.value(any_asleep), bodies.asleep),
+                .ghosts = {binder.read(bodies.ghost)}};
     }
 
     std::size_t size() const { return side.size(); }
+    /// True if another rank counts the work and energy of the spring.
+    bool of_ghost(std::size_t s) const { return ghosts.contain(first.body[s]) || ghosts.contain(second.body[s]); }
     SpringLaw law(std::size_t s) const { return {side[s], stiffness[s], damping[s], strength[s]}; }
     Real rest(std::size_t s, Real t) const { return value_at(rows_of(key, rest_length[s]), t); }
     /// True if every body of the spring is asleep.

@@ -135,9 +135,11 @@ struct MaxwellStep {
             kept[k] = static_cast<float>(1 / (1 + h * rates[k]));
         }
         const ViscousModuli moduli = viscous_moduli(material, share);
-        shear = static_cast<float>(moduli.mu / modulus);
-        trace = static_cast<float>(moduli.lambda / (2 * modulus));
-        bulk = static_cast<float>(moduli.bulk / (2 * modulus));
+        // The volumetric part of a material with Poisson ratio 0 has no stiffness.
+        const auto relative = [this](Real of) { return modulus > 0 ? static_cast<float>(of / modulus) : 0; };
+        shear = relative(moduli.mu);
+        trace = relative(moduli.lambda / 2);
+        bulk = relative(moduli.bulk / 2);
     }
 };
 

@@ -137,7 +137,7 @@ def inflated_frames(page: str) -> bytes:
 def test_frames_have_the_bytes_of_a_recorded_page() -> None:
     world, _, _ = ball_world()
     with sk.view(world, open=False) as view, connect(view) as client:
-        client.send("fields", names=["stress", "strain"])
+        client.send("fields", names=["stress", "strain", "error"])
         client.settle()
         client.wait(lambda: client.frames)
         for _ in range(10):

@@ -20,9 +20,11 @@ from worlds import ball_world, skip_without_live_view
 
 skip_without_live_view()
 
-# Keeps the messages that the page sends.
+# Keeps the messages that the page sends, and errors such as those of shaders.
 KEEP_SENT = """
 window.sent = [];
+window.complaints = [];
+console.error = (...words) => window.complaints.push(words.join(" "));
 const send = WebSocket.prototype.send;
 WebSocket.prototype.send = function (text) { window.sent.push(JSON.parse(text)); send.call(this, text); };
 """
@@ -50,6 +52,7 @@ def running(tab: Tab, shown: sk.World | sk.Scene, **options: Any) -> Iterator[sk
         tab.open(view.address)
         tab.wait(f"document.documentElement.dataset.ready && ({PAUSED} || {DRAWN} > 5)")
         yield view
+        assert tab.evaluate("window.complaints") == []
     finally:
         view.close()
         thread.join()
@@ -96,6 +99,9 @@ def test_the_page_shows_the_run_and_hides_its_token(tab: Tab) -> None:
         token = view.address.rpartition("=")[2]
         assert token not in tab.evaluate("location.href + document.documentElement.outerHTML")
         place_of(tab, "ball")
+        tab.press("f")  # flat surfaces have other shaders
+        tab.wait(f"{DRAWN} > {tab.evaluate(DRAWN) + 1}")
+        assert tab.evaluate("window.complaints") == []
         tab.call("Page.reload")
         tab.wait("document.documentElement?.dataset.ready")
         assert view.is_open

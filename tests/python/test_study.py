@@ -29,7 +29,7 @@ def test_a_study_has_error_bars_runs_and_a_cheapest_scene(scene: Path, tmp_path:
     height = found.quantities["ball.displacement_z_end"]
     assert height.unit == "m" and height.error > 0 and height.mesh >= 0
     assert height.verdict in ("known", "irregular")
-    assert [run.name for run in found.runs[:4]] == ["scene", "draw_1", "draw_2", "element_smoothed"]
+    assert [run.name for run in found.runs[:4]] == ["scene", "draw_1", "element_smoothed", "step_0.5"]
     first = found.runs[0]
     np.testing.assert_allclose(first.time, [0, 0.01, 0.02, 0.03, 0.04])
     assert first.overrides == ("seconds=0.04",)

@@ -1,5 +1,7 @@
 #include "tests/ranks/everywhere.h"
 
+#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -31,6 +33,10 @@ void hold_everywhere(World& world, Ranks& ranks) {
         mine.holders.push_back(moves ? all : std::vector<int>{});
         mine.place.push_back(static_cast<Index>(b));
     }
+    // no rank needs to search for other bodies
+    mine.margin.assign(bodies.slot.size(), infinity);
+    mine.moved.assign(bodies.slot.size(), 0);
+    mine.whole.searched_step = std::numeric_limits<std::uint64_t>::max() / 2;
     note_ghosts(state);
     list_step_again(state);
 }

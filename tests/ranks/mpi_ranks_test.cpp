@@ -1,4 +1,5 @@
-// Runs the test cases of Ranks on MPI processes. It is started by mpirun.
+// Runs the test cases of Ranks on MPI processes. It is started by mpirun. Arguments: the number of ranks, and `abort` if
+// the last rank shall abort while the others wait for it.
 #include <iostream>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,10 @@ int main(int argument_count, char* arguments[]) {
     const std::string expected = argument_count > 1 ? arguments[1] : "";
     if (std::to_string(ranks->size()) != expected)
         ranks->abort("found " + std::to_string(ranks->size()) + " ranks, expected " + expected, 1);
+    if (argument_count > 2) {
+        if (ranks->rank() == ranks->size() - 1) ranks->abort("the last rank gives up", 1);
+        ranks->gather_everywhere({});
+    }
     for (const skerry::test::RanksCase& test : skerry::test::ranks_cases()) {
         try {
             test.run(*ranks);

@@ -177,6 +177,7 @@ std::string run_on_ranks_differs(const RankScene& scene, const WholeRun& whole, 
             const std::vector<StepReport> reports = run(world, scene.seconds, [&](std::size_t step) {
                 compared += compare(scene, whole, step, mine.rank(), WorldAccess::state_of(world));
             });
+            if (reports.back().status == StepStatus::stopped) return;  // another rank has found a difference
             const std::string difference = difference_of_reports(whole.reports, reports);
             if (!difference.empty())
                 throw std::runtime_error("rank " + std::to_string(mine.rank()) + ", " + difference);

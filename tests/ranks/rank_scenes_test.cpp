@@ -10,9 +10,11 @@
 
 #include "engine/world/world_state.h"
 #include "skerry/ranks.h"
+#include "tests/ranks/everywhere.h"
 #include "tests/ranks/rank_scenes.h"
 #include "tests/ranks/thread_ranks.h"
 #include "tests/support/draws.h"
+#include "tests/support/lively_scene.h"
 
 namespace skerry::test {
 namespace {
@@ -40,13 +42,17 @@ Division division_by(OwnerMap map, int ranks, int threads) {
 /// of the scene, so that each scene takes another one.
 std::vector<Division> divisions(std::size_t turn) {
     std::vector<Division> all;
+    const auto add = [&](int ranks, int threads) {
+        all.push_back({ranks, threads, "everywhere", hold_everywhere});
+        for (const OwnerMap map : {OwnerMap::curve, OwnerMap::round_robin, OwnerMap::random})
+            all.push_back(division_by(map, ranks, threads));
+    };
     for (const int threads : {1, 2})
-        for (const int ranks : {3, 2, 4, 8, 1})
-            for (const OwnerMap map : {OwnerMap::curve, OwnerMap::round_robin, OwnerMap::random})
-                all.push_back(division_by(map, ranks, threads));
-    if (full_tests()) return all;
+        for (const int ranks : {3, 2, 4, 8}) add(ranks, threads);
     constexpr std::size_t stride = 7;  // so that neighbouring turns differ in both the owners and the number of ranks
-    return {all[(1 + stride * turn) % all.size()]};
+    if (!full_tests()) return {all[(1 + stride * turn) % all.size()]};
+    add(1, 2);
+    return all;
 }
 
 TEST_CASE("a run on ranks that differs is reported with the step, the body and the column", "[ranks]") {
@@ -77,11 +83,23 @@ TEST_CASE("the scenes for ranks have what they are for", "[ranks]") {
     CHECK(sleep.woken);
 }
 
+std::vector<RankScene> own_scenes() {
+    std::vector<RankScene> scenes;
+    for (const char* name :
+         {"pile", "shots", "sleep", "stiff", "linked", "surfaces", "refused", "one_region", "constraints"})
+        scenes.push_back(own_scene(name));
+    const auto slivers = [](int threads) {
+        Settings settings;
+        settings.threads = threads;
+        return thrown_slivers(settings);
+    };
+    scenes.push_back({"bodies with clusters", slivers, 0.02});
+    return scenes;
+}
+
 TEST_CASE("a scene has the same bits on any number of ranks as without ranks", "[ranks][long]") {
     std::size_t turn = 0;
-    for (const char* name :
-         {"pile", "shots", "sleep", "stiff", "linked", "surfaces", "refused", "one_region", "constraints"}) {
-        const RankScene scene = own_scene(name);
+    for (const RankScene& scene : own_scenes()) {
         const WholeRun whole = run_whole(scene);
         for (const Division& division : divisions(turn++)) {
             INFO("owners: " << division.owners);

@@ -79,13 +79,13 @@ void add_counts(std::byte* into, const std::byte* from) {
 void reductions(Ranks& ranks) {
     const int size = ranks.size();
     for (int round = 0; round < 3; ++round) {
+        std::uint64_t count = std::uint64_t{1} << 40;
+        reduce(ranks, count, add_counts);
+        require(count == static_cast<std::uint64_t>(size) << 40, "counts are added");
         Extremes mine{1.0 / (1 + ranks.rank()), ranks.rank(), 1};
         reduce(ranks, mine, combine_extremes);
         require(mine.least == 1.0 / size && mine.most == size - 1 && mine.count == size,
-                "a record of several values is reduced");
-        std::uint64_t count = std::uint64_t{1} << 40;
-        reduce(ranks, count, add_counts);
-        require(count == static_cast<std::uint64_t>(size) << 40, "records of another size and function are reduced");
+                "a record of several values, of another size, is reduced");
     }
 }
 

@@ -1,7 +1,9 @@
 // Estimated errors of steps and contacts, compared with the true ones (docs/methods/error_estimates.md).
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <tuple>
 
 #include "engine/estimate/contact_area.h"
 #include "engine/estimate/contact_error.h"
@@ -27,9 +29,10 @@ struct Case {
     Real slope = 0;     // [degree]
     bool floor = false;
     Settings settings{};
-    Real restitution = 0;  // of the pair of the body and the floor
-    int order = 1;         // order of the error in the length of the steps
-    Real within = 1.25;    // largest ratio of estimated and true error
+    Real restitution = 0;         // of the pair of the body and the floor
+    std::optional<Vec3> other{};  // centre of a sphere in the way of the body [m]
+    int order = 1;                // order of the error in the length of the steps
+    Real within = 1.25;           // largest ratio of estimated and true error
 };
 
 struct Run {
@@ -47,6 +50,9 @@ Run run(const Case& of, Real factor) {
     settings_of_body.material = world.add_material(of.material);
     const BodyHandle body = of.mesh.nodes.empty() ? world.add_body(Sphere{.radius = 0.05}, settings_of_body)
                                                   : world.add_body(of.mesh, settings_of_body);
+    if (of.other)
+        world.add_body(Sphere{.radius = 0.05},
+                       {.material = settings_of_body.material, .position = *of.other, .dynamics = BodyDynamics::rigid});
     if (of.held) {
         Real left = infinity;
         for (const Vec3& x : of.mesh.nodes) left = std::min(left, x.x());
@@ -106,6 +112,9 @@ std::vector<Case> cases() {
     BodySettings tumbling = rigid;
     tumbling.angular_velocity = {0.05, 6, 0};
     thrown.velocity = pushed.velocity = {1, 0, 0};
+    BodySettings colliding = rigid;
+    colliding.position = {-0.4, 0, 0.3};
+    colliding.velocity = {2, 0, 0};
     Settings vibrating;
     vibrating.theta = 0.55;
     Settings undamped;
@@ -154,6 +163,14 @@ std::vector<Case> cases() {
          .material = {.restitution = 0.8},
          .floor = true,
          .settings = leapfrog,
+         .within = 3},
+        {.name = "sphere that collides with another one",
+         .step = 4e-3,
+         .frame = 0.01,
+         .seconds = 0.35,
+         .body = colliding,
+         .floor = true,
+         .other = Vec3(0, 0, 0.05),
          .within = 3},
         {.name = "elastic, stopped by friction",
          .step = 2e-4,
@@ -410,6 +427,33 @@ TEST_CASE("the contact area of a ball on a floor is that of Hertz, and a cube ha
     CHECK(bodies[0].contact_radius == Approx(expected).epsilon(0.01));
     CHECK(bodies[0].contact_edge == Approx(0.35 * radius).epsilon(0.3));
     CHECK(std::isnan(bodies[1].contact_radius));
+}
+
+TEST_CASE("the contact area of two balls follows from the radii and the stiffness of both", "[scene]") {
+    constexpr Real poisson_ratio = 0.3;
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    World world(settings);
+    Real curvature = 0, compliance = 0;  // [1/m], [1/Pa]
+    std::vector<ErrorEstimate> bodies;
+    for (const auto& [radius, young_modulus, side] : {std::tuple{0.05, 1e5, 1.0}, std::tuple{0.1, 3e5, -1.0}}) {
+        const auto material = world.add_material({.young_modulus = young_modulus, .poisson_ratio = poisson_ratio});
+        bodies.push_back({.body = world.add_body(mesh::ball(radius, 6), {.material = material,
+                                                                         .position = {0, 0, side * radius},
+                                                                         .velocity = {0, 0, -0.1 * side}}),
+                          .name = {}});
+        curvature += 1 / radius;
+        compliance += (1 - poisson_ratio * poisson_ratio) / young_modulus;
+    }
+    REQUIRE(world.advance(0.01).ok());
+    Real force = 0;  // [N]
+    for (const Contact& contact : world.contacts()) force += contact.force().norm();
+    REQUIRE(force > 0);
+    ContactArea area;
+    area.sample(world);
+    area.add_to(bodies);
+    const Real expected = std::cbrt(0.75 * force / curvature * compliance);
+    for (const ErrorEstimate& of : bodies) CHECK(of.contact_radius == Approx(expected).epsilon(0.02));
 }
 
 }  // namespace skerry::test::estimate_step_test

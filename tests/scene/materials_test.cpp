@@ -104,6 +104,26 @@ TEST_CASE("smoothing goes by the Poisson ratio of each material", "[scene]") {
           ElementKind::edge_smoothed);
 }
 
+TEST_CASE("a Poisson ratio of exactly 0 gives the motion of a tiny one, with each kind of element", "[scene]") {
+    const Mesh mesh = mesh::box({0.2, 0.1, 0.1}, {2, 1, 1});
+    for (const MaterialModel model : {MaterialModel::linear, MaterialModel::corotational})
+        for (const ElementKind kind : element_kinds) {
+            INFO(name_of(model) << ", " << name_of(kind));
+            const auto end = [&](Real poisson_ratio) {
+                World world = weightless();
+                const auto material =
+                    world.add_material({.young_modulus = 1e5, .poisson_ratio = poisson_ratio, .model = model});
+                const BodyHandle body = world.add_body(
+                    mesh, {.material = material, .dynamics = BodyDynamics::explicit_elastic, .element = kind});
+                world.set_velocities(body, random_velocities(mesh, 0.5));
+                REQUIRE(world.advance(0.02).ok());
+                return std::vector<Vec3>(world.positions(body).begin(), world.positions(body).end());
+            };
+            const std::vector<Vec3> zero = end(0), tiny = end(1e-9);
+            for (std::size_t n = 0; n < zero.size(); ++n) CHECK((zero[n] - tiny[n]).norm() < 1e-6 * 0.5 * 0.02);
+        }
+}
+
 TEST_CASE("labels that name the body's own material change no bit", "[scene][determinism]") {
     const Mesh mesh = two_layers();
     const auto hash_of = [&](bool labelled) {

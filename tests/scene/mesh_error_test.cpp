@@ -120,8 +120,10 @@ TEST_CASE("the estimated error of the stress of a bent bar is within a fifth of 
     }
 }
 
-TEST_CASE("the estimated error of a largest stress inside a bar is within a factor of 4 of the exact one",
-          "[scene][estimate]") {
+TEST_CASE(
+    "the estimated error of a largest stress inside a bar is within a factor of 4 of the exact one, and that of "
+    "single nodes is the error of linear interpolation",
+    "[scene][estimate]") {
     constexpr Real strain = 1e-3;  // at the middle, where the stress is largest and its gradient is zero
     World world = still_world();
     const Mesh mesh = mesh::box({length, height, height}, {16, 2, 2});
@@ -136,6 +138,23 @@ TEST_CASE("the estimated error of a largest stress inside a bar is within a fact
     INFO("estimated " << found.stress << ", exact " << exact);
     CHECK(found.stress < 4 * exact);
     CHECK(found.stress > exact / 4);
+    Real squares = 0;  // of an edge length times the difference of the strains at its ends [m^2]
+    for (const std::array<Index, 4>& t : mesh.tetrahedra)
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                const Vec3 &a = mesh.nodes[static_cast<std::size_t>(t[i])],
+                           &b = mesh.nodes[static_cast<std::size_t>(t[j])];
+                squares += (a - b).squaredNorm() * std::pow(4 * strain * (a.x() * a.x() - b.x() * b.x()), 2);
+            }
+    const Real edges = 6 * static_cast<Real>(mesh.tetrahedra.size());
+    const Real interpolation = std::sqrt(squares / edges) / 8;
+    CHECK(found.interpolation < 1.5 * interpolation);
+    // The volumetric part of the elements at nodes has no stiffness with a Poisson ratio of 0.
+    const auto split =
+        world.add_body(mesh, {.material = world.material(body), .element = ElementKind::edge_node_smoothed});
+    world.set_positions(split, shape);
+    CHECK(measure_mesh_error(world, split).stored > 0);
+    CHECK(found.interpolation > interpolation / 1.5);
 }
 
 TEST_CASE("the estimated error of the deflection of a cantilever is within a factor of 3", "[scene][estimate]") {

@@ -20,11 +20,14 @@ struct ErrorEstimate {
     BodyHandle body{};
     std::string name;  // name of the body
     // Error of the stress of the tetrahedra, due to the mesh: energy norm of the error over that of the stress. This
-    // and the next two values are those at the sample with the largest elastic energy of the body.
+    // and the next three values are those at the sample with the largest elastic energy of the body.
     Real mesh = not_estimated;
     // Error of a displacement under given loads, due to the mesh. Positive if the mesh is too stiff, negative if it is
     // too soft. Times `deformation` it is the error of the motion.
     Real deflection = not_estimated;
+    // Error of the displacement of a single node besides `deflection`, due to the mesh: root mean square of the error
+    // of linear interpolation along the edges [m].
+    Real interpolation = not_estimated;
     Real stress = not_estimated;  // error of the largest von Mises stress at the nodes, due to the mesh
     // Error of the motion, due to the length of the steps: largest distance of the nodes from where infinitely short
     // steps would take them, over their largest displacement from the start, both as root mean squares. Not estimated

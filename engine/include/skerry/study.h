@@ -52,6 +52,7 @@ struct StudyColumn {
     Real size = 0;  // diagonal of the bounding box of the body at the start, or of all bodies for other columns [m]
     // False for a column that gets no error bar of its own, such as the place of one of many bodies.
     bool reported = true;
+    bool is_statistic = false;   // true for a mean, least or largest value of all bodies, which chaos leaves meaningful
     std::vector<Real> values{};  // one per time; NaN if unknown
     // For a column of a largest stress: number within the body, and position at the start [m], of the node that had the
     // largest value of the run. Else no_index.
@@ -137,6 +138,7 @@ struct CheapestSettings {
     std::vector<std::string> assignments{};  // for `skerry run --set`; filled in by study()
 };
 
+/// Error bars of the quantities of a scene, and the runs that they come from.
 struct StudyResult {
     std::string scene;           // name of the scene
     std::vector<StudyRun> runs;  // the first is the scene as it is
@@ -158,6 +160,7 @@ struct StudyProgress {
     double share = 0;  // share of the predicted CPU time that is done, from 0 to 1
 };
 
+/// Extent of a study, and its stopping.
 struct StudySettings {
     double error = 0.01;                // wanted relative error, for the choice of the cheapest settings, > 0
     std::vector<std::string> probes{};  // names NAME or NAME.QUANTITY of the probes; empty: all and the default ones
@@ -196,8 +199,8 @@ std::string study_page(const StudyResult& result);
 /// the rows of the first run. A number that is not finite becomes null.
 std::string study_json(const StudyResult& result);
 
-/// Writes the scene with the cheapest settings, which `result` must have. Paths in the new file lead to the files of
-/// the scene. Throws SceneError.
+/// Writes the scene with the cheapest settings. Paths in the new file lead to the files of the scene. Throws
+/// SceneError, also if no settings reach the wanted error.
 void write_cheapest_scene(const std::filesystem::path& scene, const StudyResult& result,
                           const std::filesystem::path& file);
 

@@ -61,7 +61,7 @@ using Color = Vec3f;
 Color color_of_value(Real value, Real top);
 /// Content that a frame needs for the colours.
 inline FrameContent content_of(FilmColor color) {
-    return color == FilmColor::stress ? FrameContent::node_stress : FrameContent::motion;
+    return color == FilmColor::stress ? FrameContent::node_fields : FrameContent::motion;
 }
 
 /// Colour of a body by its number, for FilmColor::none.

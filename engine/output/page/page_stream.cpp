@@ -17,8 +17,8 @@ static_assert(std::size(kind_names) == std::variant_size_v<Shape>);
 /// Value of a displayed field at a node. `field` is the number of the field, from 0 to page_field_count - 1.
 Real value_at(const BodyFrame& body, std::size_t field, std::size_t node) {
     if (field == 0) return body.velocity[node].norm();
+    if (field == error_field) return body.node_mesh_error.empty() ? 0 : body.node_mesh_error[node];
     if (body.node_stress.empty()) return 0;
-    if (field == error_field) return body.node_mesh_error[node];
     if (field == stress_field) return von_mises(body.node_stress[node]);
     // The factor 2/3 is chosen so that an incompressible bar in tension shows its axial strain.
     return von_mises(body.node_strain[node]) * 2 / 3;
@@ -76,7 +76,7 @@ std::string_view PageStream::pack(const Frame& frame) {
 /// scales of the frame.
 void PageStream::measure_body(const BodyFrame& body, BodyValues& values) {
     SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.node_strain.size() &&
-                 body.node_stress.size() == body.node_mesh_error.size() &&
+                 (body.node_mesh_error.empty() || body.node_mesh_error.size() == body.node_stress.size()) &&
                  (body.node_stress.empty() || body.node_stress.size() == body.position.size()));
     const auto [known, is_new] = body_numbers_.try_emplace(body.handle, static_cast<Index>(bodies_.size()));
     values.number = known->second;

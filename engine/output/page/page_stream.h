@@ -43,8 +43,8 @@ PageRow row_of(const Frame& frame);
 ///   lines (LineStream)
 class PageStream {
 public:
-    /// Returns the bytes of the frame, which are valid until the next call. Bodies without stresses and strains have
-    /// the value 0 of both.
+    /// Returns the bytes of the frame, which are valid until the next call. Bodies without stresses and strains, or
+    /// without errors of the mesh, have the value 0 of these.
     std::string_view pack(const Frame& frame);
 
     // Objects of all frames so far. The position in a list is the number of the object in the stream.

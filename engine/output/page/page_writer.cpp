@@ -21,7 +21,7 @@ PageWriter::PageWriter(const std::filesystem::path& file, const std::string& tit
 PageWriter::~PageWriter() = default;
 
 void PageWriter::add_frame(const World& world) {
-    impl_->data.add(collect_frame(world, FrameContent::node_values));
+    impl_->data.add(collect_frame(world, FrameContent::mesh_error));
 }
 
 void PageWriter::close(const World& world) {

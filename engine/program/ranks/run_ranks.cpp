@@ -165,11 +165,12 @@ World& RunRanks::divide(Scene& scene, OwnerMap owners) {
 }
 
 World* RunRanks::whole() {
-    if (!several()) return &scene_->world;
-    std::optional<World> world = gathered(*part_);
-    if (!world) return nullptr;
-    scene_->world = std::move(*world);
-    return &scene_->world;
+    if (several() && !is_gathered_) {
+        std::optional<World> world = gathered(*part_);
+        if (world) scene_->world = std::move(*world);
+        is_gathered_ = true;
+    }
+    return is_first() ? &scene_->world : nullptr;
 }
 
 bool RunRanks::any(bool mine) const {

@@ -46,9 +46,11 @@ public:
     /// world holds something that cannot be divided. Afterwards the world of the scene is valid on rank 0 alone, after
     /// a call of whole().
     World& divide(Scene& scene, OwnerMap owners);
-    /// Collective. Returns the world of the scene on rank 0, null on the other ranks. Without other ranks it is the
-    /// part of this rank.
+    /// Collective. Returns the whole world on rank 0, null on the other ranks. It is gathered if there was a call of
+    /// advance() since the last call of this function.
     World* whole();
+    /// Must be called before the part is advanced.
+    void before_advance() { is_gathered_ = false; }
 
     /// Collective. Returns true on all ranks if the argument is true on one of them.
     bool any(bool mine) const;
@@ -72,7 +74,7 @@ private:
     void agree(const Json& mine) const;
 
     std::unique_ptr<Ranks> ranks_;  // null: this process is alone
-    bool divided_ = false;
+    bool divided_ = false, is_gathered_ = false;
     Scene* scene_ = nullptr;
     std::optional<World> part_;
     std::array<std::string, 2> last_words_;  // the text in use, and that before it

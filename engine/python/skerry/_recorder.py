@@ -12,7 +12,7 @@ import weakref
 import webbrowser
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,11 +46,35 @@ class Follower(Protocol):
         """Called before the world continues from another state. Raises SceneError if it must not."""
 
 
-class Recorder:
+class _Block(Follower):
+    """A follower that the world calls in the `with` block of the follower itself."""
+
+    __slots__ = ("_world",)
+    _world: World
+
+    def __enter__(self) -> Self:
+        self._begin()
+        self._world._followers.append(self)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._world._followers.remove(self)
+        self._end()
+
+    def _begin(self) -> None:
+        """Called at the start of the block."""
+
+    def _end(self) -> None:
+        """Called at the end of the block."""
+
+
+class Recorder(_Block):
     """Records time series of a world. World.recorder() makes it. In a `with` block it samples by itself after every
     call of advance(); otherwise call sample()."""
 
-    __slots__ = ("_core", "_handles", "_measures", "_world")
+    __slots__ = ("_core", "_handles", "_measures")
 
     def __init__(self, world: World, probes: Mapping[str, Probe], every: float) -> None:
         from ._world.probes import ForceProbe, ReactionProbe, recorded_probes
@@ -111,15 +135,8 @@ class Recorder:
         impulse is missed. A call before the first step records the initial state, with NaN as forces."""
         self._core.sample(self._world._core)
 
-    def __enter__(self) -> Recorder:
+    def _begin(self) -> None:
         self.sample()
-        self._world._followers.append(self)
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._world._followers.remove(self)
 
     def table(self) -> dict[str, Reals]:
         """The rows recorded so far by column: "time" and "PROBE.QUANTITY", such as "tip.position_z". Forces in a row
@@ -160,11 +177,11 @@ class Recorder:
         return f"<skerry.Recorder {len(self):,} rows of {len(self._core.columns()):,} columns>"
 
 
-class ErrorEstimator:
+class ErrorEstimator(_Block):
     """Estimates errors of the bodies of a world. World.error_estimator() makes it. It samples in a `with` block, which
     takes about 1.5 % of the computing time of the steps, and never changes the world."""
 
-    __slots__ = ("_core", "_world")
+    __slots__ = ("_core",)
 
     def __init__(self, world: World) -> None:
         self._world = world
@@ -187,14 +204,7 @@ class ErrorEstimator:
         """Takes a sample if it is due. The world calls it in the `with` block."""
         self._core.sample(self._world._core)
 
-    def __enter__(self) -> ErrorEstimator:
-        self._world._followers.append(self)
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._world._followers.remove(self)
+    def _end(self) -> None:
         self._core.finish(self._world._core)
 
     def table(self) -> dict[str, list[str] | NDArray[np.generic]]:
@@ -203,10 +213,11 @@ class ErrorEstimator:
 
         body: its name. mesh: relative error of the stress of the tetrahedra in the energy norm, due to the mesh.
         deflection: relative error of a displacement under given loads, due to the mesh; positive if the mesh is too
-        stiff. stress: relative error of the largest von Mises stress at the nodes. step: relative error of the motion,
-        due to the length of the steps. deformation: displacement by deformation over displacement. contact: relative
-        error of the contact forces, due to the solver. overlap: largest overlap [m]. gap: largest
-        distance of a contact that carried a force [m]. contact_radius, contact_edge:
+        stiff. interpolation: error of single nodes besides deflection [m]. stress: relative error of the largest von
+        Mises stress at the nodes. step: relative error of the motion, due to the length of the steps. deformation:
+        displacement by deformation over displacement. contact: relative error of the contact forces, due to the solver.
+        overlap: largest overlap [m]. gap: largest distance of a contact that carried a force [m]. contact_radius,
+        contact_edge:
         radius of the most loaded contact area by the theory of Hertz, and mean edge there [m]. time: of the sample with
         the largest elastic energy [s]. worst_tetrahedron: the one with the largest error of the stress, or -1."""
         table: dict[str, list[str] | NDArray[np.generic]] = self._core.table()

@@ -29,6 +29,42 @@ void add_run_sentences(const StudyFamily& family, std::vector<std::string>& sent
     }
 }
 
+/// The quantities of a study, and the columns that they belong to.
+struct Measured {
+    std::vector<Real> scales, until;     // by column
+    Real agree_until = infinity;         // StudyResult::agree_until
+    std::vector<std::size_t> columns{};  // columns with error bars
+    std::vector<MeasuredQuantity> quantities{};
+
+    bool is_chaotic(const StudyFamily& family) const { return agree_until < family.scene->time.back(); }
+};
+
+Measured measure_all(const StudyFamily& family, const StudySettings& settings) {
+    Measured found{.scales = column_scales(family), .until = {}};
+    const PerturbedRuns perturbed = family.perturbed();
+    const auto is_place = [](const StudyColumn& column) { return column.what.unit == "m" && !column.is_statistic; };
+    for (std::size_t column = 0; column < found.scales.size(); ++column) {
+        found.until.push_back(agree_until(perturbed, column, found.scales[column]));
+        if (is_place(family.scene->columns[column]))
+            found.agree_until = std::min(found.agree_until, found.until.back());
+    }
+    const bool reports_bodies = std::ranges::any_of(
+        family.scene->columns, [&](const StudyColumn& column) { return column.reported && is_place(column); });
+    for (std::size_t column = 0; column < found.scales.size(); ++column) {
+        const StudyColumn& what = family.scene->columns[column];
+        if (!what.reported || (what.is_statistic && !found.is_chaotic(family) && reports_bodies)) continue;
+        // Values below the effect of 1e-12 m or of rounding mean nothing, as the stress of a body that flies freely.
+        if (settings.probes.empty() && what.what.unit != "m" &&
+            family.sizes[column] < agreement_share * found.scales[column])
+            continue;
+        found.columns.push_back(column);
+        const Real scale = found.scales[column], until = found.until[column];
+        for (const StudyFigure figure : figures_of(family, column, until, scale))
+            found.quantities.push_back(measure(family, column, figure, scale, until, settings.error));
+    }
+    return found;
+}
+
 }  // namespace
 
 StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings) {
@@ -36,38 +72,35 @@ StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings) {
     result.wanted_error = settings.error;
     result.runs = std::move(runs);
     const StudyFamily family(result.runs);
-    const std::vector<Real> scales = column_scales(family);
-    const PerturbedRuns perturbed = family.perturbed();
-    std::vector<Real> until;
-    for (std::size_t column = 0; column < scales.size(); ++column) {
-        until.push_back(agree_until(perturbed, column, scales[column]));
-        if (family.scene->columns[column].what.unit == "m" && !is_statistic(family.scene->columns[column]))
-            result.agree_until = std::min(result.agree_until, until.back());
-    }
-    result.growth_rate = growth_rate(perturbed, scales);
-    const bool chaotic = result.agree_until < family.scene->time.back();
-    if (chaotic) result.sentences.push_back(chaos_text(result));
-    const bool reports_bodies = std::ranges::any_of(family.scene->columns, [](const StudyColumn& column) {
-        return column.reported && column.what.unit == "m" && !is_statistic(column);
-    });
-    std::vector<MeasuredQuantity> measured;
-    result.bands.resize(scales.size());
-    for (std::size_t column = 0; column < scales.size(); ++column) {
-        const StudyColumn& what = family.scene->columns[column];
-        if (!what.reported || (is_statistic(what) && !chaotic && reports_bodies)) continue;
-        // Values below the effect of 1e-12 m or of rounding mean nothing, as the stress of a body that flies freely.
-        if (settings.probes.empty() && what.what.unit != "m" && family.sizes[column] < agreement_share * scales[column])
-            continue;
-        result.bands[column] = error_band(family, column, scales[column], until[column]);
-        for (const StudyFigure figure : figures_of(family, column, until[column], scales[column]))
-            measured.push_back(measure(family, column, figure, scales[column], until[column], settings.error));
-    }
-    for (const MeasuredQuantity& quantity : measured) result.quantities.push_back(quantity.result);
-    result.cheapest = cheapest_settings(family, measured, settings.error);
+    const Measured measured = measure_all(family, settings);
+    result.agree_until = measured.agree_until;
+    result.growth_rate = growth_rate(family.perturbed(), measured.scales);
+    if (measured.is_chaotic(family)) result.sentences.push_back(chaos_text(result));
+    result.bands.resize(measured.scales.size());
+    for (const std::size_t column : measured.columns)
+        result.bands[column] = error_band(family, column, measured.scales[column], measured.until[column]);
+    for (const MeasuredQuantity& quantity : measured.quantities) result.quantities.push_back(quantity.result);
+    result.cheapest = cheapest_settings(family, measured.quantities, settings.error);
     if (!result.cheapest)
         result.sentences.emplace_back("No cheapest settings can be named, because no quantity has a known error.");
     add_run_sentences(family, result.sentences);
     return result;
+}
+
+OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& settings) {
+    // A part that is smaller than these shares of the wanted error, or of the error bar, does not matter.
+    constexpr Real noise_share = 0.01, step_share = 0.1, share_of_bar = 0.1;
+    const StudyFamily family(runs);
+    const Measured measured = measure_all(family, settings);
+    OpenParts open{.step = false, .noise = measured.is_chaotic(family)};
+    for (const MeasuredQuantity& quantity : measured.quantities) {
+        const StudyQuantity& r = quantity.result;
+        const Real wanted = settings.error * r.scale;
+        open.noise |= r.noise > noise_share * wanted;
+        // The error of two step lengths is that of order 1; a third one may show that it is smaller.
+        open.step |= r.step > step_share * wanted && !(r.step < share_of_bar * r.error);
+    }
+    return open;
 }
 
 }  // namespace skerry

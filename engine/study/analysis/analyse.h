@@ -12,4 +12,12 @@ namespace skerry {
 /// empty.
 StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings);
 
+/// Parts of the errors of which further runs would change the error bars.
+struct OpenParts {
+    bool step = false;   // a smaller step length
+    bool noise = false;  // another perturbation of the start
+};
+/// Finds these parts from the runs so far. The first is the scene as it is, and must be ok.
+OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& settings);
+
 }  // namespace skerry

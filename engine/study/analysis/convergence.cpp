@@ -51,13 +51,13 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         return;
     }
     const Real coarse_difference = levels_[n - 3].value - middle.value;
-    const Real largest = std::max(std::abs(coarse_difference), std::abs(difference));
     order_ = std::log(std::abs(coarse_difference / difference)) / std::log(ratio);
     const bool fast = order_ > near_most * theory.most;
     if (coarse_difference * difference < 0 && !fast) {
         shape_ = ConvergenceShape::oscillating;
         used_order_ = 0;
-        remainder_ = order_ > 0 ? largest - std::abs(difference) : largest;
+        // A second term of the other sign explains the change. The error of a h^2 + b h^3 is then below that of
+        // order 1.
     } else if (order_ < near_least * theory.least) {
         // Low orders would predict errors without bounds.
         shape_ = ConvergenceShape::slow;

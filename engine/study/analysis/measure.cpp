@@ -5,6 +5,7 @@
 #include <map>
 
 #include "engine/output/number_text.h"
+#include "engine/output/series/series_summary.h"
 
 namespace skerry {
 
@@ -29,35 +30,18 @@ const char* ending_of(StudyFigure figure) {
     return "";
 }
 
-/// Row of the first, or with `last` of the last, value that is known.
-std::size_t known_row(const std::vector<Real>& values, bool last) {
-    const auto known = [](Real value) { return std::isfinite(value); };
-    return last ? static_cast<std::size_t>(std::ranges::find_if(values.rbegin(), values.rend(), known).base() -
-                                           values.begin()) -
-                      1
-                : static_cast<std::size_t>(std::ranges::find_if(values, known) - values.begin());
-}
-
 std::size_t row_of_time(const StudyRun& run, Real time) {
     return static_cast<std::size_t>(std::ranges::upper_bound(run.time, time) - run.time.begin()) - 1;
 }
 
 Real figure_value(const StudyRun& run, std::size_t column, StudyFigure figure, Real agree_until) {
     const std::vector<Real>& values = run.columns[column].values;
-    if (std::ranges::none_of(values, [](Real value) { return std::isfinite(value); })) return no_value;
-    if (figure == StudyFigure::end) return values[known_row(values, true)];
     if (figure == StudyFigure::agreed) return values[row_of_time(run, agree_until)];
-    Real least = infinity, most = -infinity, sum = 0, seconds = 0;
-    for (std::size_t row = 0; row < values.size(); ++row) {
-        if (!std::isfinite(values[row])) continue;
-        least = std::min(least, values[row]);
-        most = std::max(most, values[row]);
-        const Real since = row > 0 ? run.time[row] - run.time[row - 1] : 0;
-        sum += since * values[row];
-        seconds += since;
-    }
-    if (figure == StudyFigure::mean) return sum / seconds;
-    return figure == StudyFigure::largest ? most : least;
+    const SeriesSummary found = summary_of_series(run.time, values);
+    return figure == StudyFigure::end       ? found.end
+           : figure == StudyFigure::mean    ? found.mean
+           : figure == StudyFigure::largest ? found.most
+                                            : found.least;
 }
 
 /// Group of columns with a common scale.
@@ -183,7 +167,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
         r.sentence = sentence;
     };
     const StudyColumn& scene = family.scene->columns[column];
-    if (figure != StudyFigure::agreed && !is_statistic(scene) && quantity.noise > agreement_share * r.scale) {
+    if (figure != StudyFigure::agreed && !scene.is_statistic && quantity.noise > agreement_share * r.scale) {
         r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
         return decide(StudyVerdict::chaotic,
                       "runs begun 1e-12 m apart end with other values, so this one value says nothing about them");
@@ -297,16 +281,13 @@ PerturbedRuns StudyFamily::perturbed() const {
     return runs;
 }
 
-bool is_statistic(const StudyColumn& column) {
-    return column.what.probe == "bodies";
-}
-
 std::vector<Real> column_sizes(const StudyRun& run) {
     std::map<std::string, Real> largest;
     for (const StudyColumn& column : run.columns) {
         if (column.values.empty()) continue;
         const bool relative = column.what.unit == "m" || column.what.unit == "J";
-        const std::size_t first = known_row(column.values, false);
+        const auto known = std::ranges::find_if(column.values, [](Real value) { return std::isfinite(value); });
+        const auto first = static_cast<std::size_t>(known - column.values.begin());
         Real& scale = largest[group_of(column.what)];
         for (std::size_t row = first; row < column.values.size(); ++row) {
             const Real value = std::abs(column.values[row] - (relative ? column.values[first] : 0));
@@ -323,12 +304,11 @@ std::vector<Real> column_scales(const StudyFamily& family) {
     const StudyRun& run = *family.scene;
     const PerturbedRuns perturbed = family.perturbed();
     std::vector<Real> scales = family.sizes;
-    Real force = 0, motion = 0;
-    std::map<std::string, Real> energy;  // largest energy of each probe [J]
+    std::map<std::string, Real> of_unit;  // largest size of the columns with this unit
+    std::map<std::string, Real> energy;   // largest energy of each probe [J]
     for (std::size_t c = 0; c < scales.size(); ++c) {
         const StudyColumn& column = run.columns[c];
-        if (column.what.unit == "N") force = std::max(force, scales[c]);
-        if (column.what.unit == "m") motion = std::max(motion, scales[c]);
+        of_unit[column.what.unit] = std::max(of_unit[column.what.unit], scales[c]);
         if (column.what.unit != "J") continue;
         for (const Real value : column.values)
             if (std::abs(value) > energy[column.what.probe]) energy[column.what.probe] = std::abs(value);
@@ -336,10 +316,9 @@ std::vector<Real> column_scales(const StudyFamily& family) {
     for (std::size_t c = 0; c < scales.size(); ++c) {
         const StudyColumn& column = run.columns[c];
         const std::string& unit = column.what.unit;
-        const Real least = unit == "m"   ? std::max(rounding * column.size, least_share * motion)
-                           : unit == "J" ? rounding * energy[column.what.probe]
-                           : unit == "N" ? least_share * force
-                                         : 0;
+        const Real least = unit == "J"
+                               ? rounding * energy[column.what.probe]
+                               : std::max(unit == "m" ? rounding * column.size : 0, least_share * of_unit[unit]);
         scales[c] = std::max({scales[c], least, first_difference(perturbed, c) / agreement_share});
     }
     return scales;
@@ -348,7 +327,7 @@ std::vector<Real> column_scales(const StudyFamily& family) {
 std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t column, Real agree_until, Real scale) {
     const StudyColumn& scene = family.scene->columns[column];
     std::vector<StudyFigure> figures;
-    if (agree_until < family.scene->time.back() && !is_statistic(scene) &&
+    if (agree_until < family.scene->time.back() && !scene.is_statistic &&
         std::isfinite(figure_value(*family.scene, column, StudyFigure::agreed, agree_until)))
         figures.push_back(StudyFigure::agreed);
     figures.push_back(StudyFigure::end);
@@ -404,7 +383,7 @@ std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real
     const StudyColumn& scene = family.scene->columns[column];
     std::vector<Real> band;
     for (std::size_t row = 0; row < scene.values.size(); ++row) {
-        const bool agreed = family.scene->time[row] <= agree_until || is_statistic(scene);
+        const bool agreed = family.scene->time[row] <= agree_until || scene.is_statistic;
         const auto value_of = [&](const StudyRun& run) { return run.columns[column].values[row]; };
         band.push_back(agreed ? measure_values(family, column, scale, value_of).result.error : no_value);
     }

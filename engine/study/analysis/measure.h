@@ -43,9 +43,9 @@ struct MeasuredQuantity {
 std::vector<Real> column_sizes(const StudyRun& run);
 
 /// Returns the scale of each column, to which its errors are relative: its size, but at least
-/// - for lengths the rounding error of the size of the body, and a millionth of the largest motion of all columns,
+/// - for lengths the rounding error of the size of the body,
 /// - for energies the rounding error of the largest energy of the probe,
-/// - for forces a millionth of the largest force of all columns,
+/// - for others, and for lengths, a millionth of the largest size of all columns with this unit,
 /// - the difference that the perturbation of the start makes at once, divided by the share of agreement.
 std::vector<Real> column_scales(const StudyFamily& family);
 
@@ -63,8 +63,5 @@ Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant);
 
 /// Half width of the error bar of each row of a column.
 std::vector<Real> error_band(const StudyFamily& family, std::size_t column, Real scale, Real agree_until);
-
-/// True for a column that summarises all bodies. Its values remain meaningful in chaotic scenes.
-bool is_statistic(const StudyColumn& column);
 
 }  // namespace skerry

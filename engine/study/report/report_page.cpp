@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "engine/output/number_text.h"
 #include "engine/output/table/table_page.h"
@@ -56,18 +57,36 @@ PageJson run_rows(const StudyResult& result) {
     return rows;
 }
 
+/// The table without the columns that are empty in all rows but the heading.
+PageJson without_empty_columns(const PageJson& rows) {
+    PageJson kept = PageJson::array();
+    for (const PageJson& row : rows) {
+        PageJson& cells = kept.emplace_back(PageJson::array());
+        for (std::size_t c = 0; c < row.size(); ++c)
+            if (std::any_of(rows.begin() + 1, rows.end(), [c](const PageJson& any) { return any[c] != ""; }))
+                cells.push_back(row[c]);
+    }
+    return kept;
+}
+
 PageJson summary_table(const StudyResult& result) {
-    PageJson rows = {{"quantity", "value", "error bar", "relative", "verdict", "mesh", "step", "contacts", "start",
-                      "best value", "orders", "remark"}};
+    PageJson rows = {{"quantity", "value", "relative", "verdict", "parts", "best value", "orders", "remark"}};
     for (const StudyQuantity& q : result.quantities) {
         if (is_zero(q)) continue;
         const QuantityText text = quantity_text(q);
-        const auto bar = [](const std::string& error) { return error.empty() ? error : "\u00b1 " + error; };
-        rows.push_back({q.name, text.value + " " + text.unit, bar(text.error), text.share, name_of(q.verdict),
-                        text.mesh, text.step, text.contact, text.noise,
-                        text.best.empty() ? "" : text.best + " " + bar(text.best_error), text.orders, q.sentence});
+        const auto with_bar = [](const std::string& value, const std::string& error) {
+            return error.empty() ? value : value + " \u00b1 " + error;
+        };
+        std::string parts;
+        for (const auto& [name, part] : {std::pair{"mesh ", text.mesh}, std::pair{"step ", text.step},
+                                         std::pair{"contacts ", text.contact}, std::pair{"start ", text.noise}})
+            if (!part.empty()) parts += (parts.empty() ? "" : ", ") + (name + part);
+        // The notes above the table have the remarks on quantities that are not known.
+        rows.push_back({q.name, with_bar(text.value, text.error) + " " + text.unit, text.share, name_of(q.verdict),
+                        parts, with_bar(text.best, text.best_error), text.orders,
+                        q.verdict == StudyVerdict::known ? q.sentence : std::string()});
     }
-    return rows;
+    return without_empty_columns(rows);
 }
 
 PageJson time_series(const StudyResult& result) {
@@ -125,6 +144,7 @@ std::string study_page(const StudyResult& result) {
         {"scene", result.scene},
         {"parameters", {"settings", "mesh level", "step", "tolerance", "assignments"}},
         {"figures", figures},
+        {"tabled", {cpu_time, "steps", "tetrahedra"}},
         {"rows", run_rows(result)},
         {"start",
          {{"x", cpu_time},

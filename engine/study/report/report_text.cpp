@@ -51,6 +51,13 @@ bool is_minor(const StudyQuantity& q) {
            q.name.find(".pressing_force_") != std::string::npos;
 }
 
+/// True for a figure of a column that summarises all bodies.
+bool is_statistic(const StudyQuantity& q, const StudyResult& result) {
+    return std::ranges::any_of(result.runs.front().columns, [&](const StudyColumn& column) {
+        return column.is_statistic && q.name.starts_with(column.what.probe + "." + column.what.quantity + "_");
+    });
+}
+
 std::string quantities_text(const StudyResult& result) {
     std::vector<const StudyQuantity*> shown;
     std::size_t negligible = 0, width = 0;
@@ -62,8 +69,7 @@ std::string quantities_text(const StudyResult& result) {
     }
     std::stable_partition(shown.begin(), shown.end(), [](const StudyQuantity* q) { return !is_minor(*q); });
     // Statistics of all bodies come first: they are reported if there are too many bodies, or if they move chaotically.
-    std::stable_partition(shown.begin(), shown.end(),
-                          [](const StudyQuantity* q) { return q->name.starts_with("bodies."); });
+    std::stable_partition(shown.begin(), shown.end(), [&](const StudyQuantity* q) { return is_statistic(*q, result); });
     const std::size_t left = shown.size() > most_quantities ? shown.size() - most_quantities : 0;
     shown.resize(shown.size() - left);
     for (const StudyQuantity* q : shown) width = std::max(width, q->name.size());

@@ -99,10 +99,11 @@ QuantityText quantity_text(const StudyQuantity& q) {
                 " of " + short_number(q.scale / scale_factor) + (q.unit == "1" ? "" : " " + scale_prefix + q.unit);
         }
     }
-    text.orders = order_text("order", q.mesh_order, q.expected_mesh_order);
+    constexpr Real least_share = 1e-4;  // the order of a smaller error, relative to the scale, says nothing
+    if (q.mesh > least_share * q.scale) text.orders = order_text("order", q.mesh_order, q.expected_mesh_order);
     // The order of the steps is of interest if the steps have a good part of the error.
     constexpr Real share = 0.2;
-    if (q.step > share * q.error) {
+    if (q.step > std::max(share * q.error, least_share * q.scale)) {
         const std::string step = order_text("order of steps", q.step_order, q.expected_step_order);
         text.orders += (text.orders.empty() || step.empty() ? "" : ", ") + step;
     }

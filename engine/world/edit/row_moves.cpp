@@ -29,10 +29,10 @@ std::vector<std::vector<AnyColumn>> columns_by_body_table(Model& model) {
         return columns;
     };
     SurfaceTables& surface = model.surface;
-    return {all(model.bodies),      all(model.nodes),         all(model.node_blocks), all(model.elements),
-            all(model.element_nodes), all(surface.edges),     all(model.tetrahedra),  all(surface.triangles),
-            all(surface.vertices),  all(model.bvh),           {surface.vertex_triangle}, all(model.bvh_leaves),
-            all(model.rigid_bodies), all(model.implicit_nodes)};
+    return {all(model.bodies),        all(model.nodes),         all(model.node_blocks),    all(model.elements),
+            all(model.element_nodes), all(surface.edges),       all(model.tetrahedra),     all(surface.triangles),
+            all(surface.vertices),    all(model.bvh),           {surface.vertex_triangle}, all(model.bvh_leaves),
+            all(model.rigid_bodies),  all(model.implicit_nodes)};
 }
 
 OfBodyTables<Range> rows_of_body(const Model& model, std::size_t body) {

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <span>
 
+#include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/seams.h"
 #include "engine/world/step/step.h"
 
@@ -46,7 +47,8 @@ void append(std::span<const Vec3> rows, RankMessage& message) {
 
 /// Sends the predicted velocities of the bodies that this rank leads, in body order, and receives those of its led
 /// ghosts. Sleeping bodies have no velocity and are left out.
-void send_predictions(const LedBodies& bodies, std::span<Vec3> velocity_next, PredictionMail& mail, RankChannel& channel) {
+void send_predictions(const LedBodies& bodies, std::span<Vec3> velocity_next, PredictionMail& mail,
+                      RankChannel& channel) {
     mail.start(bodies.peers.size());
     for (std::size_t b = 0; b < bodies.nodes.size(); ++b) {
         if (!bodies.leads[b] || bodies.asleep[b]) continue;
@@ -57,8 +59,8 @@ void send_predictions(const LedBodies& bodies, std::span<Vec3> velocity_next, Pr
     mail.taken.assign(bodies.peers.size(), 0);
     for (std::size_t b = 0; b < bodies.nodes.size(); ++b) {
         if (bodies.ghost[b] != GhostKind::led || bodies.asleep[b]) continue;
-        const auto peer = static_cast<std::size_t>(std::ranges::lower_bound(bodies.peers, bodies.owner[b]) -
-                                                   bodies.peers.begin());
+        const auto peer =
+            static_cast<std::size_t>(std::ranges::lower_bound(bodies.peers, bodies.owner[b]) - bodies.peers.begin());
         const std::span<Vec3> rows = rows_of(velocity_next, bodies.nodes[b]);
         std::memcpy(static_cast<void*>(rows.data()), mail.in[peer].data() + mail.taken[peer], rows.size_bytes());
         mail.taken[peer] += rows.size_bytes();
@@ -86,9 +88,18 @@ void note_ghosts(WorldState& world) {
     }
 }
 
+void send_clustered_bodies(WorldState& world) {
+    if (!world.model.of_ranks.clusters_grew) return;
+    RankState& ranks = world.ranks;
+    for (std::size_t b = 0; b < ranks.leads.size(); ++b)
+        if (ranks.leads[b] && !can_be_led(world.model, b)) ranks.stale.push_back(ranks.place[b]);
+    update_ghosts(world);
+}
+
 void list_led_ghosts(WorldState& w, TaskGraph& g) {
     if (!w.ranks.on()) return;
-    const auto if_led = only_if([](std::span<const GhostKind> ghost) { return !ghost.empty(); }, read(w.model.bodies.ghost));
+    const auto if_led =
+        only_if([](std::span<const GhostKind> ghost) { return !ghost.empty(); }, read(w.model.bodies.ghost));
     g.stage("ranks/send_predictions", send_predictions, inputs<LedBodies>(w.ranks, w.model.bodies),
             write(w.model.nodes.velocity_next), make(w.ranks.predictions), make(w.ranks.channel), if_led);
 }

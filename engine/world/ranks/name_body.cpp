@@ -4,9 +4,13 @@
 namespace skerry {
 
 NamedBody name_body(const WorldState& world, Index place) {
-    const Index row = place == no_index ? no_index : world.ranks.row_of(place);
-    if (row == no_index) return {};
+    if (place == no_index) return {};
     const Model& model = world.model;
+    const Index row = world.ranks.row_of(place);
+    if (row == no_index) {
+        const WholeWorld& whole = world.ranks.whole;
+        return {whole.handle(model, place), whole.records[static_cast<std::size_t>(place)].name};
+    }
     const auto b = static_cast<std::size_t>(row);
     // The remaining bodies are the meshes of mesh colliders, which have no handle.
     const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;

@@ -106,9 +106,9 @@ struct RankState {
     std::vector<std::vector<int>> holders;
     // For each row of BodyTable: place of the body, its row in the undivided world. The places ascend.
     Column<Index> place;
-    // For each row of BodyTable: SearchMemory::body_travel_bound at which the body leaves the box that was used to find
-    // its holders [m].
-    Column<Real> travel_limit;
+    // For each row of BodyTable: distance by which the body may move before its holders must be found again; infinite
+    // for ghosts. `moved`: bound of the distance by which it has moved since they were found [m].
+    Column<Real> margin, moved;
     WholeWorld whole;  // empty if `ranks` is null
     // For each place: number of pieces of the stable-step checks of all bodies before it (count_pieces).
     Column<std::uint64_t> pieces_before;
@@ -121,7 +121,7 @@ struct RankState {
     RankShare share;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
-    Column<Index> stale;  // places of own bodies whose copies on other ranks have lost their validity
+    Column<Index> stale;           // places of own bodies whose copies on other ranks have lost their validity
     RankFindings mine;   // findings of this rank in this attempt at a step; complete when reduce_findings runs
     RankFindings all;    // combined findings of all ranks in this attempt at a step
     bool stops = false;  // true if a callback of this rank has asked to end the present call of World::advance

@@ -138,9 +138,9 @@ void take_findings(const RankFindings& all, const StageFindings& found) {
     // A process that simulates the whole world tests for inversions and crossings only if no body has a fault, and
     // tests for crossings only if no candidate list is too short.
     const bool tested = all.fault == StepFault::none;
-    found.inversions = tested ? Inversions{all.inversions, or_none(all.inverted_body), all.inverted_tetrahedron,
-                                           all.inverts_first}
-                              : Inversions{};
+    found.inversions =
+        tested ? Inversions{all.inversions, or_none(all.inverted_body), all.inverted_tetrahedron, all.inverts_first}
+               : Inversions{};
     found.table.beyond_lists = tested && all.beyond_lists;
     found.crossings = tested ? all.crossings : 0;
     if (!tested || all.beyond_lists || all.again_over_ranks()) found.table.found_count = 0;
@@ -148,9 +148,8 @@ void take_findings(const RankFindings& all, const StageFindings& found) {
     if (all.again_over_ranks()) found.crossings = 1;
 }
 
-void reduce_findings(const NamedBodies& bodies, const ContactTable& contacts, const RegionTable& regions,
-                     const Real& h, const StageFindings& found, RankFindings& mine, RankFindings& all,
-                     RankChannel& channel) {
+void reduce_findings(const NamedBodies& bodies, const ContactTable& contacts, const RegionTable& regions, const Real& h,
+                     const StageFindings& found, RankFindings& mine, RankFindings& all, RankChannel& channel) {
     note_findings(bodies, found, h, mine);
     mine.counters = count_step(contacts, regions, found.measures, found.strained.newton, found.unstrained);
     all = mine;
@@ -165,8 +164,8 @@ void list_reduction(WorldState& w, TaskGraph& g) {
     if (!w.ranks.on()) return;
     g.stage("ranks/reduce_findings", reduce_findings, inputs<NamedBodies>(w.ranks, w.model.bodies, w.model.nodes),
             read(w.scratch.contacts), read(w.scratch.regions), value(w.scratch.parameters.h),
-            outputs<StageFindings>(w.scratch.findings, w.scratch.inversions, w.cache.crossings), make(w.ranks.mine), make(w.ranks.all),
-            make(w.ranks.channel));
+            outputs<StageFindings>(w.scratch.findings, w.scratch.inversions, w.cache.crossings), make(w.ranks.mine),
+            make(w.ranks.all), make(w.ranks.channel));
 }
 
 void agree_to_start(WorldState& w) {

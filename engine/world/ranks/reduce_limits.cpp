@@ -16,8 +16,14 @@ void reduce_limits(WorldState& world) {
     limits.stable_step = stable_step(model, &stiffest);
     limits.stiffest = stiffest == no_index ? RankFindings::nobody : world.ranks.place_of(stiffest);
     limits.strained = stiffest != no_index && is_strained(model, static_cast<std::size_t>(stiffest));
-    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
-        if (model.bodies.blocks[b].size() > 0) limits.rest_step = std::min(limits.rest_step, model.bodies.rest_step[b]);
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
+        if (!world.ranks.owns(b) || model.bodies.blocks[b].size() == 0) continue;
+        limits.rest_step = std::min(limits.rest_step, model.bodies.rest_step[b]);
+        limits.element_blocks += static_cast<std::uint64_t>(model.bodies.blocks[b].size());
+    }
+    for (std::size_t c = 0; c < model.clusters.size(); ++c)
+        if (world.ranks.owns(static_cast<std::size_t>(model.clusters.body[c])))
+            limits.cluster_entries += model.clusters.nodes[c].size() * model.clusters.nodes[c].size();
     Index spinning = no_index;
     limits.spin = fastest_spin(model, &spinning);
     limits.spinning = spinning == no_index ? RankFindings::nobody : world.ranks.place_of(spinning);
@@ -45,6 +51,8 @@ void reduce_limits(WorldState& world) {
         all.has_implicit |= other.has_implicit;
         all.has_clusters |= other.has_clusters;
         all.clusters_grew |= other.clusters_grew;
+        all.element_blocks += other.element_blocks;
+        all.cluster_entries += other.cluster_entries;
         all.moves |= other.moves;
         std::memcpy(into, &all, sizeof all);
     });

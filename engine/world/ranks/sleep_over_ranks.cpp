@@ -58,8 +58,8 @@ void for_each_row(const RankMessage& message, auto&& take) {
     }
 }
 
-/// Lists the sleeping bodies with several holders that this rank wakes, apart from bodies that are joined to awake ones:
-/// all holders know these. Also notes whether such a body may fall asleep in this step.
+/// Lists the sleeping bodies with several holders that this rank wakes, apart from bodies that are joined to awake
+/// ones: all holders know these. Also notes whether such a body may fall asleep in this step.
 void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                 std::span<const std::uint8_t> driven, const AttachmentTable& attachments, const SleepStep& step,
                 RankSleep& memory, RankFindings& mine) {
@@ -137,8 +137,8 @@ void list_wakes(WorldState& w, TaskGraph& g) {
     if (!w.ranks.on()) return;
     g.stage("ranks/find_wakes", find_wakes, inputs<HeldBodies>(w.ranks, w.model.bodies),
             inputs<TouchInputs>(w.scratch.contacts, w.model.links), read(w.scratch.pressed), read(w.scratch.driven),
-            read(w.model.attachments), inputs<SleepStep>(w.scratch.parameters), make(w.ranks.sleep),
-            make(w.ranks.mine), if_sleepy(w));
+            read(w.model.attachments), inputs<SleepStep>(w.scratch.parameters), make(w.ranks.sleep), make(w.ranks.mine),
+            if_sleepy(w));
 }
 
 void list_joined_wakes(WorldState& w, TaskGraph& g) {

@@ -115,6 +115,7 @@ struct LimitsOfRanks {
     bool has_implicit = false;    // true if some body is implicit
     bool has_clusters = false;    // true if some body has clusters
     bool clusters_grew = false;   // Model::clusters_grew
+    std::uint64_t element_blocks = 0, cluster_entries = 0;  // number of rows; number of entries of cluster matrices
     // true if stable steps depend on positions, or joints or ties limit rotation, so that each step needs a reduction
     bool moves = false;
 };
@@ -178,9 +179,9 @@ struct Model {
     // True if the implicit elements must be chosen again, because bodies, colliders or settings have changed.
     bool clusters_open = true;
     bool clusters_grew = false;  // true if elements became implicit at the last evaluation of stable steps
-    bool settled = true;      // true if all bodies and colliders were checked for overlaps
-    Index loaded_bodies = 0;  // number of bodies with loads; computed by derive_all and note_loads
-    bool forced = false;      // true if any force element (loads included) is present; computed by note_forces
+    bool settled = true;         // true if all bodies and colliders were checked for overlaps
+    Index loaded_bodies = 0;     // number of bodies with loads; computed by derive_all and note_loads
+    bool forced = false;         // true if any force element (loads included) is present; computed by note_forces
     // For each body: sum of the bounds that ForceElement::add_rate adds for all force elements [1/s^2]. If the column
     // is empty, all sums are zero. Computed by note_forces.
     Column<Real> force_rate;

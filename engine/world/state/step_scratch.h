@@ -140,10 +140,10 @@ struct StepScratch {
     CableBlockTable cables;
     RegionTable regions;
     RankRegions rank_regions;  // empty if this process simulates the whole world
-    RunCounters counters;     // counters of the last committed step alone (count_step)
-    Real awake_mass = 0;      // mass of bodies that are awake at the start of the step [kg]
-    bool ran_inline = false;  // true if all stages ran on the calling thread
-    bool left_out = false;    // true if no stage ran, since nothing moves
+    RunCounters counters;      // counters of the last committed step alone (count_step)
+    Real awake_mass = 0;       // mass of bodies that are awake at the start of the step [kg]
+    bool ran_inline = false;   // true if all stages ran on the calling thread
+    bool left_out = false;     // true if no stage ran, since nothing moves
 
     SeparationMemory separation_memory;
     SolverMemory solver_memory;

@@ -34,6 +34,7 @@ bool keep_watch(WorldState& world) {
     balance.work += follow_stiffening(world.model);
     balance.work += use_evaluated_steps(world.model, world.scratch.stiffness_sum);
     reduce_limits(world);
+    send_clustered_bodies(world);
     watch.second = !watch.second;
     return !watch.second;
 }
@@ -121,9 +122,9 @@ void note_inversions(WorldState& world, StepReport& report) {
         report.inverted_body = handle;
         report.inverted_name = name;
         report.inverted_element =
-            world.ranks.on() ? inversions.tetrahedron
-                             : world.model.user_tetrahedron(static_cast<std::size_t>(inversions.body),
-                                                            inversions.tetrahedron);
+            world.ranks.on()
+                ? inversions.tetrahedron
+                : world.model.user_tetrahedron(static_cast<std::size_t>(inversions.body), inversions.tetrahedron);
     }
     report.inverted += inversions.count;
     world.record.counters.inversions += static_cast<std::uint64_t>(inversions.count);
@@ -151,6 +152,16 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.place_of(row);
 }
 
+/// Exchanges bodies with other ranks after an attempt that lacked some of them. `first`: true if no step of the call of
+/// advance was committed so far, so that the whole call may still be rolled back.
+void fetch_ghosts(WorldState& world, bool first) {
+    if (!world.ranks.all.bodies_missing && !world.ranks.all.ghosts_expired) return;
+    if (first) world.transaction.roll_back_call(world.model, world.clock);
+    update_ghosts(world);
+    if (first) world.transaction.begin_call(world.model, world.clock);
+    world.scratch.parameters.h = 0;  // the next attempt must not reuse forces, which new ghosts do not have
+}
+
 /// Throws SceneError if a call would need too many steps. Steps are counted with an int. Without this check, a call
 /// whose steps are too small to advance time would never end.
 void require_countable(const WorldState& world, Real dt) {
@@ -166,9 +177,7 @@ void require_countable(const WorldState& world, Real dt) {
               .object = "advance",
               .field = "dt",
               .found = short_text(dt) + " s in steps of " + short_text(step) + " s" +
-                       (of_body ? ", the stable step of body '" +
-                                      name_body(world, body).name + "'"
-                                : std::string()),
+                       (of_body ? ", the stable step of body '" + name_body(world, body).name + "'" : std::string()),
               .expected = "at most 2147483647 steps",
               .hint = of_body ? "check the size and material of this body" : "use a shorter dt or a larger step_size"}
         .raise();
@@ -293,9 +302,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const StepOutcome outcome = try_step(world, plan, attempt);
         stiffened += world.scratch.findings.stiffened;  // energy also counts if the attempt is not committed
         note_outcome(outcome, world.record.counters, report);
-        if (outcome == StepOutcome::again_over_ranks &&
-            (world.ranks.all.bodies_missing || world.ranks.all.ghosts_expired))
-            update_ghosts(world);
+        if (outcome == StepOutcome::again_over_ranks) fetch_ghosts(world, report.steps == 0);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
             break;

@@ -227,7 +227,8 @@ void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
 /// Computing time of a simulated second with steps of length `step` [ns]. `entries`: number of entries of all cluster
 /// matrices.
 Real cost_of(const Model& model, std::size_t entries, Real step) {
-    const Real elements = static_cast<Real>(model.elements.first.size() * element_lanes);
+    const std::uint64_t blocks = std::max<std::uint64_t>(model.elements.first.size(), model.of_ranks.element_blocks);
+    const Real elements = static_cast<Real>(blocks * element_lanes);
     return (element_cost * elements + entry_cost * static_cast<Real>(entries)) / step;
 }
 
@@ -368,7 +369,7 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
     constexpr Real lasts = 128;  // assumed number of steps between two inversions of a cluster matrix
     const Range blocks = model.bodies.blocks[body];
     const Kept kept(model, body);
-    const std::size_t entries = model.clusters.inverse.size();
+    const std::size_t entries = std::max<std::size_t>(model.clusters.inverse.size(), model.of_ranks.cluster_entries);
     const std::size_t before =
         cluster_sizes(model.all_elements(), blocks, kept.modulus, model.nodes.inverse_mass).entries;
     const Real of_clusters = std::max(step, model.bodies.cluster_step[body]);

@@ -71,11 +71,11 @@ RunCounters count_step(const ContactTable& contacts, const RegionTable& regions,
 
 void add_counters(const RunCounters& from, RunCounters& into) {
     constexpr std::uint64_t RunCounters::*sums[] = {
-        &RunCounters::steps,        &RunCounters::inline_steps, &RunCounters::resting_steps,
-        &RunCounters::unstrained,   &RunCounters::contact_sum,  &RunCounters::iteration_sum,
-        &RunCounters::solved,       &RunCounters::unconverged,  &RunCounters::certified,
-        &RunCounters::closed_form,  &RunCounters::separating,   &RunCounters::frictionless,
-        &RunCounters::in_lanes,     &RunCounters::swept,        &RunCounters::contact_steps,
+        &RunCounters::steps,        &RunCounters::inline_steps,    &RunCounters::resting_steps,
+        &RunCounters::unstrained,   &RunCounters::contact_sum,     &RunCounters::iteration_sum,
+        &RunCounters::solved,       &RunCounters::unconverged,     &RunCounters::certified,
+        &RunCounters::closed_form,  &RunCounters::separating,      &RunCounters::frictionless,
+        &RunCounters::in_lanes,     &RunCounters::swept,           &RunCounters::contact_steps,
         &RunCounters::newton_steps, &RunCounters::tangent_factors, &RunCounters::large_strain_steps};
     for (const auto sum : sums) into.*sum += from.*sum;
     into.max_contacts = std::max(into.max_contacts, from.max_contacts);

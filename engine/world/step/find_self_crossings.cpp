@@ -17,7 +17,7 @@ constexpr Index unchanged = -1;
 /// True if the body may have begun or ceased to cross itself since the last check.
 bool may_have_changed(const Model& model, std::size_t b) {
     return model.bodies.kind[b] == BodyKind::deformable && !model.is_rigid(b) && !model.bodies.asleep[b] &&
-           model.bodies.unstrained[b] == 0;
+           model.bodies.unstrained[b] == 0 && !model.bodies.is_ghost(b);
 }
 
 Index count_crossings(Model& model, const CollisionInputs& inputs, Index body) {

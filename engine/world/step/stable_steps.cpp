@@ -75,7 +75,8 @@ bool is_strained(const Model& model, std::size_t body) {
 
 Real reported_step(const Model& model, Index* body) {
     const Real stable = stable_step(model, body);
-    return (model.rigid_bodies.size() > 0 || model.of_ranks.has_frames) && std::isinf(stable) ? trusted_step(model) : stable;
+    return (model.rigid_bodies.size() > 0 || model.of_ranks.has_frames) && std::isinf(stable) ? trusted_step(model)
+                                                                                              : stable;
 }
 
 Real trusted_step(const Model& model, Index* body) {
@@ -223,8 +224,8 @@ void gather_pieces(const Model& model, RankState& ranks) {
     const ElementInputs elements = model.all_elements();
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (ranks.owns(b))
-            mine.push_back({ranks.place[b],
-                            static_cast<std::uint32_t>(pieces_of_look(elements, model.bodies.blocks[b]))});
+            mine.push_back(
+                {ranks.place[b], static_cast<std::uint32_t>(pieces_of_look(elements, model.bodies.blocks[b]))});
     ranks.pieces_before.clear();
     for (const RankMessage& message : ranks.ranks->gather_everywhere(std::as_bytes(std::span(mine)))) {
         std::vector<PiecesAtPlace> theirs(message.size() / sizeof(PiecesAtPlace));
@@ -249,7 +250,8 @@ void count_pieces(WorldState& world) {
     first.assign(rows + 1, 0);
     if (!ranks.on()) {
         const ElementInputs elements = model.all_elements();
-        for (std::size_t b = 0; b < rows; ++b) first[b + 1] = first[b] + pieces_of_look(elements, model.bodies.blocks[b]);
+        for (std::size_t b = 0; b < rows; ++b)
+            first[b + 1] = first[b] + pieces_of_look(elements, model.bodies.blocks[b]);
         return;
     }
     if (ranks.pieces_before.empty()) gather_pieces(model, ranks);

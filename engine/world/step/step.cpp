@@ -89,6 +89,7 @@ void build_step(WorldState& w) {
     of_models<&MotionModel::integrate>(w, g);
     g.begin_phase("Remember for the next step");
     measure_travel(w, g);
+    list_ghost_paths(w, g);
     put_to_rest(w, g);
     keep_forces(w, g);
     of_laws<&ConstraintLaw::remember>(w, g);
@@ -98,10 +99,8 @@ void build_step(WorldState& w) {
 void list_step_again(WorldState& w) {
     const CrossingTable& crossings = w.cache.crossings;
     w.ranks.channel.ranks = w.ranks.ranks;
-    w.ranks.share = {.balance = {},
-                     .tested = crossings.tested,
-                     .hits = crossings.hits,
-                     .let_through = crossings.let_through};
+    w.ranks.share = {
+        .balance = {}, .tested = crossings.tested, .hits = crossings.hits, .let_through = crossings.let_through};
     w.graph = TaskGraph();
     w.graph.track(&w, sizeof w, name_of_column);
     build_step(w);

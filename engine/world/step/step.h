@@ -41,6 +41,9 @@ Index place_of_stiffest(const WorldState& world, Index row);
 
 /// Computes BodyTable::ghost. Must be called after bodies, their owners or their holders have changed.
 void note_ghosts(WorldState& world);
+/// Must be called after reduce_limits at the end of a round. Sends bodies whose elements became implicit to their
+/// holders again, which then compute them completely.
+void send_clustered_bodies(WorldState& world);
 /// Lists the stage that sends the predicted velocities of bodies to the ranks that hold a led ghost of them.
 void list_led_ghosts(WorldState& world, TaskGraph& graph);
 

@@ -157,10 +157,10 @@ void forget_unstrained(const ContactTable& contacts, BodyTable& bodies) {
 RunCounters counters_of_step(const WorldState& world) {
     const StepScratch& scratch = world.scratch;
     const StepFindings& found = scratch.findings;
-    RunCounters counters = world.ranks.on() && !scratch.left_out
-                               ? world.ranks.all.counters
-                               : count_step(scratch.contacts, scratch.regions, found.measures, found.strained.newton,
-                                            found.unstrained);
+    RunCounters counters =
+        world.ranks.on() && !scratch.left_out
+            ? world.ranks.all.counters
+            : count_step(scratch.contacts, scratch.regions, found.measures, found.strained.newton, found.unstrained);
     counters.inline_steps = scratch.ran_inline;
     counters.resting_steps = scratch.left_out;
     return counters;
@@ -332,8 +332,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
     if (world.ranks.on() && ran && !scratch.left_out) world.ranks.label_rounds.note(world.ranks.all.label_rounds);
-    const StepOutcome outcome = judge(scratch, world.ranks.all.again_over_ranks(), world.cache.crossings.beyond_lists,
-                                      plan, attempt);
+    const StepOutcome outcome =
+        judge(scratch, world.ranks.all.again_over_ranks(), world.cache.crossings.beyond_lists, plan, attempt);
     switch (outcome) {
         case StepOutcome::committed:
             commit(world);

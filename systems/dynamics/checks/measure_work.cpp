@@ -36,7 +36,7 @@ ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, R
         [&](std::size_t begin, std::size_t end) {
             ExternalWork part;
             for (std::size_t n = begin; n < end; ++n) {
-                if (nodes.resting.contain(n) || nodes.of_ghost(n)) continue;
+                if (nodes.resting.contain(n) || nodes.ghosts.contain(nodes.node_body[n])) continue;
                 if (is_loaded) add_load(nodes, n, h, kick, lag, part);
                 if (holds && !(nodes.free.inverse_mass[n] > 0)) add_hold(nodes, n, h, kick, part);
             }

@@ -8,6 +8,7 @@
 #include "components/column.h"
 #include "components/external_work.h"
 #include "components/free_nodes.h"
+#include "components/ghost_marks.h"
 #include "components/node_table.h"
 #include "components/resting_nodes.h"
 #include "components/rigid_body_table.h"
@@ -27,12 +28,9 @@ struct WorkInputs {
     std::span<const Index> node_body;
     std::span<const Range> body_implicit;  // rows of implicit bodies, whose entries of `force` act for the whole step
     RestingNodes resting;
-    std::span<const GhostKind> body_ghost;  // BodyTable; empty if there are no ghosts
+    GhostMarks ghosts;
     Vec3 gravity = Vec3::Zero();  // m/s^2
 
-    bool of_ghost(std::size_t n) const {
-        return !body_ghost.empty() && body_ghost[static_cast<std::size_t>(node_body[n])] != GhostKind::none;
-    }
     /// `forced`: true if the world has force elements. `any_asleep`: true if at least one body is asleep.
     static WorkInputs bind(const Binder& binder, const NodeTable& node, const AttachmentTable& attachment,
                            const BodyTable& body, const RigidBodyTable& rigid, const bool& forced,
@@ -52,14 +50,15 @@ struct WorkInputs {
                 .body_implicit = binder.read(body.implicit),
                 .resting = {.node_body = binder.read_if(binder.value(any_asleep), node.body),
                             .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)},
-                .body_ghost = binder.read(body.ghost),
+                .ghosts = {binder.read(body.ghost)},
                 .gravity = binder.value(gravity)};
     }
 };
 
 /// Sums impulse and work of the loads on all nodes, and of the forces that hold the nodes listed in `held`. A holding
 /// force is the opposite of `force`. Nodes of sleeping bodies do not count, because the forces that hold them are
-/// unknown. Nodes of ghosts do not count either, because the owner counts them. Loads are summed over fixed groups of nodes, in a fixed order.
+/// unknown. Nodes of ghosts do not count either, because the owner counts them. Loads are summed over fixed groups of
+/// nodes, in a fixed order.
 ///
 /// A force F has the impulse kick F, with the force interval `kick` [s]. A constant force does the work h F .
 /// velocity_next, since h velocity_next is the displacement in symplectic Euler. If a force has changed by dF since the

@@ -60,7 +60,9 @@ bool is_unstrained(const UnstrainedInputs& inputs, Range blocks) {
 
 std::uint16_t steps_unstrained(const UnstrainedInputs& inputs, std::size_t body, std::uint16_t before) {
     const Range nodes = inputs.body_nodes[body], blocks = inputs.body_blocks[body];
-    if ((!inputs.body_idle.empty() && inputs.body_idle[body]) || blocks.size() == 0 || !move_alike(rows_of(inputs.velocity, nodes))) return 0;
+    if ((!inputs.body_idle.empty() && inputs.body_idle[body]) || blocks.size() == 0 ||
+        !move_alike(rows_of(inputs.velocity, nodes)))
+        return 0;
     if (before > 1) return static_cast<std::uint16_t>(before - 1);
     return is_unstrained(inputs, blocks) ? unstrained_steps : std::uint16_t{0};
 }

@@ -254,12 +254,12 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
     });
     StrainFindings found;
     for (std::size_t r = 0; r < parts.size(); ++r) {
-        if (bodies.is_ghost(r)) continue;
+        if (bodies.ghosts.contain(bodies.body[r])) continue;
         found.damped += parts[r].damped;
         found.impulse += parts[r].impulse;
     }
     for (std::size_t r = 0; r < stiff.size(); ++r) {
-        if (!bodies.is_ghost(r)) found.newton += stiff[r].large_step.counts;
+        if (!bodies.ghosts.contain(bodies.body[r])) found.newton += stiff[r].large_step.counts;
         if (found.unsolved == no_index && stiff[r].large_step.failed) found.unsolved = bodies.body[r];
     }
     return found;

@@ -10,6 +10,7 @@
 #include "components/body_table.h"
 #include "components/cable_table.h"
 #include "components/contact_table.h"
+#include "components/ghost_marks.h"
 #include "components/implicit_coupling.h"
 #include "components/implicit_node_table.h"
 #include "components/material_table.h"
@@ -42,7 +43,7 @@ struct ImplicitBodies {
     std::span<const Vec3> center, rest_center;           // RigidBodyTable
     std::span<const Vec3> rest_position, node_velocity;  // of NodeTable; held nodes have prescribed velocities
     std::span<const Real> inverse_mass;                  // NodeTable
-    std::span<const GhostKind> body_ghost = {};          // BodyTable; empty if there are no ghosts
+    GhostMarks ghosts = {};
 
     static ImplicitBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
                                const MaterialTable& material, const ImplicitNodeTable& node, const NodeTable& all_nodes,
@@ -65,7 +66,7 @@ struct ImplicitBodies {
                 .rest_position = binder.read(all_nodes.rest_position),
                 .node_velocity = binder.read(all_nodes.velocity),
                 .inverse_mass = binder.read(all_nodes.inverse_mass),
-                .body_ghost = binder.read(of_body.ghost)};
+                .ghosts = {binder.read(of_body.ghost)}};
     }
 
     bool any() const { return !displacement.empty(); }
@@ -74,9 +75,6 @@ struct ImplicitBodies {
     Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
     bool asleep(std::size_t r) const {
         return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[r])] != 0;
-    }
-    bool is_ghost(std::size_t r) const {
-        return !body_ghost.empty() && body_ghost[static_cast<std::size_t>(body[r])] != GhostKind::none;
     }
     /// Damping rate of the material of a body [1/s].
     Real damping(std::size_t r) const {
@@ -221,9 +219,10 @@ struct StrainFindings {
     Index unsolved = no_index;  // first row of BodyTable for which Newton's method failed
 };
 
-/// Computes velocities and displacements at the end of the step. The sums leave out ghosts, which the owner counts. Adds the elastic forces on held nodes to `force`,
-/// which then contains forces that act for the time loads.kick. Writes the elastic moments on held frames to
-/// `hold_moment`. `parts`: work memory by row of RigidBodyTable. Parallel over bodies.
+/// Computes velocities and displacements at the end of the step. The sums leave out ghosts, which the owner counts.
+/// Adds the elastic forces on held nodes to `force`, which then contains forces that act for the time loads.kick.
+/// Writes the elastic moments on held frames to `hold_moment`. `parts`: work memory by row of RigidBodyTable. Parallel
+/// over bodies.
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                                       const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                                       const ImplicitStrains& out, Column<StrainPart>& parts);

@@ -25,6 +25,7 @@ JointMeasures measure_joints(const JointWorkInputs& joints) {
         const JointBlock& block = joints.block[i];
         const Vec3 impulse = block.frame * joints.impulse[i];
         const bool first = block.first_node != no_index, second = block.second_node != no_index;
+        if ((first || second) && joints.ghosts.contain(joints.body[first ? block.first : block.second])) continue;
         if (first) sum.work += impulse.dot(twice_mean(joints, block, block.first)) / 2;
         if (second) sum.work -= impulse.dot(twice_mean(joints, block, block.second)) / 2;
         if (!block.turning && first != second) sum.impulse += first ? impulse : Vec3(-impulse);

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "components/ghost_marks.h"
 #include "components/joint_table.h"
 #include "components/rigid_body_table.h"
 #include "jobs/access.h"
@@ -22,8 +23,11 @@ struct JointWorkInputs {
     std::span<const Vec3> center, momentum, angular_momentum;
     std::span<const Mat3> inverse_inertia;
     std::span<const Vec3> kick, moment_kick, contact_impulse, contact_moment;
+    std::span<const Index> body;  // row of BodyTable
+    GhostMarks ghosts;
 
-    static JointWorkInputs bind(const Binder& binder, const JointBlockTable& blocks, const RigidBodyTable& rigid) {
+    static JointWorkInputs bind(const Binder& binder, const JointBlockTable& blocks, const RigidBodyTable& rigid,
+                                const BodyTable& bodies) {
         return {.block = binder.read(blocks.block),
                 .impulse = binder.read(blocks.impulse),
                 .mass = binder.read(rigid.mass),
@@ -34,12 +38,14 @@ struct JointWorkInputs {
                 .kick = binder.read(rigid.kick),
                 .moment_kick = binder.read(rigid.moment_kick),
                 .contact_impulse = binder.read(rigid.contact_impulse),
-                .contact_moment = binder.read(rigid.contact_moment)};
+                .contact_moment = binder.read(rigid.contact_moment),
+                .body = binder.read(rigid.body),
+                .ghosts = {binder.read(bodies.ghost)}};
     }
 };
 
-/// Sums the work of all joints, and the impulses that joints transmit from the world and from held bodies. Sequential,
-/// in block order.
+/// Sums the work of all joints, and the impulses that joints transmit from the world and from held bodies, without the
+/// joints of ghosts. Sequential, in block order.
 JointMeasures measure_joints(const JointWorkInputs& joints);
 
 }  // namespace skerry

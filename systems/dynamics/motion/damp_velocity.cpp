@@ -26,8 +26,9 @@ bool keeps_rigid_motion(const DampingInputs& bodies, std::size_t body) {
 
 bool is_damped(const DampingInputs& bodies, std::size_t body) {
     const bool has_frame = !bodies.body_rigid.empty() && bodies.body_rigid[body].size() > 0;
-    return damping_of(bodies, body) > 0 && bodies.body_node_blocks[body].size() > 0 && (bodies.body_idle.empty() || !bodies.body_idle[body]) &&
-           !has_frame && !(bodies.body_unstrained[body] > 0 && keeps_rigid_motion(bodies, body));
+    return damping_of(bodies, body) > 0 && bodies.body_node_blocks[body].size() > 0 &&
+           (bodies.body_idle.empty() || !bodies.body_idle[body]) && !has_frame &&
+           !(bodies.body_unstrained[body] > 0 && keeps_rigid_motion(bodies, body));
 }
 
 /// First node of a body. Its position and velocity are the reference for the sums over the body, because sums of

@@ -60,9 +60,10 @@ ContactKey key_of_held(std::size_t entry, const Vec3& direction) {
 
 ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag, std::span<Vec3> velocity_next,
                        Column<Vec3>& held_impulse) {
-    ExternalWork sum;
+    ExternalWork all, of_ghosts;
     held_impulse.assign(inputs.node.size(), Vec3::Zero());
     for_each_held(inputs, h, [&](std::size_t i, std::size_t n, const Vec3& direction, Real speed) {
+        ExternalWork& sum = inputs.ghosts.contain(inputs.body[n]) ? of_ghosts : all;
         const Real impulse = inputs.mass[n] * (speed - direction.dot(velocity_next[n]));
         const Real gained = speed - direction.dot(inputs.velocity[n]);
         velocity_next[n] += impulse * inputs.inverse_mass[n] * direction;
@@ -77,7 +78,7 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
         sum.work -= (h - kick) * inputs.mass[n] * direction.dot(inputs.gravity) * during;
         if (!inputs.load.empty()) sum.work -= (h - kick) * direction.dot(inputs.load[n]) * during;
     });
-    return sum;
+    return all;
 }
 
 void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cables, Real h, ContactTable& contacts,
@@ -137,8 +138,9 @@ ExternalWork take_held_rows(const AxisHoldInputs& inputs, std::span<const Vec3> 
 
 ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec3> velocity_next,
                              std::span<Vec3> push_out, std::span<Vec3> held_impulse) {
-    ExternalWork sum;
+    ExternalWork all, of_ghosts;
     for_each_held(inputs, h, [&](std::size_t i, std::size_t n, const Vec3& direction, Real speed) {
+        ExternalWork& sum = inputs.ghosts.contain(inputs.body[n]) ? of_ghosts : all;
         push_out[n] -= direction.dot(push_out[n]) * direction;
         const Real before = direction.dot(velocity_next[n]);
         const Real impulse = inputs.mass[n] * (speed - before);
@@ -149,7 +151,7 @@ ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec
         sum.impulse += impulse * direction;
         sum.work += impulse * (before + speed) / 2;
     });
-    return sum;
+    return all;
 }
 
 }  // namespace skerry

@@ -9,6 +9,7 @@
 #include "components/column.h"
 #include "components/contact_table.h"
 #include "components/external_work.h"
+#include "components/ghost_marks.h"
 #include "components/node_table.h"
 #include "components/resting_nodes.h"
 #include "jobs/access.h"
@@ -28,6 +29,7 @@ struct AxisHoldInputs {
     std::span<const Real> mass, inverse_mass;
     std::span<const Index> body;  // row of BodyTable
     RestingNodes resting;
+    GhostMarks ghosts;
     Vec3 gravity = Vec3::Zero();  // m/s^2
 
     static AxisHoldInputs bind(const Binder& binder, const AttachmentTable& attachment, const NodeTable& node,
@@ -45,6 +47,7 @@ struct AxisHoldInputs {
                 .body = binder.read(node.body),
                 .resting = {.node_body = binder.read_if(binder.value(any_asleep), node.body),
                             .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)},
+                .ghosts = {binder.read(body.ghost)},
                 .gravity = binder.value(gravity)};
     }
 };

@@ -159,8 +159,7 @@ TakenByRest rest_bodies(const RestInputs& bodies, SleepMemory& memory, const Res
         if (state.asleep[b] || bodies.kind[b] != BodyKind::deformable ||
             memory.restless[memory.touching.root(static_cast<Index>(b))])
             continue;
-        const bool is_ghost = !bodies.ghost.empty() && bodies.ghost[b] != GhostKind::none;
-        put_to_rest(bodies, b, state, is_ghost ? taken_from_ghosts : taken);
+        put_to_rest(bodies, b, state, bodies.ghosts.contain(static_cast<Index>(b)) ? taken_from_ghosts : taken);
         ++taken.bodies;
     }
     return taken;

@@ -10,6 +10,7 @@
 #include "components/collider_table.h"
 #include "components/column.h"
 #include "components/contact_table.h"
+#include "components/ghost_marks.h"
 #include "components/implicit_node_table.h"
 #include "components/material_table.h"
 #include "components/node_block_table.h"
@@ -103,7 +104,7 @@ struct RestInputs {
     std::span<const Index> body_core_nodes = {};
     // For each body, nonzero if a load or a joining object of the body changes in this step. May be empty.
     std::span<const std::uint8_t> driven = {};
-    std::span<const GhostKind> ghost = {};  // BodyTable; empty if the world is not divided among ranks
+    GhostMarks ghosts = {};
 
     static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,
                            const MaterialTable& material, const NodeTable& node, const RigidBodyTable& rigid,
@@ -130,7 +131,7 @@ struct RestInputs {
                 .rigid_holder = binder.read(rigid.holder),
                 .body_core_nodes = binder.read(body.core_nodes),
                 .driven = binder.read(driven),
-                .ghost = binder.read(body.ghost)};
+                .ghosts = {binder.read(body.ghost)}};
     }
 
     /// Nodes that show whether the body moves. Nodes of a round body that are only drawn may be out of date and are

@@ -29,7 +29,7 @@ struct Flight : ElasticBody {
         const UnstrainedInputs inputs{.elements = this->inputs(),
                                       .body_nodes = body_nodes,
                                       .body_blocks = body_blocks,
-                                      .body_asleep = asleep,
+                                      .body_idle = asleep,
                                       .position = position,
                                       .velocity = velocity,
                                       .rotation = elements.rotation};

@@ -48,7 +48,7 @@ TEST_CASE("patches of bodies that rest or are unstrained keep their force, other
         ElementInputs inputs = body.inputs();
         inputs.body = of_body;
         if (sleeps)
-            inputs.body_asleep = asleep;
+            inputs.body_idle = asleep;
         else
             inputs.body_unstrained = unstrained;
         body.compute(inputs);
@@ -69,7 +69,7 @@ TEST_CASE("frames and strains of a step are kept for bodies that were in it", "[
     const std::vector<std::uint8_t> asleep{1, 0};
     ElementInputs inputs = body.inputs();
     inputs.body = of_body;
-    inputs.body_asleep = asleep;
+    inputs.body_idle = asleep;
     body.compute(inputs);
     keep_memory(*body.executor, inputs, body.elements);
     for (std::size_t b = 0; b < of_body.size(); ++b) {

@@ -271,7 +271,7 @@ TEST_CASE("the energy that viscosity takes is the work of its impulses on the no
     const std::vector<Index> of_body(blocks, 0);
     const std::vector<std::uint8_t> asleep{1};
     inputs.body = of_body;
-    inputs.body_asleep = asleep;
+    inputs.body_idle = asleep;
     CHECK(taken() == 0);
 }
 

@@ -133,10 +133,10 @@ inline World falling_cube(int threads = 1) {
     return world;
 }
 
-inline void take_and_publish(LiveHub& hub, SnapshotTaker& taker, const World& world, bool stresses = false) {
+inline void take_and_publish(LiveHub& hub, SnapshotTaker& taker, const World& world) {
     hub.mark_changed();
     const std::shared_ptr<Snapshot> snapshot = hub.free_snapshot();
-    taker.take(world, stresses, *snapshot);
+    taker.take(world, FrameContent::motion, *snapshot);
     hub.publish(snapshot);
 }
 

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <optional>
+#include <string>
 
 #include "tests/support/message_of.h"
 #include "tests/unit/engine/live_browser.h"
@@ -12,14 +13,15 @@ using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
 TEST_CASE("a browser that looks changes no bit of the run", "[unit][live]") {
-    const auto hash_of_run = [](bool seen) {
+    const auto hash_of_run = [](const std::string& field) {
+        const bool seen = !field.empty();
         World world = falling_cube(2);
         const BodyHandle cube = world.bodies().front();
         LiveRun run(world, {.probes = {{.name = "force", .what = BodyForceProbe{.body = cube}}}});
         std::optional<Visit> visit;
         if (seen) {
             visit.emplace(run.hub());
-            visit->send({{"do", "fields"}, {"names", {"stress"}}});
+            visit->send({{"do", "fields"}, {"names", {field}}});
         }
         for (int call = 0; call < 40; ++call) {
             REQUIRE(world.advance(0.005, [&](const StepReport&) { return run.between_steps(world); }).ok());
@@ -32,12 +34,14 @@ TEST_CASE("a browser that looks changes no bit of the run", "[unit][live]") {
             const std::vector<Json> rows = visit->browser.rows();
             REQUIRE(rows.size() >= 4);
             CHECK(rows.back()["top"]["stress"] > 0);
+            CHECK((rows.back()["top"]["error"] > 0) == (field == "error"));  // computed only where it is shown
             // A second row of the same time has no mean force.
             CHECK(std::ranges::any_of(rows, [](const Json& row) { return !row["probes"][0][0].is_null(); }));
         }
         return world.state_hash();
     };
-    CHECK(hash_of_run(true) == hash_of_run(false));
+    CHECK(hash_of_run("stress") == hash_of_run(""));
+    CHECK(hash_of_run("error") == hash_of_run(""));
 }
 
 TEST_CASE("a browser that leaves ends a call of advance only if it pulls a body", "[unit][live]") {

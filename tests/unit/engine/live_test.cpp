@@ -117,7 +117,7 @@ TEST_CASE("the memory of a live stream does not grow with its length", "[unit][l
         hub.mark_changed();
         const std::shared_ptr<Snapshot> snapshot = hub.free_snapshot();
         ++used[snapshot.get()];
-        taker.take(world, false, *snapshot);
+        taker.take(world, FrameContent::motion, *snapshot);
         hub.publish(snapshot);
         visit.browser.wait_for_frames(frame);
         visit.acknowledge(frame);

@@ -53,9 +53,11 @@ TEST_CASE("a frame has the bodies, colliders, contacts and energies of its world
     CHECK(frame.bodies[0].node_stress == world.node_stress(box));
     CHECK(frame.bodies[0].node_strain == world.node_strain(box));
     CHECK(frame.bodies[0].node_mesh_error.size() == world.node_stress(box).size());
-    const Frame of_film = collect_frame(world, FrameContent::node_stress);
-    CHECK(of_film.bodies[0].node_stress == world.node_stress(box));
-    CHECK(of_film.bodies[0].node_mesh_error.empty());
+    const Frame of_fields = collect_frame(world, FrameContent::node_fields);
+    CHECK(of_fields.bodies[0].node_stress == world.node_stress(box));
+    CHECK(of_fields.bodies[0].node_strain == world.node_strain(box));
+    CHECK(of_fields.bodies[0].node_mesh_error.empty());
+    CHECK(PageStream().pack(of_fields).size() > 0);
     REQUIRE(frame.colliders.size() == 2);
     CHECK(frame.colliders[1].name == "bucket");
     CHECK(frame.colliders[1].pose.position.z() == Approx(-0.5 - world.time()));

@@ -138,6 +138,30 @@ TEST_CASE("differences that do not fall as the theory says give a long bar and n
     CHECK(std::isnan(q.best));
 }
 
+TEST_CASE("a change of the sign by a second term of the error leaves a bar that is not much longer", "[unit][study]") {
+    // The difference of the coarser two levels has another sign than that of the finer two.
+    const auto value = [](Real h) { return h * h - 0.6 * h * h * h; };
+    const Convergence convergence({{2, value(2)}, {1, value(1)}, {0.5, value(0.5)}}, {2, 2}, 0);
+    CHECK(convergence.shape() == ConvergenceShape::oscillating);
+    CHECK(convergence.error() > std::abs(value(1)));
+    CHECK(convergence.error() < 3 * std::abs(value(1)));
+}
+
+TEST_CASE("further perturbations and steps are needed only if they would change an error bar", "[unit][study]") {
+    const auto open = [](Real mesh, Real step, Real noise) {
+        return open_parts(
+            runs_of({column("displacement_z", "m")}, {{}, {.refine = 1}, {.step = 0.5}, {.draw = 1}},
+                    [&](const StudyVariant& v, Real t) {
+                        return std::vector<Real>{limit * t * (1 + mesh * edge(v) + step * v.step + noise * v.draw)};
+                    }),
+            {.error = 0.01});
+    };
+    CHECK_FALSE((open(0, 1e-4, 0).step || open(0, 0, 1e-5).noise));
+    CHECK(open(0, 0.01, 0).step);
+    CHECK_FALSE(open(0.2, 0.01, 0).step);  // a twentieth of the error bar
+    CHECK(open(0, 0, 1e-3).noise);
+}
+
 TEST_CASE("two meshes that differ by more than 30 % of the value are both too coarse", "[unit][study]") {
     const auto with = [](Real of_fine) {
         return only_quantity(
@@ -262,7 +286,9 @@ TEST_CASE("a chaotic scene has single values until its runs part, and statistics
     constexpr int bodies = 40, rows = 61;
     std::vector<StudyColumn> columns;
     for (int i = 0; i < bodies; ++i) columns.push_back(column("displacement_x", "m", "ball"));
+    columns[1].what.probe = "bodies";  // the name of a body makes it no statistic
     columns.push_back(column("displacement_x_mean", "m", "bodies"));
+    columns.back().is_statistic = true;
     for (int i = 2; i < bodies; ++i) columns[static_cast<std::size_t>(i)].reported = false;
     const auto map = [](const StudyVariant& v, Real t) {
         std::vector<Real> values;
@@ -289,6 +315,7 @@ TEST_CASE("a chaotic scene has single values until its runs part, and statistics
     CHECK(named("ball.displacement_x_end").verdict == StudyVerdict::chaotic);
     CHECK(std::isnan(named("ball.displacement_x_end").error));
     CHECK(named("ball.displacement_x_agreed").verdict != StudyVerdict::chaotic);
+    CHECK(named("bodies.displacement_x_end").verdict == StudyVerdict::chaotic);
     const StudyQuantity mean = named("bodies.displacement_x_mean_end");
     CHECK(mean.verdict != StudyVerdict::chaotic);
     CHECK(std::abs(mean.value - 0.5) < mean.error);  // the map's mean is 1/2
@@ -396,6 +423,14 @@ TEST_CASE("the cheapest settings are those that a search over the model finds", 
     std::vector<StudyRun> runs = displacement_runs(-0.2, 2, 0.02, 1, 0);
     runs[5].cpu_seconds *= 0.98;
     CHECK(analyse(runs, {.error = 0.5}).cheapest->variant == StudyVariant{});
+    // Linear elements take less time on the same mesh, and are chosen if their error is small enough.
+    runs = displacement_runs(-0.05, 2, 0, 1, 0);
+    runs.push_back(runs[0]);
+    runs.back().variant.element = ElementKind::linear;
+    runs.back().cpu_seconds = 0.4;
+    for (Real& value : runs.back().columns[0].values) value *= 0.97;
+    CHECK(analyse(runs, {.error = 0.2}).cheapest->variant == StudyVariant{.element = ElementKind::linear});
+    CHECK(analyse(runs, {.error = 0.1}).cheapest->variant == StudyVariant{});
     const CheapestSettings none = best(1e-4);
     CHECK_FALSE(none.reaches);
     CHECK(none.variant == StudyVariant{.refine = 1, .step = 0.5});  // a quarter of the step gains less than a tenth

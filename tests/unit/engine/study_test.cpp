@@ -3,7 +3,6 @@
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numbers>
 #include <ostream>
 
 #include "engine/output/write_file.h"
@@ -39,7 +38,7 @@ const std::string hanging = R"({"name": "hanging", "seconds": 0.2, "frame_step":
 
 /// Settings for a budget that admits one finer mesh and no more.
 StudySettings small_study(const std::filesystem::path& folder = {}) {
-    return {.threads = 1, .budget = 60, .folder = folder};
+    return {.threads = 1, .budget = 30, .folder = folder};
 }
 
 std::vector<std::string> names_of_runs(const StudyResult& result, StudyRunStatus status) {
@@ -103,10 +102,10 @@ TEST_CASE("a run of a study is the run that its assignments make, and all varian
     const std::filesystem::path scene = folder.write("bar.json", bar);
     const StudyResult result = study(scene, small_study());
     REQUIRE(names_of_runs(result, StudyRunStatus::ok) ==
-            std::vector<std::string>{"scene", "draw_1", "draw_2", "element_smoothed", "step_0.5", "tolerance_0.01",
-                                     "refine_-1", "refine_1", "step_0.25"});
+            std::vector<std::string>{"scene", "draw_1", "element_smoothed", "step_0.5", "tolerance_0.01", "refine_-1",
+                                     "refine_1", "step_0.25"});
     REQUIRE(names_of_runs(result, StudyRunStatus::left_out) == std::vector<std::string>{"refine_2"});
-    CHECK(result.runs.back().message.find("more than the budget of 60") != std::string::npos);
+    CHECK(result.runs.back().message.find("more than the budget of 30") != std::string::npos);
     std::vector<std::uint64_t> hashes;
     for (const StudyRun& run : result.runs) {
         // The few contacts are solved to rounding, whatever the tolerance.
@@ -125,10 +124,10 @@ TEST_CASE("a study has the same bits with one and with three threads") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
     StudySettings settings = small_study();
-    settings.budget = 30;
+    settings.budget = 1e6;  // admits all runs
+    settings.seconds = 0.02;
     const StudyResult one = study(scene, settings);
     settings.threads = 3;
-    settings.budget = 22;  // admits the same runs as above
     require_same(one, study(scene, settings));
 }
 
@@ -150,7 +149,7 @@ TEST_CASE("a study continues with the runs in its folder, and has the numbers of
     const StudySettings settings = small_study(folder.path() / "runs");
     const StudyResult whole = study(scene, settings);
     const auto file_of = [&](const std::string& run) { return settings.folder / ("run_" + run + ".json"); };
-    for (const char* lost : {"draw_2", "refine_1", "step_0.25"}) std::filesystem::remove(file_of(lost));
+    for (const char* lost : {"draw_1", "refine_1", "step_0.25"}) std::filesystem::remove(file_of(lost));
     const auto written = std::filesystem::last_write_time(file_of("scene"));
     require_same(whole, study(scene, settings));
     CHECK(std::filesystem::last_write_time(file_of("scene")) == written);
@@ -202,7 +201,7 @@ TEST_CASE("a scene that changes while its study runs ends the study") {
     };
     CHECK(message_of(scene, settings).find("changed while the study ran") != std::string::npos);
     for (const auto& file : std::filesystem::directory_iterator(settings.folder))
-        CHECK(file.path().filename() != "run_draw_2.json");
+        CHECK(file.path().filename() != "run_element_smoothed.json");
 }
 
 TEST_CASE("a study that is made again replaces runs only, and all of them") {
@@ -275,12 +274,6 @@ TEST_CASE("a folder has one study at a time") {
     CHECK(message_of(scene, settings).empty());
 }
 
-TEST_CASE("the largest number of iterations of a study is a valid number") {
-    StudiedScene scene;
-    scene.settings.max_iterations = 300'000'000;
-    CHECK(variant_assignments(scene, {.tolerance = 0.01}, 1e-3).back() == "settings.max_iterations=2147483640");
-}
-
 TEST_CASE("a study whose runs cannot be written has results all the same") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
@@ -295,15 +288,20 @@ TEST_CASE("a study whose runs cannot be written has results all the same") {
     }));
 }
 
-TEST_CASE("a study has the largest stress at a probe of contacts") {
+TEST_CASE("a study has the stress, slip and numbers of a probe of contacts, and the velocities of the others") {
     const TemporaryFolder folder;
     std::string probed = bar;
     probed.insert(probed.rfind("]}"), R"(, {"name": "end", "body": "arm", "quantity": "contacts",
         "box": {"lower": [0.099, -1, -1], "upper": [1, 1, 1]}})");
-    StudySettings settings{.probes = {"end"}, .threads = 1, .budget = 4};
-    settings.seconds = 0.02;
+    StudySettings settings{.threads = 1, .budget = 4};
+    settings.seconds = 0.05;
     const StudyResult result = study(folder.write("bar.json", probed), settings);
     CHECK(quantity(result, "end.largest_von_mises_end").value > 0);
+    CHECK(quantity(result, "end.slip_max").value > 0);
+    CHECK(quantity(result, "tip.velocity_z_end").value != 0);
+    settings.probes = {"end.sticking", "end.sliding"};
+    const StudyResult counts = study(folder.write("bar.json", probed), settings);
+    CHECK(std::ranges::any_of(counts.quantities, [](const StudyQuantity& q) { return q.value > 0; }));
 }
 
 TEST_CASE("two bodies of a study never share a name") {
@@ -348,24 +346,6 @@ TEST_CASE("runs of another scene are refused unless they may be replaced") {
           std::vector<std::string>{"materials.rubber.E=2e5", "seconds=0.02"});
 }
 
-TEST_CASE("flat faces of a cylinder are off by a twelfth of the square of their angle, those of a box are not") {
-    constexpr int count = 24;
-    constexpr Real angle = 2 * std::numbers::pi / count;
-    std::vector<Vec3> nodes;
-    std::vector<std::array<Index, 3>> triangles;
-    for (int i = 0; i < count; ++i) {
-        for (const Real z : {0.0, 0.3}) nodes.emplace_back(2 * std::cos(i * angle), 2 * std::sin(i * angle), z);
-        const Index a = 2 * i, b = 2 * ((i + 1) % count);
-        triangles.push_back({a, b, b + 1});
-        triangles.push_back({a, b + 1, a + 1});
-    }
-    const FlatFaces round = flat_faces(nodes, triangles);
-    CHECK(round.share == Approx(angle * angle / 12).epsilon(0.01));  // next term: a share of angle^2 / 12
-    CHECK(round.angle == Approx(angle));
-    const std::vector<Vec3> corner{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    CHECK(flat_faces(corner, std::vector<std::array<Index, 3>>{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}).share == 0);
-}
-
 TEST_CASE("wrong settings of a study are refused by name") {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("bar.json", bar);
@@ -402,24 +382,6 @@ TEST_CASE("a scene that fails is reported, and no errors are computed") {
     CHECK(result.quantities.empty());
     REQUIRE(result.sentences.size() == 1);
     CHECK(result.sentences[0].find(result.runs[0].message) != std::string::npos);
-}
-
-TEST_CASE("the budget leaves out the costly runs, which are the less important ones") {
-    CHECK(wall_time({4, 1, 1, 2}, 1) == 8);
-    CHECK(wall_time({1, 1, 1, 1}, 2) == 2);
-    CHECK(wall_time({17, 1, 1, 1}, 2) == Approx(17 / 1.7 + 1.5));  // the long run gets both threads
-    std::vector<PlannedRun> plan{{{}, 1, {}},
-                                 {{.draw = 1}, 1, {}},
-                                 {{.draw = 2}, 1, {}},
-                                 {{.step = 0.5}, 2, {}},
-                                 {{.refine = 1}, 16, {}},
-                                 {{.step = 0.25}, 4, {}}};
-    keep_to_budget(10, 1, plan);
-    std::vector<bool> made;
-    for (const PlannedRun& run : plan) made.push_back(run.reason.empty());
-    CHECK(made == std::vector<bool>{true, true, true, true, false, true});
-    CHECK(plan[4].reason ==
-          "with it the study would take about 21 times as long as one run, more than the budget of 10");
 }
 
 TEST_CASE("a study names the tractions that act on another area with finer meshes") {
@@ -479,6 +441,10 @@ TEST_CASE("the cheapest scene has at most the wanted error against the best valu
     REQUIRE(result.cheapest);
     REQUIRE(result.cheapest->reaches);
     REQUIRE_FALSE(result.cheapest->assignments.empty());
+    StudyResult missed = result;
+    missed.cheapest->reaches = false;
+    CHECK_THROWS_AS(write_cheapest_scene(file, missed, folder.path() / "missed.json"), SceneError);
+    CHECK_FALSE(std::filesystem::exists(folder.path() / "missed.json"));
     const std::filesystem::path cheapest = folder.path() / "other" / "cheapest.json";
     write_cheapest_scene(file, result, cheapest);
     CHECK(hash_after(cheapest, {}) == hash_after(file, result.cheapest->assignments));
@@ -487,7 +453,7 @@ TEST_CASE("the cheapest scene has at most the wanted error against the best valu
     const Real value = quantity(study(cheapest, settings), "arm.displacement_z_end").value;
     CHECK(std::abs(value - sag.best) <= settings.error * sag.scale);
     CHECK(names_of_runs(result, StudyRunStatus::ok) ==
-          std::vector<std::string>{"scene", "draw_1", "draw_2", "element_smoothed", "step_0.5", "refine_-1", "refine_1",
+          std::vector<std::string>{"scene", "draw_1", "element_smoothed", "step_0.5", "refine_-1", "refine_1",
                                    "step_0.25"});  // no other tolerance, because nothing touches
     CHECK(std::abs(sag.value - sag.best) <= sag.error);
 }

@@ -42,6 +42,8 @@ class StudyTest(ProgramCase):
         self.assertEqual(json.loads(stats.read_text())["state_hash"], finer["state_hash"])
         self.assertEqual(json.loads((self.out / "cheapest.json").read_text())["seconds"], 0.05)
         self.skerry("run", self.out / "cheapest.json", "--quiet")
+        self.study("--error", "1e-9", "--probe", "block.displacement_z", "--seconds", 0.05)
+        self.assertFalse((self.out / "cheapest.json").exists())  # no settings reach this error
         again = self.study("--error", "0.5", "--probe", "block.displacement_z", "--seconds", 0.05, "--quiet")
         self.assertEqual((again.stdout, again.stderr), ("", ""))
 

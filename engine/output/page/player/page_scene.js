@@ -7,7 +7,7 @@ function make_scene({ find, run, state, scales, is_coarse }, box, changed, pull)
   const gravity = new THREE.Vector3(...run.gravity);
   const up = gravity.length() > 0 ? gravity.clone().negate().normalize() : new THREE.Vector3(0, 0, 1);
   const view = make_view(find("view"), up, box, is_coarse);
-  const bodies = make_bodies(view.scene, scales, view.touch);
+  const bodies = make_bodies(view.scene, scales, is_coarse, view.touch);
   const contacts = make_contacts(view.scene, box, scales);
   const lines = make_lines(view.scene, run, box, scales);
   const colliders = make_colliders(view.scene, state, box);

@@ -1,8 +1,8 @@
 #include <numeric>
 
 #include "engine/world/complaint.h"
-#include "engine/world/ranks/rows/body_rows.h"
 #include "engine/world/ranks/hold/ghosts.h"
+#include "engine/world/ranks/rows/body_rows.h"
 #include "engine/world/step/step.h"
 #include "skerry/ranks.h"
 
@@ -58,9 +58,8 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
     std::vector<std::uint8_t> kept;
     for (std::size_t b = 0; b < moves.size(); ++b)
         kept.push_back(!moves[b] || std::ranges::binary_search(whole.holders[b], mine.rank));
-    replace_rows(state, kept, {},
-                 [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == mine.rank; });
-    note_holders(mine, model.bodies, extents);
+    replace_rows(state, kept, {}, [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == mine.rank; });
+    note_holders(mine, extents);
     note_ghosts(state);
     list_step_again(state);
 }

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "engine/world/ranks/rows/body_rows.h"
+#include "engine/world/step/seams.h"
 #include "engine/world/step/step.h"
 #include "jobs/stage_arguments.h"
 #include "systems/collision/tree/box.h"
@@ -16,8 +17,9 @@ namespace {
 constexpr int searches_of_requests = 8;
 /// Greatest number of steps between two rank searches.
 constexpr std::uint64_t steps_between_searches = 1000;
-/// Number of steps for which the margin of a body lasts if the body keeps its speed.
-constexpr Real steps_of_margin = 100;
+/// Least number of steps for which the margin of a body lasts. The edge length of explicit elements, which is a part of
+/// the margin, lasts longer, because waves cross it in one step.
+constexpr Real steps_of_margin = 20;
 /// Cost of a contact, in units of the cost of an explicit element. The solver visits a contact several times.
 constexpr Real contact_cost = 10;
 /// Cost of a body without elements, in the same units.
@@ -26,9 +28,10 @@ constexpr Real body_cost = 20;
 /// Distance by which a body may move before its holders are found again [m]. `speed`: greatest speed of a node [m/s].
 Real margin_of(const WorldState& world, std::size_t body, Real speed) {
     const Model& model = world.model;
-    const Real h = world.clock.step_before > 0 ? world.clock.step_before : trusted_step(model);
+    const Real h = std::max(world.clock.step_before, trusted_step(model));
     const Real time = std::isfinite(h) ? steps_of_margin * h : 0;
-    const Real size = model.bodies.mean_edge[body] + model.bodies.round_radius[body] / 8;
+    const BodyTable& bodies = model.bodies;
+    const Real size = bodies.mean_edge[body] + bodies.round_radius[body] / 8 + bodies.contact_distance[body];
     return size + time * (speed + model.settings.gravity.norm() * time);
 }
 
@@ -39,7 +42,7 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
     // the other nodes of a round body only draw it
     if (const Index core = bodies.core_nodes[body]; core > 0) nodes.end = nodes.begin + core;
     Aabb box = empty_box();
-    Real speed = 0;
+    Real speed = bodies.max_speed[body];  // that of the last step; a contact may have slowed the body
     for (Index node = nodes.begin; node < nodes.end; ++node) {
         grow(box, model.nodes.position[node]);
         speed = std::max(speed, model.nodes.velocity[node].norm());
@@ -215,8 +218,7 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
     for (const int partner : partners) {
         std::vector<std::uint8_t> sent;
         for (std::size_t b = 0; b < ranks.place.size(); ++b)
-            sent.push_back(ranks.owner[b] == rank && change.is_sent(ranks.place[b], partner) &&
-                           whole.owner[ranks.place[b]] == rank);
+            sent.push_back(whole.owner[ranks.place[b]] == rank && change.is_sent(ranks.place[b], partner));
         BodyRows rows = rows_of_bodies(world, sent, [&](std::uint64_t pair) {
             return whole.pair_owner(pair, whole.owner) == rank && whole.pair_owner(pair, change.owner()) == partner;
         });
@@ -242,16 +244,21 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
         replace_rows(world, kept, added,
                      [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == rank; });
     whole.searched_step = world.record.counters.steps;
-    note_holders(ranks, world.model.bodies, found.extents);
+    note_holders(ranks, found.extents);
     note_ghosts(world);
 }
 
 /// Finds whether a body may leave its box in this step.
-void watch_ghosts(const SearchState& search, std::span<const Real> limit, const RunCounters& run,
-                  const std::uint64_t& searched_step, RankFindings& mine) {
-    const std::span<const Real> bound = search.memory.body_travel_bound;
-    for (std::size_t b = 0; b < bound.size(); ++b) mine.ghosts_expired |= !(bound[b] < limit[b]);
+void watch_ghosts(const SearchState& search, std::span<const Real> margin, std::span<const Real> moved,
+                  const RunCounters& run, const std::uint64_t& searched_step, RankFindings& mine) {
+    const std::span<const Real> reach = search.memory.body_reach;
+    for (std::size_t b = 0; b < margin.size(); ++b) mine.ghosts_expired |= !(moved[b] + reach[b] < margin[b]);
     mine.ghosts_expired |= run.steps >= searched_step + steps_between_searches;
+}
+
+/// Adds the motion of a committed step of length `h` [s].
+void measure_paths(std::span<const Real> max_speed, Real h, std::span<Real> moved) {
+    for (std::size_t b = 0; b < moved.size(); ++b) moved[b] += max_speed[b] * h;
 }
 
 }  // namespace
@@ -267,12 +274,13 @@ std::vector<BodyExtent> extents_of(const WorldState& world, std::span<const std:
     return extents;
 }
 
-void note_holders(RankState& ranks, const BodyTable& bodies, std::span<const BodyExtent> extents) {
+void note_holders(RankState& ranks, std::span<const BodyExtent> extents) {
     const WholeWorld& whole = ranks.whole;
     ranks.owner.clear();
     ranks.peers.clear();
     ranks.holders.clear();
-    ranks.travel_limit.assign(ranks.place.size(), infinity);
+    ranks.margin.assign(ranks.place.size(), infinity);
+    ranks.moved.assign(ranks.place.size(), 0);
     for (std::size_t b = 0; b < ranks.place.size(); ++b) {
         const Index place = ranks.place[b];
         const std::int32_t owner = whole.owner[place];
@@ -281,22 +289,26 @@ void note_holders(RankState& ranks, const BodyTable& bodies, std::span<const Bod
             if (rank != ranks.rank) insert(rank, ranks.peers);
         if (owner != ranks.rank) continue;
         const auto body = std::ranges::lower_bound(extents, place, {}, &BodyExtent::place);
-        ranks.travel_limit[b] =
-            bodies.travel[b] + bodies.frame[b].path - 2 * bodies.displacement[b] + body->margin;
+        ranks.margin[b] = body->margin;
     }
     for (const Index place : ranks.place) {
         std::vector<int>& holders = ranks.holders.emplace_back();
         for (const int rank : whole.holders[static_cast<std::size_t>(place)])
             if (rank != ranks.rank)
-                holders.push_back(
-                    static_cast<int>(std::ranges::lower_bound(ranks.peers, rank) - ranks.peers.begin()));
+                holders.push_back(static_cast<int>(std::ranges::lower_bound(ranks.peers, rank) - ranks.peers.begin()));
     }
 }
 
 void list_ghost_watch(WorldState& w, TaskGraph& g) {
     if (!w.ranks.on()) return;
-    g.stage("ranks/watch_ghosts", watch_ghosts, read(w.cache.search), read(w.ranks.travel_limit),
+    g.stage("ranks/watch_ghosts", watch_ghosts, read(w.cache.search), read(w.ranks.margin), read(w.ranks.moved),
             read(w.record.counters), read(w.ranks.whole.searched_step), make(w.ranks.mine));
+}
+
+void list_ghost_paths(WorldState& w, TaskGraph& g) {
+    if (!w.ranks.on()) return;
+    g.stage("ranks/measure_paths", measure_paths, read(w.model.bodies.max_speed), value(w.scratch.parameters.h),
+            write(w.ranks.moved), if_taken(w));
 }
 
 void update_ghosts(WorldState& world) {

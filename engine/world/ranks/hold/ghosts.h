@@ -15,17 +15,19 @@ std::vector<BodyExtent> extents_of(const WorldState& world, std::span<const std:
 
 /// Sets the columns of RankState that follow from the owners and holders of all bodies. `extents`: all bodies whose box
 /// was used to find the holders.
-void note_holders(RankState& ranks, const BodyTable& bodies, std::span<const BodyExtent> extents);
+void note_holders(RankState& ranks, std::span<const BodyExtent> extents);
 
 /// Lists the stage that finds out whether a body may leave its box in this step (RankFindings::ghosts_expired). There
 /// is no stage if this process simulates the whole world.
 void list_ghost_watch(WorldState& world, TaskGraph& graph);
+/// Lists the stage that measures how far bodies have moved since their holders were found.
+void list_ghost_paths(WorldState& world, TaskGraph& graph);
 
 /// Collective; between attempts at a step. Finds the ranks that must hold each body for the present positions and
 /// requests, and moves bodies to them. If the costs of the ranks differ too much, bodies get new owners. Changes no
 /// state of any body.
 void update_ghosts(WorldState& world);
-/// As update_ghosts, but with given owners. `owner`: by place.
+/// Does the same as update_ghosts, with given owners. `owner`: by place.
 void move_to_owners(WorldState& world, const Column<std::int32_t>& owner);
 
 }  // namespace skerry

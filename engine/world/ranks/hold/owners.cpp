@@ -98,8 +98,8 @@ Column<std::int32_t> choose_owners(const WholeWorld& whole, std::span<const Body
         std::int32_t& owner = owner_of_unit[static_cast<std::size_t>(unit.unit)];
         switch (settings.map) {
             case OwnerMap::curve:
-                owner = std::min(static_cast<std::int32_t>((before + unit.cost / 2) / total * rank_count),
-                                 rank_count - 1);
+                owner =
+                    std::min(static_cast<std::int32_t>((before + unit.cost / 2) / total * rank_count), rank_count - 1);
                 before += unit.cost;
                 break;
             case OwnerMap::round_robin:
@@ -143,7 +143,8 @@ std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<co
     grid.build(boxes, rows);
     for (const Index row : rows)
         grid.for_each_near(row, [&](Index other) {
-            const Index a = extents[static_cast<std::size_t>(row)].place, b = extents[static_cast<std::size_t>(other)].place;
+            const Index a = extents[static_cast<std::size_t>(row)].place,
+                        b = extents[static_cast<std::size_t>(other)].place;
             if (owner_of(a) == owner_of(b) || distance_squared(boxes[row], boxes[other]) > 0) return;
             hold(a, b);
             hold(b, a);

@@ -13,7 +13,7 @@ namespace skerry {
 /// Properties of a body that decide which ranks own and hold it. Ranks send them to each other.
 struct BodyExtent {
     Index place;
-    Real cost;  // computing time of a step, in units of that of an explicit element
+    Real cost;    // computing time of a step, in units of that of an explicit element
     Real margin;  // distance by which the body may move inside the box [m]
     Aabb box;     // [m]
 };

@@ -18,17 +18,18 @@ BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked,
     BodyRows rows;
     Model& model = world.model;
     std::array<RowSource, 1> source{{{.model = &model,
-                                   .place = world.ranks.place,
-                                   .marked = marked,
-                                   .watched = model.watch.body,
-                                   .kept = model.watch.kept,
-                                   .look = model.watch.look,
-                                   .gives_common = false}}};
+                                      .place = world.ranks.place,
+                                      .marked = marked,
+                                      .watched = model.watch.body,
+                                      .kept = model.watch.kept,
+                                      .look = model.watch.look,
+                                      .gives_common = false}}};
     rows.place = compose_rows(source, world.ranks.whole, rows.model);
     rows.watch.push_back({rows.model.watch.body, rows.model.watch.kept, rows.model.watch.look});
     const Column<Real>& valid_until = world.cache.search.body_valid_until;
     for (std::size_t b = 0; b < world.ranks.place.size(); ++b)
-        if (marked[b] != 0) rows.valid_until.push_back(b < valid_until.size() ? valid_until[b] : SearchState::forgotten);
+        if (marked[b] != 0)
+            rows.valid_until.push_back(b < valid_until.size() ? valid_until[b] : SearchState::forgotten);
     copy_contacts(world, wants_pair, rows);
     return rows;
 }
@@ -68,6 +69,35 @@ void move_tables(Model& from, Model& to) {
     to.watch.first_piece.clear();
 }
 
+/// Completes the new numbers of bodies whose rows are replaced by rows that were added, so that data which refer to the
+/// bodies can be kept. Returns marks of these bodies, by new row.
+std::vector<std::uint8_t> find_exchanged(const Model& before, std::span<const Index> place_before, const Model& now,
+                                         std::span<const Index> place_now, RowMoves& moves) {
+    constexpr auto range_of = OfBodyTables<Range>::members();
+    constexpr auto index_of = OfBodyTables<Index>::members();
+    std::vector<std::uint8_t> exchanged(place_now.size(), 0);
+    for (std::size_t b = 0; b < place_before.size(); ++b) {
+        if (moves.body_now[b] != no_index) continue;
+        moves.body_now[b] = row_of_place(place_now, place_before[b]);
+        if (moves.body_now[b] == no_index) continue;
+        const auto row = static_cast<std::size_t>(moves.body_now[b]);
+        exchanged[row] = 1;
+        const OfBodyTables<Range> old = rows_of_body(before, b), fresh = rows_of_body(now, row);
+        for (std::size_t table = 0; table < range_of.size(); ++table)
+            moves.down[b].*index_of[table] = (old.*range_of[table]).begin - (fresh.*range_of[table]).begin;
+    }
+    return exchanged;
+}
+
+/// Lets the candidates of all pairs of marked bodies be searched again. The bounds on the motion of these bodies were
+/// measured on another rank.
+void forget_candidates(std::span<const std::uint8_t> marked, PairTable& pairs) {
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+        if (marked[static_cast<std::size_t>(pairs.first[p])] ||
+            (pairs.kind[p] != PairKind::collider && marked[static_cast<std::size_t>(pairs.second[p])]))
+            pairs.valid_until[p] = SearchState::forgotten;
+}
+
 /// Lets the handles of a table refer to its present rows. Handles of absent rows keep their slots. `slot`: by row.
 void find_rows_of_handles(auto& map, std::size_t count_before, std::span<const std::uint32_t> slot) {
     map.rows_moved(std::vector<Index>(count_before, no_index));
@@ -90,9 +120,8 @@ public:
         std::vector<std::size_t> counts;
         before_.for_each_joining([&](const char*, auto& table, auto&) { counts.push_back(table.slot.size()); });
         std::size_t number = 0;
-        model_.for_each_joining([&](const char*, auto& table, auto& map) {
-            find_rows_of_handles(map, counts[number++], table.slot);
-        });
+        model_.for_each_joining(
+            [&](const char*, auto& table, auto& map) { find_rows_of_handles(map, counts[number++], table.slot); });
         for (Index& body : model_.colliders.body)
             if (body != no_index) body = moves_.body_now[static_cast<std::size_t>(body)];
     }
@@ -173,12 +202,12 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
     RankState& ranks = world.ranks;
     const Column<Index> place_before = ranks.place;
     std::vector<RowSource> sources{{.model = &model,
-                                 .place = place_before,
-                                 .marked = kept,
-                                 .watched = model.watch.body,
-                                 .kept = model.watch.kept,
-                                 .look = model.watch.look,
-                                 .gives_common = true}};
+                                    .place = place_before,
+                                    .marked = kept,
+                                    .watched = model.watch.body,
+                                    .kept = model.watch.kept,
+                                    .look = model.watch.look,
+                                    .gives_common = true}};
     for (BodyRows& rows : added)
         sources.push_back({.model = &rows.model,
                            .place = rows.place,
@@ -190,9 +219,11 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
     Model fresh;
     ranks.place = compose_rows(sources, ranks.whole, fresh);
     RowMoves& moves = sources[0].moves;
+    const std::vector<std::uint8_t> exchanged = find_exchanged(model, place_before, fresh, ranks.place, moves);
     moves.collider_now.resize(model.colliders.slot.size());
     std::iota(moves.collider_now.begin(), moves.collider_now.end(), Index{0});
     keep_contacts(moves, model.nodes.body, keeps_pair, world);
+    forget_candidates(exchanged, world.cache.pairs);
     Model before;
     move_tables(model, before);
     move_tables(fresh, model);

@@ -19,10 +19,10 @@ struct WatchProgress {
 /// Rows of bodies, of their attachments, and of the tables that join bodies (Model::for_each_joining). No row refers to
 /// a body that is not among them. Handles, records of bodies, colliders and materials are on every rank.
 struct BodyRows {
-    Model model;          // only these rows, node clusters and the columns of StepWatch
-    Column<Index> place;  // by row of BodyTable (WholeWorld)
-    Column<WatchProgress> watch;     // one row
-    Column<Real> valid_until;        // SearchState::body_valid_until
+    Model model;                  // only these rows, node clusters and the columns of StepWatch
+    Column<Index> place;          // by row of BodyTable (WholeWorld)
+    Column<WatchProgress> watch;  // one row
+    Column<Real> valid_until;     // SearchState::body_valid_until
     WarmStartTable warm_start;
     RestingContactTable resting;
     PairTable pairs;        // overlapping pairs, without candidates

@@ -98,7 +98,8 @@ private:
         for (std::size_t s = 0; s < sources_.size(); ++s) {
             const NodeClusters& from = sources_[s].model->clusters;
             for (std::size_t c = 0; c < from.size(); ++c)
-                if (const Index row = sources_[s].moves.body_now[static_cast<std::size_t>(from.body[c])]; row != no_index)
+                if (const Index row = sources_[s].moves.body_now[static_cast<std::size_t>(from.body[c])];
+                    row != no_index)
                     picks.push_back({row, s, c});
         }
         if (picks.empty()) return;

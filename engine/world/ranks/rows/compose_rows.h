@@ -16,10 +16,11 @@ namespace skerry {
 struct RowSource {
     Model* model;
     std::span<const Index> place;
-    std::span<const std::uint8_t> marked;  // by row of BodyTable: nonzero for a body that the new model gets; empty: all
-    Index watched, kept;                   // StepWatch::body and StepWatch::kept
+    std::span<const std::uint8_t>
+        marked;           // by row of BodyTable: nonzero for a body that the new model gets; empty: all
+    Index watched, kept;  // StepWatch::body and StepWatch::kept
     StepEvaluation look;
-    bool gives_common;                     // true: also gives the rows that join no body
+    bool gives_common;  // true: also gives the rows that join no body
     RowMoves moves{};   // new numbers of the rows; the lists of removed rows are not set
     std::vector<std::vector<AnyColumn>> columns = columns_by_body_table(*model);
 

@@ -40,7 +40,8 @@ public:
             contacts.first_body[c] = row(contacts.first_body[c]);
             contacts.second_body[c] = row(contacts.second_body[c]);
             for (Index& node : contacts.stencil[c].node)
-                node = node < 0 ? first_node(contacts.second_body[c]) + ~node : first_node(contacts.first_body[c]) + node;
+                node =
+                    node < 0 ? first_node(contacts.second_body[c]) + ~node : first_node(contacts.first_body[c]) + node;
         }
     }
     void to_places(PairTable& pairs) const {
@@ -57,9 +58,7 @@ private:
     }
     Index first_node(Index body) const { return model_.bodies.nodes[body].begin; }
     Index place(Index row) const { return row == no_index ? no_index : place_[static_cast<std::size_t>(row)]; }
-    Index row(Index place) const {
-        return place == no_index ? no_index : static_cast<Index>(std::ranges::lower_bound(place_, place) - place_.begin());
-    }
+    Index row(Index place) const { return place == no_index ? no_index : row_of_place(place_, place); }
 
     const Model& model_;
     std::span<const Index> place_;
@@ -67,7 +66,8 @@ private:
 
 /// Copies all contacts of pairs for which wants(key) is true.
 void copy_rows_of_pairs(ContactTable& from, const WantsPair& wants, ContactTable& to) {
-    copy_rows(from, from.size(), [&](std::size_t c) { return wants(from.key[c].pair); }, to);
+    copy_rows(
+        from, from.size(), [&](std::size_t c) { return wants(from.key[c].pair); }, to);
 }
 
 void copy_warm_start(WarmStartTable& from, const WantsPair& wants, WarmStartTable& to) {
@@ -125,10 +125,13 @@ std::vector<Range> unwanted(std::size_t count, auto&& wants) {
 
 /// Renumbers crossings that earlier attempts at the present step have found.
 void renumber_crossings(const RowMoves& moves, std::span<const Index> body_of_node, Column<ContactRow>& crossings) {
-    const auto now = [&](Index body) { return body == no_index ? no_index : moves.body_now[static_cast<std::size_t>(body)]; };
+    const auto now = [&](Index body) {
+        return body == no_index ? no_index : moves.body_now[static_cast<std::size_t>(body)];
+    };
     Column<ContactRow> kept;
     for (ContactRow row : crossings) {
-        if (now(row.first_body) == no_index || (row.second_body != no_index && now(row.second_body) == no_index)) continue;
+        if (now(row.first_body) == no_index || (row.second_body != no_index && now(row.second_body) == no_index))
+            continue;
         for (Index& node : row.stencil.node)
             node -= moves.down[static_cast<std::size_t>(body_of_node[static_cast<std::size_t>(node)])].nodes;
         row.first_body = now(row.first_body);
@@ -144,14 +147,14 @@ void copy_contacts(WorldState& world, const WantsPair& wants, BodyRows& to) {
     const PlacesOfContacts places(world.model, world.ranks.place);
     ContactCache& cache = world.cache;
     copy_warm_start(cache.warm_start, wants, to.warm_start);
-    copy_rows(cache.resting, cache.resting.size(),
-              [&](std::size_t c) { return wants(cache.resting.contact.key[c].pair); }, to.resting);
+    copy_rows(
+        cache.resting, cache.resting.size(), [&](std::size_t c) { return wants(cache.resting.contact.key[c].pair); },
+        to.resting);
     places.to_places(to.resting.contact);
-    copy_rows(cache.pairs, cache.pairs.size(),
-              [&](std::size_t p) {
-                  return cache.pairs.state[p] == PairState::overlapping && wants(cache.pairs.key[p]);
-              },
-              to.pairs);
+    copy_rows(
+        cache.pairs, cache.pairs.size(),
+        [&](std::size_t p) { return cache.pairs.state[p] == PairState::overlapping && wants(cache.pairs.key[p]); },
+        to.pairs);
     places.to_places(to.pairs);
     copy_rows_of_pairs(world.scratch.contacts, wants, to.contacts);
     places.to_places(to.contacts);

@@ -8,7 +8,8 @@ namespace skerry {
 namespace {
 
 void list_cable_measures(WorldState& w, TaskGraph& g) {
-    g.stage_with_result("forces/measure_cables", w.scratch.findings.cables, measure_cables, read(w.scratch.cables));
+    g.stage_with_result("forces/measure_cables", w.scratch.findings.cables, measure_cables, read(w.scratch.cables),
+                        read(w.model.nodes.body), read(w.model.bodies.ghost));
 }
 
 void list_cable_memory(WorldState& w, TaskGraph& g) {

@@ -16,7 +16,7 @@ void list_joint_rows(WorldState& w, TaskGraph& g) {
 
 void list_joint_measures(WorldState& w, TaskGraph& g) {
     g.stage_with_result("dynamics/measure_joints", w.scratch.findings.joints, measure_joints,
-                        inputs<JointWorkInputs>(w.scratch.joints, w.model.rigid_bodies));
+                        inputs<JointWorkInputs>(w.scratch.joints, w.model.rigid_bodies, w.model.bodies));
 }
 
 void list_joint_memory(WorldState& w, TaskGraph& g) {

@@ -35,8 +35,9 @@ void list_prediction(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/predict_velocity", kernels().predict_velocity,
             inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.forced, m.any_idle), read(n.velocity), value(p.kick),
             write(n.force), write(n.velocity_next));
-    g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag, m.any_idle),
-            read(n.velocity), value(p.kick), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
+    g.stage("dynamics/damp_velocity", kernels().damp_velocity,
+            inputs<DampingInputs>(k, b, m.materials, n, p.lag, m.any_idle), read(n.velocity), value(p.kick),
+            write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
 }
 
 void list_inversions(WorldState& w, TaskGraph& g) {

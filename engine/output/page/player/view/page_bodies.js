@@ -1,12 +1,13 @@
 // The bodies: moved and coloured by frame.
 "use strict";
 
-// scales: page_scales.js. redraw(): an image was loaded.
-function make_bodies(scene, scales, redraw) {
+// scales: page_scales.js. is_coarse: see make_view. redraw(): an image was loaded.
+function make_bodies(scene, scales, is_coarse, redraw) {
   const bodies = [];  // by number, without those that were removed
   // `visual`: visual surface or undefined; `first`: the body in the first frame that has it.
   function add(number, shape, visual, first) {
-    bodies[number] = make_body(scene, shape, visual, number, first, redraw);
+    const draw = (...surface) => make_drawing(...surface, is_coarse, redraw);
+    bodies[number] = make_body(scene, shape, visual, number, first, draw);
   }
   function remove(number) {
     const { group, boundary, visual } = bodies[number];
@@ -71,17 +72,17 @@ function make_bodies(scene, scales, redraw) {
   return { add, remove, show, style, values_at, list: bodies };
 }
 
-// `first` is the body in the first frame that has it.
-function make_body(scene, shape, visual, number, first, redraw) {
+// `first` is the body in the first frame that has it. draw(group, surface, points, nodes): see make_drawing.
+function make_body(scene, shape, visual, number, first, draw) {
   const group = new THREE.Group();
   scene.add(group);
   const points = positions_at(shape, [{ body: first, share: 1 }], new Float64Array(3 * shape.vertices));
-  const boundary = make_drawing(group, shape, points, plain_nodes, redraw);
+  const boundary = draw(group, shape, points, plain_nodes);
   const body = { group, shape, points, values: new Float32Array(shape.vertices), parts: [], boundary,
     drawn: boundary, name: shape.name || "body " + number, own_color: colors.linear(colors.of_body(number)) };
   if (visual) {
     const nodes = make_followers(visual, shape);
-    body.visual = make_drawing(group, visual, nodes.positions(points), nodes, redraw);
+    body.visual = draw(group, visual, nodes.positions(points), nodes);
   }
   return body;
 }

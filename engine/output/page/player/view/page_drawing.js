@@ -54,7 +54,8 @@ function make_followers(visual, shape) {
 }
 
 // `surface` has triangles, and may have texture and materials. `points`: positions of its nodes when it first appears.
-function make_drawing(group, surface, points, nodes, redraw) {
+// is_coarse: see make_view.
+function make_drawing(group, surface, points, nodes, is_coarse, redraw) {
   const geometry = new THREE.BufferGeometry(), order = order_by_material(surface, geometry);
   const { index, source, texture } = split_creases(order(surface.triangles), points,
     surface.texture_corners && order(surface.texture_corners));
@@ -64,7 +65,8 @@ function make_drawing(group, surface, points, nodes, redraw) {
   if (surface.texture_corners) geometry.setAttribute("uv", new THREE.BufferAttribute(texture_at(surface, texture), 2));
   const look = { roughness: 0.62, metalness: 0, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     side: surface.gradients ? THREE.DoubleSide : THREE.FrontSide };
-  const plain = new THREE.MeshStandardMaterial({ ...look, vertexColors: THREE.VertexColors });
+  const plain = is_coarse ? make_coarse_material(look)
+    : new THREE.MeshStandardMaterial({ ...look, vertexColors: THREE.VertexColors });
   const of_surface = surface.material ? [...surface.materials, no_material] : [];
   const own = of_surface.map((material) => make_material(material, look, redraw));
   const materials = [{ material: plain, opacity: 1 }, ...own];
@@ -173,6 +175,44 @@ function order_by_material({ material, materials }, geometry) {
     start = i;
   }
   return (list) => list.constructor.from(list, (_, i) => list[3 * triangles[Math.floor(i / 3)] + i % 3]);
+}
+
+// A material for drawing without a GPU: a few sums at each pixel, where the standard material of three.js takes powers
+// and a model of gloss. sqrt stands for the power 1/2.2 of the other materials.
+function make_coarse_material({ roughness, metalness, ...look }) {
+  const material = new THREE.MeshLambertMaterial({ ...look, vertexColors: THREE.VertexColors });
+  material.onBeforeCompile = (shader) => {
+    shader.vertexShader = `
+      varying vec3 tint, form;  // form: normal; position for flat surfaces
+      void main() {
+        vec4 seen = modelViewMatrix * vec4(position, 1.0);
+        gl_Position = projectionMatrix * seen;
+        tint = color;
+        #ifdef FLAT_SHADED
+          form = seen.xyz;
+        #else
+          form = normalMatrix * normal;
+        #endif
+      }`;
+    shader.fragmentShader = `
+      #include <common>
+      #include <lights_pars_begin>
+      uniform float opacity;
+      varying vec3 tint, form;
+      void main() {
+        #ifdef FLAT_SHADED
+          vec3 normal = normalize(cross(dFdx(form), dFdy(form)));
+        #else
+          vec3 normal = normalize(form);
+        #endif
+        HemisphereLight sky = hemisphereLights[0];
+        vec3 light = mix(sky.groundColor, sky.skyColor, 0.5 + 0.5 * dot(normal, sky.direction));
+        for (int i = 0; i < NUM_DIR_LIGHTS; ++i)
+          light += max(dot(normal, directionalLights[i].direction), 0.0) * directionalLights[i].color;
+        gl_FragColor = vec4(sqrt(tint * light), opacity);
+      }`;
+  };
+  return material;
 }
 
 const no_material = { color: [0.8, 0.8, 0.8], opacity: 1, image: "" };

@@ -1,4 +1,4 @@
-#include "engine/program/probe_recorder.h"
+#include "engine/scene/probe_recorder.h"
 
 #include <algorithm>
 #include <span>

@@ -1,0 +1,19 @@
+// Marks of ghosts, which sums over bodies leave out, because the owner of the body counts it.
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+
+namespace skerry {
+
+/// Tells whether a body is a ghost. If the span is empty, the world is not divided among ranks.
+struct GhostMarks {
+    std::span<const GhostKind> body_ghost = {};  // column BodyTable::ghost
+
+    bool contain(Index body) const {
+        return !body_ghost.empty() && body != no_index && body_ghost[body] != GhostKind::none;
+    }
+};
+
+}  // namespace skerry

@@ -1,0 +1,19 @@
+// Summary of one time series.
+#pragma once
+
+#include <span>
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// Last, smallest, largest and mean value of a time series. In the mean each value has the weight of the time since the
+/// row before. Values that are not finite do not count; without any value all are NaN.
+struct SeriesSummary {
+    Real end, least, most, mean;
+};
+
+/// `time`: of the rows [s]; as many as `values`.
+SeriesSummary summary_of_series(std::span<const Real> time, std::span<const Real> values);
+
+}  // namespace skerry

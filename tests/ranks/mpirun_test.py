@@ -1,0 +1,144 @@
+"""Runs of several processes: `mpirun -n N skerry run SCENE` from outside.
+
+Called as: mpirun_test.py PROGRAM SOURCE_FOLDER MPIRUN
+"""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.append(str(pathlib.Path(sys.argv[2]) / "tests" / "unit" / "engine"))
+MPIRUN = sys.argv.pop(3)
+from program_case import PROGRAM, SCENE, ProgramCase
+
+BLOCK = dict(SCENE["bodies"][0], mesh={"box": {"size": [0.2, 0.2, 0.2], "cells": [1, 1, 1]}})
+SCENE_OF_FOUR = dict(SCENE, name="four", bodies=[
+    dict(BLOCK, name=f"block_{i}", position=[0.02 * i, 0.25 * (i // 2), 0.11 + 0.22 * (i % 2)]) for i in range(4)],
+    probes=[dict(SCENE["probes"][0], body="block_0"), {"name": "energy", "quantity": "energy"}])
+
+
+class MpirunTest(ProgramCase):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("four.json", SCENE_OF_FOUR)
+        self.checkpoint = self.folder / "run.skerry"
+
+    def command(self, ranks, *arguments):
+        return [MPIRUN, "-n", str(ranks), PROGRAM, *map(str, arguments)]
+
+    def ranks(self, ranks, *arguments, code=0, apart=()):
+        """`apart`: command line of one more rank."""
+        command = self.command(ranks, *arguments) + [":", "-n", "1", *map(str, apart)] * bool(apart)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, code, f"{command}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def job(self, ranks, *arguments):
+        """Starts a run, and returns after its first checkpoint, which is in the file run.skerry."""
+        job = subprocess.Popen(self.command(ranks, "run", self.scene, "--quiet", "--checkpoint", self.checkpoint,
+                                            "--every", 0.05, *arguments), stderr=subprocess.PIPE, text=True)
+        while not self.checkpoint.exists():
+            self.assertIsNone(job.poll())
+            time.sleep(0.01)
+        return job
+
+    def process_of(self, job, rank):
+        children = subprocess.run(["pgrep", "-P", str(job.pid)], capture_output=True, text=True, check=True).stdout
+        return next(pid for pid in map(int, children.split()) if f"OMPI_COMM_WORLD_RANK={rank}".encode() in
+                    pathlib.Path(f"/proc/{pid}/environ").read_bytes().split(b"\0"))
+
+    def stats_of(self, run, *arguments):
+        file = self.folder / "stats.json"
+        run("run", *arguments, "--quiet", "--stats", file)
+        return json.loads(file.read_text())
+
+    def test_all_outputs_of_ranks_are_those_of_one_process(self):
+        def files(run):
+            out, series = self.folder / "frames", self.folder / "series.csv"
+            stats = self.stats_of(run, self.scene, "--out", out, "--probes", series)
+            written = {file.name: file.read_bytes() for file in out.iterdir()}
+            return stats, {**written, "series": series.read_bytes()}
+        alone, expected = files(self.skerry)
+        shared, found = files(lambda *arguments: self.ranks(3, *arguments, "--threads", 2))
+        self.assertEqual(sorted(found), sorted(expected))
+        for name, content in expected.items():
+            self.assertEqual(found[name], content, name)
+        own = {"seconds_wall", "seconds_load", "seconds_setup", "seconds_output", "real_time_factor", "stages",
+               "threads", "ranks"}
+        for key in alone.keys() - own:
+            self.assertEqual(shared[key], alone[key], key)
+        self.assertEqual((alone["ranks"]["count"], shared["ranks"]["count"], shared["ranks"]["hosts"]), (1, 3, 1))
+        self.assertGreater(shared["ranks"]["messages_per_step"], 0)
+
+    def test_rank_0_alone_prints(self):
+        done = self.ranks(2, "run", self.scene)
+        self.assertEqual(done.stdout.count("times real time"), 1)
+        self.assertRegex(done.stdout, r"2 ranks on 1 host; [0-9.]+ messages with")
+
+    def test_a_killed_run_goes_on_with_another_number_of_ranks_and_the_same_bits(self):
+        expected = self.stats_of(self.skerry, self.scene, "--seconds", 1.2)
+        with self.job(2, "--seconds", 1.2) as job:
+            os.kill(self.process_of(job, 1), signal.SIGKILL)
+            start = time.monotonic()
+            errors = job.communicate(timeout=60)[1]
+        self.assertLess(time.monotonic() - start, 60)
+        self.assertNotEqual(job.returncode, 0)
+        self.assertIn("process rank 1", errors)
+        self.assertRegex(errors, r"continue from the checkpoint at .*s: skerry run --restart .*run.skerry")
+        found = self.stats_of(lambda *arguments: self.ranks(3, *arguments), "--restart", self.checkpoint)
+        self.assertGreater(found["restarted_at"], 0)
+        self.assertEqual(found["state_hash"], expected["state_hash"])
+
+    def test_ranks_that_differ_are_named(self):
+        other = self.write("other.json", SCENE_OF_FOUR)
+        run = ("run", self.scene)
+        for apart, said in [((PROGRAM, "run", other), "command line: found .*other.json"),
+                            (("env", "SKERRY_INSTRUCTION_SET=x86-64", PROGRAM, *run),
+                             "instruction set: found x86-64,")]:
+            done = self.ranks(1, *run, code=2, apart=apart)
+            self.assertRegex(done.stderr, rf"skerry: rank 1 on \S+: {said}.*as rank 0 on ")
+            self.assertEqual(done.stderr.count("skerry: rank"), 1)
+        # the ranks have files of their own under the same name
+        for content, code, said in [(SCENE_OF_FOUR | {"seconds": 0.3}, 2, "hash of the scene and its files: found"),
+                                    ({}, 2, r"skerry: rank 1 on \S+: four.json: ")]:
+            (self.folder / "host_1").mkdir(exist_ok=True)
+            self.write("host_1/four.json", content)
+            here, there = (("sh", "-c", f'cd "{folder}" && exec "$0" run four.json', PROGRAM)
+                           for folder in (self.folder, self.folder / "host_1"))
+            done = subprocess.run([MPIRUN, "-n", "1", *here, ":", "-n", "1", *there], capture_output=True, text=True,
+                                  timeout=60, check=False)
+            self.assertEqual(done.returncode, code)
+            self.assertRegex(done.stderr, said)
+
+    def test_errors_that_all_ranks_have_are_said_once(self):
+        none = self.folder / "none.json"
+        self.assertEqual(self.ranks(3, "run", none, code=2).stderr.count("no such file"), 1)
+
+    def test_commands_and_outputs_that_ranks_cannot_share_are_refused(self):
+        for command in ("view", "inspect", "study"):
+            done = self.ranks(2, command, self.scene, code=2)
+            self.assertEqual(done.stderr.count(f"found 2 processes of `skerry {command}`, expected one process"), 1)
+        for option in ("--trace", "--export-problems"):
+            done = self.ranks(2, "run", self.scene, option, self.folder / "x", code=2)
+            self.assertEqual(done.stderr.count(f"{option}: found 2 ranks, expected one process"), 1)
+        forces = self.write("forces.json", SCENE_OF_FOUR | {
+            "probes": [{"name": "touch", "quantity": "force", "body": "block_3"}]})
+        done = self.ranks(2, "run", forces, "--probes", self.folder / "x.csv", code=2)
+        self.assertIn("found forces that are measured, expected none", done.stderr)
+
+    def test_a_signal_to_one_rank_ends_all_after_the_same_step(self):
+        stats = self.folder / "stats.json"
+        with self.job(2, "--seconds", 1e6, "--stats", stats) as job:
+            os.kill(self.process_of(job, 0), signal.SIGTERM)
+            errors = job.communicate(timeout=60)[1]
+        self.assertEqual(job.returncode, 143, errors)
+        self.assertIn("stopped by a signal at", json.loads(stats.read_text())["status"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
