@@ -1,5 +1,5 @@
-// profile_messages: measures the time of messages between MPI ranks through the interface Ranks. mpirun starts it on two
-// or more ranks. predict_ranks.py uses the output.
+// profile_messages: measures messages between MPI ranks through the interface Ranks. mpirun starts it on two or more
+// ranks. study_ranks.py uses the output.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

@@ -15,7 +15,7 @@ class Network:
     bandwidth: float   # of a rank, while all ranks of a machine send [bytes/s]
 
 
-# 16 ranks share the adapter of a machine. Half of the bytes leave the machine, because neighbours on the curve share it.
+# 16 ranks share the adapter of a machine. Half of the bytes leave the machine.
 INFINIBAND = Network("InfiniBand, 200 Gb/s", 1.5e-6, 0.5e-6, 2 * 25e9 / 16)
 ETHERNET = Network("Ethernet, 25 Gb/s", 25e-6, 2e-6, 2 * 3.1e9 / 16)
 
@@ -27,7 +27,7 @@ class Costs:
     ghost: float = 0             # time of a copy of a body of another rank, as a share of `body`
     threads: float = 6.5         # speed-up of the 8 threads of a rank
     imbalance: float = 1.1       # work of the slowest rank over the mean
-    nodes: int = 100             # nodes of a body
+    nodes: int = 124             # nodes of a body: drop_ball.msh
     contacts: float = 1.8        # contacts of a body with each of its six neighbours
     label_rounds: int = 2
     # bytes of a predicted velocity, of a label, of a contact with its results, and of a node that a contact moved

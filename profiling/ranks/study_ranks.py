@@ -10,7 +10,6 @@ import math
 import os
 import pathlib
 import random
-import resource
 import subprocess
 import sys
 
@@ -33,8 +32,9 @@ def write_pile(file, balls):
 
     def ball(cell):
         axis = [draw.gauss(0, 1) for _ in range(3)]
-        return {"name": "ball_" + "_".join(map(str, cell)), "mesh": {"file": str(SOURCE / "scenes/meshes/drop_ball.msh")},
-                "material": "rubber", "position": [spacing * (c + 0.5) for c in cell],
+        return {"name": "ball_" + "_".join(map(str, cell)),
+                "mesh": {"file": str(SOURCE / "scenes/meshes/drop_ball.msh")}, "material": "rubber",
+                "position": [spacing * (c + 0.5) for c in cell],
                 "rotation": {"axis": axis, "radians": draw.uniform(0, math.pi)}}
 
     cells = [(x, y, z) for z in range(edges[2]) for y in range(edges[1]) for x in range(edges[0])]
@@ -54,13 +54,9 @@ def launched(ranks, command):
 
 
 def run(command, stats, environment):
-    """Runs the program. Returns its statistics, with the CPU time of all of its processes."""
-    def cpu():
-        used = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return used.ru_utime + used.ru_stime
-    before = cpu()
+    """Runs the program. Returns its statistics."""
     subprocess.run([*command, "--quiet", "--stats", str(stats)], check=True, env=environment)
-    return json.loads(stats.read_text()) | {"cpu": cpu() - before}
+    return json.loads(stats.read_text())
 
 
 def measure(arguments):
@@ -86,14 +82,12 @@ def measure(arguments):
             steps = full["steps"] - empty["steps"]
             done.append({"ranks": ranks, "hash": full["state_hash"], "steps": steps,
                          "wall": (full["seconds_wall"] - empty["seconds_wall"]) / steps,
-                         "cpu": (full["cpu"] - empty["cpu"]) / steps,
                          "contacts": full["contacts"]["mean"], "of_ranks": full.get("ranks", {})})
     hashes = {row["hash"] for done in runs.values() for row in done}
     if len(hashes) != 1:
         raise SystemExit(f"study_ranks: found the state hashes {sorted(hashes)}, expected one on all numbers of ranks")
     # Other programs only make a run slower, so the fastest one counts.
-    return [min(done, key=lambda row: row["wall"]) | {"cpu": min(row["cpu"] for row in done)}
-            for done in runs.values()]
+    return [min(done, key=lambda row: row["wall"]) for done in runs.values()]
 
 
 def measure_network(arguments):
@@ -110,24 +104,29 @@ def print_measured(rows, costs, balls):
     table = []
     for row in rows:
         counted = row["of_ranks"]
-        cells = [row["ranks"] or "no MPI", f"{1e6 * row['wall']:.0f}", f"{1e6 * row['cpu']:.0f}",
-                 f"{one['wall'] / row['wall']:.2f}"]
+        cells = [row["ranks"] or "no MPI", f"{1e6 * row['wall']:.0f}", f"{one['wall'] / row['wall']:.2f}"]
         if row["ranks"] > 1:
             v = volume(balls, row["ranks"], costs)
             messages, size = (counted[key] / row["ranks"] for key in ("messages_per_step", "bytes_per_step"))
             cells += [f"{messages:.1f}", f"{v.messages:.1f}", f"{size / 1e3:.0f}", f"{v.bytes / 1e3:.0f}",
-                      f"{counted['imbalance']:.2f}"]
+                      f"{counted['imbalance']:.2f}", f"{counted['waiting']:.2f}"]
         table.append(cells + ["-"] * (9 - len(cells)))
-    style.print_table(["ranks", "us a step", "CPU us", "times as fast", "messages a rank", "predicted", "kB a rank",
-                       "predicted", "imbalance"], table)
+    style.print_table(["ranks", "us a step", "times as fast", "messages a rank", "predicted", "kB a rank", "predicted",
+                       "imbalance", "waiting"], table)
 
 
 def costs_of(measured, balls):
-    """Time of a ball, and of a copy of a ball of another rank: the CPU time that two ranks take beyond that of one."""
-    cpu = {row["ranks"]: row["cpu"] for row in measured}
-    costs = Costs(body=cpu[1] / balls)
+    """Time of a ball, and of a copy of a ball of another rank: the time that two ranks compute beyond that of one. The
+    machine must have two idle cores."""
+    row = {r["ranks"]: r for r in measured}
+    x, y, z = block_of(balls)
+    touching = (x - 1) * y * z + x * (y - 1) * z + x * y * (z - 1) + x * y + 2 * x * z + 2 * y * z  # with the walls
+    costs = Costs(body=row[1]["wall"] / balls, contacts=row[1]["contacts"] / touching)
+    if 2 not in row:
+        return costs
+    computing = 2 * row[2]["wall"] * (1 - row[2]["of_ranks"]["waiting"])
     copies = 2 * volume(balls, 2, costs).ghosts
-    return dataclasses.replace(costs, ghost=max(0, (cpu.get(2, cpu[1]) - cpu[1]) / (copies * costs.body)))
+    return dataclasses.replace(costs, ghost=max(0, (computing - row[1]["wall"]) / (copies * costs.body)))
 
 
 def predictions(costs):
@@ -188,7 +187,7 @@ def main():
     print(f"messages: {1e6 * here.latency:.1f} us, {here.bandwidth / 1e9:.1f} GB/s\n")
     measured = measure(arguments)
     costs = costs_of(measured, arguments.balls)
-    print(f"a ball takes {1e6 * costs.body:.1f} us of CPU time a step, a copy {costs.ghost:.2f} of it\n")
+    print(f"a ball takes {1e6 * costs.body:.1f} us of a step, a copy {costs.ghost:.2f} of it\n")
     print_measured(measured, costs, arguments.balls)
     rows = predictions(costs)
     print_predicted(rows)

@@ -144,6 +144,8 @@ RankScene random_rank_scene(std::uint64_t seed, int steps) {
     const TemporaryFolder folder;
     ScenePlan plan = plan_scene(write_random_scene(random, folder.path(), "scene.json"));
     plan.tuning = random.tuning;
+    plan.settings.contact_regions = ContactRegions::separate;  // the other values cannot be divided among ranks
+    plan.settings.integrator = Integrator::symplectic_euler;
     RankScene scene{.name = "random scene " + std::to_string(seed), .make = maker_of(std::move(plan))};
     scene.seconds = std::min<Real>(steps, random.advances * random.steps_per_advance) * scene.make(1).stable_step();
     return scene;

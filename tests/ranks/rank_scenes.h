@@ -21,7 +21,8 @@ struct RankScene {
 
 /// Scene in a JSON file. `file`: path from the source folder.
 RankScene scene_of_file(const std::string& file, const Tuning& tuning = {});
-/// Scene of make_random_scene, without its changes during the run, for at most `steps` stable steps.
+/// Scene of make_random_scene, for at most `steps` stable steps. Its changes during the run are left out, and settings
+/// that ranks refuse are replaced.
 RankScene random_rank_scene(std::uint64_t seed, int steps);
 
 /// Record of a run without ranks.

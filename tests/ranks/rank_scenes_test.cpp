@@ -34,9 +34,8 @@ struct Division {
 };
 
 Division division_by(OwnerMap map, int ranks, int threads) {
-    return {ranks, threads, std::string(name_of(map)), [map](World& world, Ranks& mine) {
-                distribute(world, mine, {.map = map});
-            }};
+    return {ranks, threads, std::string(name_of(map)),
+            [map](World& world, Ranks& mine) { distribute(world, mine, {.map = map}); }};
 }
 
 /// Divisions of which each run of the tests takes one for each scene, and all if the tests run in full. `turn`: number
@@ -98,7 +97,7 @@ std::vector<RankScene> own_scenes() {
     return scenes;
 }
 
-TEST_CASE("a scene has the same bits on any number of ranks as without ranks", "[.][ranks]") {
+TEST_CASE("a scene has the same bits on any number of ranks as without ranks", "[ranks][long]") {
     std::size_t turn = 0;
     for (const RankScene& scene : own_scenes()) {
         const WholeRun whole = run_whole(scene);
@@ -109,7 +108,7 @@ TEST_CASE("a scene has the same bits on any number of ranks as without ranks", "
     }
 }
 
-TEST_CASE("random scenes have the same bits on three ranks as without ranks", "[.][ranks]") {
+TEST_CASE("random scenes have the same bits on three ranks as without ranks", "[ranks][slow]") {
     constexpr int steps = 2000, scenes = 200;
     int built = 0;
     for (std::uint64_t seed = 1; built < draws(scenes); ++seed) {
@@ -125,7 +124,8 @@ TEST_CASE("random scenes have the same bits on three ranks as without ranks", "[
     }
 }
 
-/// Bytes that a rank sends in a step by the model of docs/scaling.md, for explicit bodies in a step with these contacts.
+/// Bytes that a rank sends in a step by the model of docs/scaling.md, for explicit bodies in a step with these
+/// contacts.
 double modelled_bytes(const WorldState& state) {
     constexpr double prediction = 24, label = 20, result = 56, row = 280;  // of a node, and of a contact
     constexpr double nodes_in_body = 2;                                    // of a contact
@@ -147,7 +147,7 @@ double modelled_bytes(const WorldState& state) {
     return bytes;
 }
 
-TEST_CASE("messages and bytes of a step follow the model, and no step has more than six round trips", "[ranks]") {
+TEST_CASE("messages, bytes and round trips of a step follow the model", "[ranks]") {
     const RankScene scene = own_scene("pile");
     std::mutex mutex;
     double modelled = 0, sent = 0;
@@ -157,23 +157,24 @@ TEST_CASE("messages and bytes of a step follow the model, and no step has more t
             distribute(world, ranks, {.map = map});
             world.advance(scene.seconds / 2);
             const RankTraffic before = ranks.traffic();
-            double bytes = 0, peers = 0;
+            double bytes = 0, exchanges = 0, messages = 0;
             world.watch_steps([&](const StepReport&) {
                 const WorldState& state = WorldAccess::state_of(std::as_const(world));
                 bytes += modelled_bytes(state);
-                peers += static_cast<double>(state.ranks.peers.size());
+                const double of_step = 3 + state.ranks.label_rounds.count;  // predictions, contacts and results
+                exchanges += of_step;
+                messages += of_step * static_cast<double>(state.ranks.peers.size());
             });
             const StepReport report = world.advance(scene.seconds / 2);
             const RankTraffic after = ranks.traffic();
             const std::scoped_lock lock(mutex);
             modelled += bytes;
             sent += static_cast<double>(after.bytes - before.bytes);
-            const double exchanges = static_cast<double>(after.exchanges - before.exchanges),
-                         waits = exchanges + static_cast<double>(after.reductions - before.reductions) +
-                                 static_cast<double>(after.collectives - before.collectives);
-            CAPTURE(report.steps, report.retried, exchanges, waits);
-            CHECK(waits < 6.5 * report.steps);  // rare messages, such as those of new copies, are the rest
-            CHECK(static_cast<double>(after.messages - before.messages) < 5.5 * peers);
+            constexpr double rare = 1.2;  // for repeated attempts, moved copies and the ends of calls
+            CHECK(static_cast<double>(after.exchanges - before.exchanges) < rare * exchanges);
+            CHECK(static_cast<double>(after.messages - before.messages) < rare * messages);
+            CHECK(static_cast<double>(after.reductions - before.reductions + after.collectives - before.collectives) <
+                  rare * report.steps);
         });
     CAPTURE(modelled, sent);
     CHECK(sent < 1.5 * modelled);
