@@ -49,7 +49,7 @@ struct Run {
 
     /// Prefetches the rows of a later block, which may belong to the next patch. Processors do not recognise that these
     /// rows are consecutive, because other loads lie between them.
-    [[gnu::always_inline]] void ask_for_one_ahead_of(std::size_t current) const {
+    [[gnu::always_inline]] void ask_for_rows_ahead_of(std::size_t current) const {
         const std::size_t block = current + blocks_ahead;
         if (block >= elements.blocks()) return;
         const auto row = static_cast<std::size_t>(elements.first[block]);
@@ -57,7 +57,13 @@ struct Run {
         ask_for_lines(elements.gradient.data() + row + 1, rows - 1);
         ask_for_lines(patches.slot.data() + row, rows);
         ask_for_lines(elements.volume.data() + block, 1);
-        if (!relaxes()) return;
+    }
+
+    /// Prefetches the springs of that later block. This is a second call because processors have few buffers for
+    /// outstanding cache misses: one call for everything would fill them, and the next load would wait.
+    [[gnu::always_inline]] void ask_for_springs_ahead_of(std::size_t current) const {
+        const std::size_t block = current + blocks_ahead;
+        if (block >= elements.blocks() || !relaxes()) return;
         ask_for_lines(elements.spring_strain.data() + block, 1);
         ask_for_lines(next.spring_strain.data() + block, 1);
         ask_for_lines(elements.own_frequency.data() + block, 1);
@@ -294,8 +300,9 @@ struct Run {
     with_law(run.material.model, [&](auto law) {
         Parts<LaneMat3<KernelReal>> F = run.fetch(run.begin);
         for (std::size_t block = run.begin; block < run.end; ++block) {
-            run.ask_for_one_ahead_of(block);
+            run.ask_for_rows_ahead_of(block);
             const Parts<LaneMat3<KernelReal>> Q = run.stress_of(law, block, F, relaxed);
+            run.ask_for_springs_ahead_of(block);
             const bool goes_on = block + 1 < run.end;
             if (ahead && goes_on) F = run.fetch(block + 1);
             run.add(block, Q);
