@@ -21,7 +21,7 @@ def test_a_true_error_lies_inside_the_error_bar(name: str, tmp_path: Path) -> No
     item = ITEMS[name]
     scene = tmp_path / "scene.json"
     scene.write_text(json.dumps(item.scene))
-    found = sk.study(scene, probes=[item.probe], threads=1, budget=15).quantities[f"{item.probe}_{item.at}"]
+    found = sk.study(scene, probes=[item.probe], threads=1, budget=10).quantities[f"{item.probe}_{item.at}"]
     error = abs(found.value - item.truth)
     assert error > 1e-3 * abs(item.truth)  # else the next line claims little
     assert error <= found.error + item.doubt * abs(item.truth) < 10 * error

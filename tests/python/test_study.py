@@ -25,7 +25,7 @@ def scene(tmp_path: Path) -> Path:
 
 
 def test_a_study_has_error_bars_runs_and_a_cheapest_scene(scene: Path, tmp_path: Path) -> None:
-    found = sk.study(scene, error=0.5, threads=1, budget=60, overrides={"seconds": 0.04})
+    found = sk.study(scene, error=0.5, threads=1, budget=15, overrides={"seconds": 0.04})
     height = found.quantities["ball.displacement_z_end"]
     assert height.unit == "m" and height.error > 0 and height.mesh >= 0
     assert height.verdict in ("known", "irregular")
@@ -62,7 +62,7 @@ def test_an_interrupted_study_continues(scene: Path, tmp_path: Path) -> None:
             raise KeyboardInterrupt
 
     folder = tmp_path / "runs"
-    settings: dict[str, Any] = {"threads": 1, "budget": 20, "seconds": 3}  # long enough to be interrupted
+    settings: dict[str, Any] = {"threads": 1, "budget": 10, "seconds": 3}  # long enough to be interrupted
     with pytest.raises(KeyboardInterrupt):
         sk.study(scene, folder=folder, progress=stop, **settings)
     kept = {file.name: file.stat().st_mtime_ns for file in folder.iterdir()}
@@ -79,7 +79,7 @@ def test_an_interrupted_study_continues(scene: Path, tmp_path: Path) -> None:
 def test_a_mapping_is_studied_like_its_file(scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     files = sorted(tmp_path.iterdir())
-    settings: dict[str, Any] = {"error": 0.5, "threads": 1, "budget": 60, "seconds": 0.04}
+    settings: dict[str, Any] = {"error": 0.5, "threads": 1, "budget": 15, "seconds": 0.04}
     mapping = json.loads(scene.read_text(encoding="utf-8"))
     found, of_file = sk.study(mapping, **settings), sk.study(scene, **settings)
     assert sorted(tmp_path.iterdir()) == files
