@@ -56,27 +56,75 @@ TEST_CASE("a world that was divided, whose bodies changed owners and that was ga
     }
 }
 
+/// Impulses of the contacts of the last step.
+std::vector<Vec3> impulses_of(const World& world) {
+    std::vector<Vec3> impulses;
+    for (const Contact& contact : world.contacts()) impulses.push_back(contact.impulse);
+    return impulses;
+}
+
 TEST_CASE("bodies that get new owners while they touch move as without ranks", "[ranks]") {
     constexpr int calls = 6;
-    for (const char* name : {"shots", "linked"}) {
+    for (const char* name : {"pile", "shots", "linked"}) {
         const RankScene scene = own_scene(name);
         const Real seconds = scene.seconds / (3 * calls);
         World whole = scene.make(1);
         for (int call = 0; call < calls; ++call) whole.advance(seconds);
         std::uint64_t hash = 0;
+        std::vector<Vec3> impulses;
         run_on_ranks(3, [&](Ranks& ranks) {
             World world = scene.make(1);
             distribute(world, ranks);
             WorldState& state = WorldAccess::state_of(world);
             for (std::int32_t call = 0; call < calls; ++call) {
                 world.advance(seconds);
-                move_to_owners(state, next_owners(state.ranks, call));
+                if (call + 1 < calls) move_to_owners(state, next_owners(state.ranks, call));
             }
-            if (std::optional<World> all = gathered(world)) hash = all->state_hash();
+            if (std::optional<World> all = gathered(world)) {
+                hash = all->state_hash();
+                impulses = impulses_of(*all);
+            }
         });
         INFO(name);
         CHECK(hash == whole.state_hash());
+        CHECK(impulses == impulses_of(whole));
     }
+}
+
+/// Two boxes that fly towards each other and collide after 0.095 s.
+World approaching_boxes() {
+    World world({.gravity = Vec3::Zero()});
+    const MaterialHandle rubber = world.add_material({});
+    for (const Real side : {-1.0, 1.0})
+        world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}),
+                       {.material = rubber, .position = {side, 0, 0}, .velocity = {-10 * side, 0, 0}});
+    return world;
+}
+
+TEST_CASE("bodies of two ranks that come from afar collide as without ranks", "[ranks]") {
+    constexpr Real before = 0.02, after = 0.1;
+    World whole = approaching_boxes();
+    whole.advance(before);
+    whole.advance(after);
+    REQUIRE(whole.report().contact_sum > 0);
+    std::uint64_t hash = 0;
+    std::size_t held_before = 0, held_after = 0;
+    run_on_ranks(2, [&](Ranks& ranks) {
+        World world = approaching_boxes();
+        distribute(world, ranks);
+        world.advance(before);
+        const std::size_t first = world.bodies().size();
+        world.advance(after);
+        const std::size_t second = world.bodies().size();
+        if (std::optional<World> all = gathered(world)) {
+            hash = all->state_hash();
+            held_before = first;
+            held_after = second;
+        }
+    });
+    CHECK(held_before == 1);
+    CHECK(held_after == 2);
+    CHECK(hash == whole.state_hash());
 }
 
 TEST_CASE("each rank of a row of bodies holds only its neighbours", "[ranks]") {

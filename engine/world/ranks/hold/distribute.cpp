@@ -3,7 +3,6 @@
 
 #include "engine/world/complaint.h"
 #include "engine/world/ranks/hold/ghosts.h"
-#include "engine/world/ranks/regions/rank_mail.h"
 #include "engine/world/ranks/rows/body_rows.h"
 #include "engine/world/step/step.h"
 #include "skerry/ranks.h"
@@ -29,37 +28,6 @@ void require_divisible(const WorldState& world) {
         refuse("measure_forces", "forces that are measured", "none", "measure forces with one process");
     if (world.record.problem_watch.take)
         refuse("watch_problems", "a subscription to contact problems", "none", "export problems with one process");
-}
-
-/// Contact of the last step. The keys order the contacts of a world.
-struct KeyedContact {
-    ContactKey key{};
-    Contact contact;
-};
-
-/// Gathers the contacts that each rank has found, in the order of one process. Their region numbers remain those of the
-/// ranks.
-std::vector<KeyedContact> gathered_contacts(const World& world, const WorldState& state) {
-    const std::span<const Contact> found = world.contacts();
-    std::vector<KeyedContact> mine;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        const Index row = state.record.contact_rows[i];
-        const auto& keys = row < 0 ? state.cache.resting.contact.key : state.scratch.contacts.key;
-        mine.push_back({keys[static_cast<std::size_t>(row < 0 ? ~row : row)], found[i]});
-    }
-    std::vector<KeyedContact> all;
-    for (const RankMessage& message : state.ranks.ranks->gather(std::as_bytes(std::span(mine))))
-        for (MailReader reader(message); !reader.at_end();) all.push_back(reader.take<KeyedContact>());
-    std::ranges::sort(all, {}, &KeyedContact::key);
-    // A handle also holds the number of its world, which differs between processes.
-    const Model& model = state.model;
-    for (auto& [key, contact] : all) {
-        for (BodyHandle* body : {&contact.first, &contact.second})
-            if (*body != BodyHandle{}) *body = model.body_map.handle_of_slot(body->slot);
-        if (contact.collider != ColliderHandle{})
-            contact.collider = model.collider_map.handle_of_slot(contact.collider.slot);
-    }
-    return all;
 }
 
 }  // namespace
@@ -105,7 +73,6 @@ std::optional<World> gathered(const World& world) {
     BodyRows rows = rows_of_bodies(
         state, owned, [&](std::uint64_t pair) { return mine.whole.pair_owner(pair, mine.whole.owner) == mine.rank; });
     const std::vector<RankMessage> all = mine.ranks->gather(mine.rank == 0 ? RankMessage() : message_of(rows));
-    const std::vector<KeyedContact> contacts = gathered_contacts(world, state);
     if (mine.rank != 0) return std::nullopt;
     World whole = copy_of_settled(state, {});
     WorldState& copy = WorldAccess::state_of(whole);
@@ -125,9 +92,6 @@ std::optional<World> gathered(const World& world) {
     copy.ranks = {};
     note_ghosts(copy);
     copy.model.of_ranks = {};
-    copy.record.contact_view.clear();
-    for (const KeyedContact& keyed : contacts) copy.record.contact_view.push_back(keyed.contact);
-    copy.record.contact_view_is_current = true;
     return whole;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "engine/world/ranks/rows/body_rows.h"
 #include "engine/world/step/seams.h"
@@ -315,10 +316,12 @@ void update_ghosts(WorldState& world) {
     WholeWorld& whole = world.ranks.whole;
     const RankSearch found = search_ranks(world);
     const int count = world.ranks.ranks->size();
-    const bool unbalanced = whole.settings.map == OwnerMap::curve && !found.keeps_owners &&
-                            imbalance(whole.owner, found.extents, count) > whole.settings.most_imbalance;
-    Column<std::int32_t> owner =
-        unbalanced ? choose_owners(whole, found.extents, whole.settings, count) : Column<std::int32_t>(whole.owner);
+    Column<std::int32_t> owner = whole.owner;
+    const Real present = imbalance(owner, found.extents, count);
+    if (whole.settings.map == OwnerMap::curve && !found.keeps_owners && present > whole.settings.most_imbalance) {
+        Column<std::int32_t> other = choose_owners(whole, found.extents, whole.settings, count);
+        if (imbalance(other, found.extents, count) < present) owner = std::move(other);
+    }
     move_bodies(world, found, HolderChange(whole, found, std::move(owner), count));
 }
 

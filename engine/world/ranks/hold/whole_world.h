@@ -1,9 +1,8 @@
 // Facts about all bodies of a world that is divided among ranks. All ranks have the same facts, except for the records.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "engine/world/state/model.h"
@@ -36,7 +35,7 @@ struct WholeWorld {
     // Row in the undivided world of each row that joins bodies: by table of Model::for_each_joining and handle slot.
     // The last list is that of the attachments.
     std::vector<std::vector<Index>> joining_place;
-    // By place: the ranks that hold the body, ascending.
+    // Ranks that hold the body at each place, ascending.
     std::vector<std::vector<int>> holders;
     std::vector<FetchedUnit> fetched;
     std::uint64_t searched_step = 0;  // number of steps of the run at the last rank search
