@@ -10,6 +10,7 @@
 #include <string>
 
 #include "engine/program/commands.h"
+#include "engine/scene/place.h"
 #include "jobs/ranks/ranks.h"
 #include "skerry/scene.h"
 
