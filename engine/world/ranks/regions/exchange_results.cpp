@@ -68,7 +68,9 @@ public:
         list_moved();
         send();
         channel.ranks->exchange(bodies_.peers, regions_.mail.out, regions_.mail.in);
-        regions_.pushed_bodies.clear();
+        regions_.touched_bodies.clear();
+        regions_.pushed = false;
+        for (const Index node : regions_.nodes) regions_.touched_bodies.push_back(bodies_.body_of(node));
         regions_.unit_from.assign(regions_.unit.size(), -1);
         for (std::size_t p = 0; p < bodies_.peers.size(); ++p) receive(p);
     }
@@ -215,7 +217,8 @@ private:
             const Index node = bodies_.node_of(mail.name);
             out_.velocity_next[node] = mail.velocity;
             out_.push_out[node] = mail.push;
-            if (mail.push != Vec3::Zero()) regions_.pushed_bodies.push_back(bodies_.body_of(node));
+            regions_.pushed |= mail.push != Vec3::Zero();
+            regions_.touched_bodies.push_back(bodies_.body_of(node));
         }
         for (MailedBody mail = reader.take<MailedBody>(); mail.body != no_index; mail = reader.take<MailedBody>())
             receive_body(mail, reader);
@@ -253,7 +256,7 @@ void exchange_results(const SharedBodies& bodies, const SolvedRows& rows, const 
                       JointBlockTable& joints, CableBlockTable& cables, RegionTable& table, SolverMemory& solver,
                       RankRegions& regions, RankChannel& channel) {
     ResultExchange(bodies, rows, joints, cables, out, table, regions).run(channel);
-    if (!regions.pushed_bodies.empty()) solver.note_push();
+    if (regions.pushed) solver.note_push();
 }
 
 }  // namespace
