@@ -131,6 +131,7 @@ private:
             material["restitution"] = random_.one_of<Real>({0, 0, 1, random_.within(0, 1)});
             material["damping"] = random_.chance(0.5) ? 0 : random_.by_decade(1e-3, 1e2) / duration_;
             material["model"] = any_name<MaterialModel>();
+            if (material["model"] == name_of(MaterialModel::orthotropic)) make_orthotropic(material, m);
             if (random_.chance(0.5)) {
                 const Real loss_factor = random_.one_of<Real>({0, 0.3, random_.within(0, 0.3)});
                 material["loss_factor"] = loss_factor;
@@ -140,6 +141,28 @@ private:
             all["m" + std::to_string(m)] = material;
         }
         return all;
+    }
+
+    /// Replaces the elastic constants by those of an orthotropic law. Its random numbers are separate, so that all
+    /// other draws stay unchanged.
+    void make_orthotropic(Json& material, int index) const {
+        RandomNumbers random(seed_ ^ (0xd1b54a32d192ed03u + static_cast<std::uint64_t>(index)));
+        // These ranges keep every stiffness positive definite: |nu_ij| sqrt(E_j/E_i) stays below 1/2.
+        constexpr Real most_poisson = 0.2, factor = 2;
+        const Real isotropic = material["young_modulus"];
+        const auto modulus = [&](Real mean) { return mean * random.by_decade(1 / factor, factor); };
+        Json law;
+        for (int axis = 0; axis < 3; ++axis) {
+            law["young_modulus"].push_back(modulus(isotropic));
+            law["poisson_ratio"].push_back(random.within(-most_poisson, most_poisson));
+            law["shear_modulus"].push_back(modulus(isotropic / 2));
+        }
+        if (random.chance(0.5)) {
+            law["first_axis"] = {0, 0, 1};
+            law["second_axis"] = {1, 0, 0};
+        }
+        for (const char* key : {"model", "young_modulus", "poisson_ratio"}) material.erase(key);
+        material["orthotropic"] = law;
     }
 
     Json mesh(Real size) {

@@ -30,6 +30,7 @@ void combine(RankFindings& into, const RankFindings& from) {
     into.beyond_lists |= from.beyond_lists;
     into.labels_open |= from.labels_open;
     into.label_rounds = std::max(into.label_rounds, from.label_rounds);
+    into.pushed |= from.pushed;
     into.bodies_missing |= from.bodies_missing;
     into.ghosts_expired |= from.ghosts_expired;
     into.stop |= from.stop;

@@ -34,6 +34,7 @@ struct RankFindings {
     // Reasons to repeat the attempt that only ranks have:
     bool labels_open = false;     // the labels of regions had not settled in the last round
     int label_rounds = 0;         // number of rounds of labels that this attempt needed (LabelRounds)
+    bool pushed = false;          // RegionTable::pushed
     bool bodies_missing = false;  // a rank does not hold all bodies of a region that it has to solve
     bool ghosts_expired = false;  // a body may come near a rank that does not hold it
     bool stop = false;            // a callback of World::advance has asked to end the call

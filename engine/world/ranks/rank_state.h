@@ -69,13 +69,12 @@ struct LabelRounds {
     int needed = least;  // greatest number of rounds that a step has needed since the last check
     int steps = 0;       // number of steps since the last check
 
-    /// Adds the number of rounds that an attempt has needed. More than `count`: the number is not known. Too few rounds
-    /// are doubled at once; every 500 steps the number falls to the greatest number that was needed.
+    /// Adds the number of rounds that an attempt has needed. More than `count`: the number is not known, and the next
+    /// attempt has one more round. Every 500 steps the number falls to the greatest number that was needed.
     void note(int rounds) {
         constexpr int steps_between_checks = 500;
         if (rounds > count) {
-            count *= 2;
-            needed = count;
+            needed = ++count;
             steps = 0;
             return;
         }

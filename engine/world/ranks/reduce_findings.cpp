@@ -151,6 +151,7 @@ void take_findings(const RankFindings& all, const StageFindings& found) {
 void reduce_findings(const NamedBodies& bodies, const ContactTable& contacts, const RegionTable& regions, const Real& h,
                      const StageFindings& found, RankFindings& mine, RankFindings& all, RankChannel& channel) {
     note_findings(bodies, found, h, mine);
+    mine.pushed = regions.pushed;
     mine.counters = count_step(contacts, regions, found.measures, found.strained.newton, found.unstrained);
     all = mine;
     reduce(*channel.ranks, all, combine_records);

@@ -175,8 +175,10 @@ void commit(WorldState& world) {
     if (!scratch.left_out) {
         keep_frames(world);
         flow(world);
-        if (scratch.regions.pushed) forget_unstrained(scratch.contacts, world.model.bodies);
-        for (const Index body : scratch.rank_regions.pushed_bodies) world.model.bodies.unstrained[body] = 0;
+        if (world.ranks.on() ? world.ranks.all.pushed : scratch.regions.pushed) {
+            forget_unstrained(scratch.contacts, world.model.bodies);
+            for (const Index body : scratch.rank_regions.touched_bodies) world.model.bodies.unstrained[body] = 0;
+        }
         add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     }
     scratch.counters = counters_of_step(world);

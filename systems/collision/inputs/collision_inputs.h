@@ -21,13 +21,16 @@ struct PairOwners {
     std::span<const std::int32_t> body_owner{};  // by row of BodyTable: rank; empty: all pairs belong to this rank
     std::int32_t rank = 0;                       // number of this rank
 
-    /// True if the pair belongs to this rank. For two bodies that can move, the sum of their slots decides which owner
-    /// has the pair, so that about half of the pairs between two ranks belong to each of them. `first`: row of a body
-    /// that can move. `second`: row of another body that can move, or no_index.
+    /// True if the owner of the second of two bodies that can move has the pair. The sum of the slots decides, so that
+    /// about half of the pairs between two ranks belong to each of them.
+    static constexpr bool belongs_to_second(std::uint32_t first_slot, std::uint32_t second_slot) {
+        return (first_slot + second_slot) % 2 == (first_slot < second_slot);
+    }
+    /// True if the pair belongs to this rank. `first`: row of a body that can move. `second`: row of another body that
+    /// can move, or no_index.
     bool owns(const BodyTable& body, Index first, Index second) const {
         if (body_owner.empty()) return true;
-        if (second != no_index && (body.slot[first] + body.slot[second]) % 2 == (body.slot[first] < body.slot[second]))
-            first = second;
+        if (second != no_index && belongs_to_second(body.slot[first], body.slot[second])) first = second;
         return body_owner[first] == rank;
     }
 };

@@ -7,6 +7,7 @@
 
 #include "engine/world/state/model.h"
 #include "skerry/ranks.h"
+#include "systems/collision/inputs/collision_inputs.h"
 #include "systems/collision/inputs/contact_key.h"
 
 namespace skerry {
@@ -43,11 +44,10 @@ struct WholeWorld {
 
     std::size_t size() const { return owner.size(); }
     Index place(std::uint32_t slot_of_body) const { return place_of_slot[slot_of_body]; }
-    /// The rank that searches the pair with this key (ContactKey::pair), and stores its contacts. For two bodies, the
-    /// sum of their slots decides which of the owners has the pair (PairOwners). `owners`: by place.
+    /// The rank that searches the pair with this key (ContactKey::pair), and stores its contacts. `owners`: by place.
     std::int32_t pair_owner(std::uint64_t key, std::span<const std::int32_t> owners) const {
         const PairSlots pair = slots_of_pair(key);
-        const bool of_first = pair.is_collider || (pair.first + pair.second) % 2 != (pair.first < pair.second);
+        const bool of_first = pair.is_collider || !PairOwners::belongs_to_second(pair.first, pair.second);
         return owners[static_cast<std::size_t>(place(of_first ? pair.first : pair.second))];
     }
     BodyHandle handle(const Model& model, Index place) const { return model.body_map.handle_of_slot(slot[place]); }

@@ -30,6 +30,53 @@ struct MailedDeformation {
     Vec3 impulse = Vec3::Zero();
 };
 
+/// Impulse of a row that holds a node along a single direction. A record without a body ends a list.
+struct MailedHold {
+    Index body = no_index;  // place
+    Index entry = 0;        // number of the held node among those of all attachments of the body
+    Vec3 impulse = Vec3::Zero();
+};
+
+/// Rows that hold nodes along single directions. They follow the rows of ties.
+struct HoldRows {
+    std::span<const Index> entry;  // by row: row of AttachmentTable::node
+    std::span<const Index> body;   // by attachment: row of BodyTable
+    std::span<const Range> nodes;  // by attachment: rows of AttachmentTable::node
+    std::span<Vec3> impulse;       // by row of AttachmentTable::node [N s]
+
+    static HoldRows bind(const Binder& binder, const AttachmentTable& attachment, const HeldRows& rows,
+                         Column<Vec3>& impulse) {
+        return {.entry = binder.read(rows.entry),
+                .body = binder.read(attachment.body),
+                .nodes = binder.read(attachment.nodes),
+                .impulse = binder.write(impulse)};
+    }
+
+    /// Calls visit(range) for the held nodes of each attachment of a body.
+    void for_each_range(Index of_body, auto&& visit) const {
+        for (std::size_t a = 0; a < body.size(); ++a)
+            if (body[a] == of_body) visit(nodes[a]);
+    }
+    /// Number of a held node among those of all attachments of its body.
+    Index number(Index of_body, Index row) const {
+        Index before = 0, found = no_index;
+        for_each_range(of_body, [&](const Range& range) {
+            if (row >= range.begin && row < range.end) found = before + row - range.begin;
+            before += static_cast<Index>(range.size());
+        });
+        return found;
+    }
+    /// Row of AttachmentTable::node of the held node with this number.
+    Index row(Index of_body, Index number) const {
+        Index found = no_index;
+        for_each_range(of_body, [&](const Range& range) {
+            if (number >= 0 && number < static_cast<Index>(range.size())) found = range.begin + number;
+            number -= static_cast<Index>(range.size());
+        });
+        return found;
+    }
+};
+
 /// Bodies, nodes and rows of the regions.
 struct SolvedRows {
     std::span<const Real> inverse_mass;  // by node [1/kg]
@@ -59,16 +106,25 @@ struct SolvedRows {
 
 class ResultExchange {
 public:
-    ResultExchange(const SharedBodies& bodies, const SolvedRows& rows, JointBlockTable& joints, CableBlockTable& cables,
-                   const RegionOutputs& out, RegionTable& table, RankRegions& regions)
-        : bodies_(bodies), rows_(rows), joints_(joints), cables_(cables), out_(out), table_(table), regions_(regions) {}
+    ResultExchange(const SharedBodies& bodies, const SolvedRows& rows, const HoldRows& holds, JointBlockTable& joints,
+                   CableBlockTable& cables, const RegionOutputs& out, RegionTable& table, RankRegions& regions)
+        : bodies_(bodies),
+          rows_(rows),
+          holds_(holds),
+          joints_(joints),
+          cables_(cables),
+          out_(out),
+          table_(table),
+          regions_(regions) {}
 
     void run(RankChannel& channel) {
         zero_left_out_rows();
         list_moved();
         send();
         channel.ranks->exchange(bodies_.peers, regions_.mail.out, regions_.mail.in);
-        regions_.pushed_bodies.clear();
+        regions_.touched_bodies.clear();
+        regions_.pushed = false;
+        for (const Index node : regions_.nodes) regions_.touched_bodies.push_back(bodies_.body_of(node));
         regions_.unit_from.assign(regions_.unit.size(), -1);
         for (std::size_t p = 0; p < bodies_.peers.size(); ++p) receive(p);
     }
@@ -177,6 +233,8 @@ private:
         for (const Index body : regions_.bodies)
             for (const int p : bodies_.holders_of(body)) send_body(static_cast<std::size_t>(p), body);
         for (std::size_t p = 0; p < peers; ++p) mail.put(p, MailedBody{});
+        send_holds();
+        for (std::size_t p = 0; p < peers; ++p) mail.put(p, MailedHold{});
         for (std::size_t b = 0; b < regions_.unit.size(); ++b)
             if (regions_.unit[b] == static_cast<Index>(b) && is_solved_here(static_cast<Index>(b)))
                 for (const int p : bodies_.holders_of(static_cast<Index>(b)))
@@ -187,6 +245,19 @@ private:
                                      for (const int p : bodies_.holders_of(unit))
                                          mail.put(static_cast<std::size_t>(p), number);
                                  });
+    }
+
+    void send_holds() {
+        const std::size_t first = regions_.contact_count + rows_.tie_count;
+        for (std::size_t row = first; row < rows_.region.size(); ++row) {
+            if (rows_.region[row] == no_index) continue;
+            const Index body = bodies_.body_of(rows_.stencil[row].node[0]);
+            const std::span<const int> holders = bodies_.holders_of(body);
+            if (holders.empty()) continue;
+            const MailedHold hold{bodies_.place[static_cast<std::size_t>(body)],
+                                  holds_.number(body, holds_.entry[row - first]), out_.impulse[row]};
+            for (const int p : holders) regions_.mail.put(static_cast<std::size_t>(p), hold);
+        }
     }
 
     void send_body(std::size_t peer, Index body) {
@@ -215,10 +286,13 @@ private:
             const Index node = bodies_.node_of(mail.name);
             out_.velocity_next[node] = mail.velocity;
             out_.push_out[node] = mail.push;
-            if (mail.push != Vec3::Zero()) regions_.pushed_bodies.push_back(bodies_.body_of(node));
+            regions_.pushed |= mail.push != Vec3::Zero();
+            regions_.touched_bodies.push_back(bodies_.body_of(node));
         }
         for (MailedBody mail = reader.take<MailedBody>(); mail.body != no_index; mail = reader.take<MailedBody>())
             receive_body(mail, reader);
+        for (MailedHold mail = reader.take<MailedHold>(); mail.body != no_index; mail = reader.take<MailedHold>())
+            holds_.impulse[holds_.row(bodies_.row_of(mail.body), mail.entry)] += mail.impulse;
         for (Index place = reader.take<Index>(); place != no_index; place = reader.take<Index>())
             regions_.unit_from[bodies_.row_of(place)] = static_cast<int>(peer);
         for_each_result_of_units([&](Index unit) { return regions_.unit_from[unit] == static_cast<int>(peer); },
@@ -242,6 +316,7 @@ private:
 
     const SharedBodies& bodies_;
     const SolvedRows& rows_;
+    const HoldRows& holds_;
     JointBlockTable& joints_;
     CableBlockTable& cables_;
     const RegionOutputs& out_;
@@ -249,11 +324,11 @@ private:
     RankRegions& regions_;
 };
 
-void exchange_results(const SharedBodies& bodies, const SolvedRows& rows, const RegionOutputs& out,
-                      JointBlockTable& joints, CableBlockTable& cables, RegionTable& table, SolverMemory& solver,
-                      RankRegions& regions, RankChannel& channel) {
-    ResultExchange(bodies, rows, joints, cables, out, table, regions).run(channel);
-    if (!regions.pushed_bodies.empty()) solver.note_push();
+void exchange_results(const SharedBodies& bodies, const SolvedRows& rows, const HoldRows& holds,
+                      const RegionOutputs& out, JointBlockTable& joints, CableBlockTable& cables, RegionTable& table,
+                      SolverMemory& solver, RankRegions& regions, RankChannel& channel) {
+    ResultExchange(bodies, rows, holds, joints, cables, out, table, regions).run(channel);
+    if (regions.pushed) solver.note_push();
 }
 
 }  // namespace
@@ -263,7 +338,7 @@ void list_result_exchange(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     StepScratch& s = w.scratch;
     g.stage("ranks/exchange_results", exchange_results, inputs<SharedBodies>(w.ranks, m.bodies, m.nodes),
-            inputs<SolvedRows>(m, s.contacts, s.ties),
+            inputs<SolvedRows>(m, s.contacts, s.ties), outputs<HoldRows>(m.attachments, s.held_rows, s.axis_impulse),
             outputs<RegionOutputs>(s.contacts, m.nodes, m.rigid_bodies, m.implicit_nodes, s.joints, s.cables),
             make(s.joints), make(s.cables), make(s.regions), make(s.solver_memory), make(s.rank_regions),
             make(w.ranks.channel));

@@ -195,6 +195,13 @@ private:
     Column<BodyRequest>& requests_;
 };
 
+void remove_repeated(Column<BodyRequest>& requests) {
+    const auto name = [](const BodyRequest& request) { return std::pair(request.rank, request.place); };
+    std::ranges::sort(requests, {}, name);
+    const auto repeated = std::ranges::unique(requests, {}, name);
+    requests.resize(requests.size() - static_cast<std::size_t>(repeated.size()));
+}
+
 void exchange_rows(const SharedBodies& bodies, const RegionGroups& nodes, const JoinedBodies& joined,
                    const LabelRounds& rounds, ContactTable& contacts, RankRegions& regions,
                    Column<BodyRequest>& requests, RankFindings& mine, RankChannel& channel) {
@@ -203,6 +210,7 @@ void exchange_rows(const SharedBodies& bodies, const RegionGroups& nodes, const 
     mine.label_rounds = label_regions(bodies, nodes, contacts.stencil, rounds.count, regions, channel);
     mine.labels_open = mine.label_rounds > rounds.count;
     RowExchange(bodies, contacts, regions, requests).run(channel);
+    remove_repeated(requests);
     mine.bodies_missing = !requests.empty();
 }
 
