@@ -109,7 +109,8 @@ struct RankState {
     // For each row of BodyTable: distance by which the body may move before its holders must be found again; infinite
     // for ghosts. `moved`: bound of the distance by which it has moved since they were found [m].
     Column<Real> margin, moved;
-    WholeWorld whole;  // empty if `ranks` is null
+    Column<Real> tried_speed;  // by row of BodyTable: greatest speed in the last attempt at a step [m/s]
+    WholeWorld whole;          // empty if `ranks` is null
     // For each place: number of pieces of the stable-step checks of all bodies before it (count_pieces).
     Column<std::uint64_t> pieces_before;
     // For each row of BodyTable: 1 if this rank sends the predicted velocities of the body to its holders
