@@ -120,6 +120,8 @@ struct RankState {
     PredictionMail predictions;
     RankSleep sleep;
     RankShare share;
+    // keys of the pairs that released ties have enabled, as far as this rank knows (DisabledPairTable)
+    Column<std::uint64_t> enabled_pairs;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
     Column<Index> stale;           // places of own bodies whose copies on other ranks have lost their validity

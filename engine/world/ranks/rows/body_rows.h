@@ -27,6 +27,7 @@ struct BodyRows {
     RestingContactTable resting;
     PairTable pairs;        // overlapping pairs, without candidates
     ContactTable contacts;  // contacts of the last step
+    Column<std::uint64_t> enabled_pairs;  // RankState
 };
 
 /// Contact data that are copied with rows of bodies: those of all pairs for which the function returns true. It gets
