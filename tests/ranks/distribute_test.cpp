@@ -126,6 +126,17 @@ TEST_CASE("bodies whose tie breaks collide on every rank that gets them later", 
     CHECK(both[0].report().contact_sum == both[1].report().contact_sum);
 }
 
+TEST_CASE("bodies of all ranks that cross themselves are reported", "[ranks]") {
+    const std::vector<World> both = run_both(own_scene("folded"), 2, 2);
+    const auto messages = [](const World& world) {
+        std::vector<std::string> all;
+        for (const SelfCrossing& found : world.report().self_crossings) all.push_back(found.message());
+        return all;
+    };
+    REQUIRE(messages(both[0]).size() > 0);
+    CHECK(messages(both[0]) == messages(both[1]));
+}
+
 /// Two boxes that fly towards each other and collide after 0.095 s.
 World approaching_boxes() {
     World world({.gravity = Vec3::Zero()});

@@ -31,6 +31,12 @@ BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked,
         if (marked[b] != 0)
             rows.valid_until.push_back(b < valid_until.size() ? valid_until[b] : SearchState::forgotten);
     copy_contacts(world, wants_pair, rows);
+    for (const SelfCrossing& found : world.record.self_crossings) {
+        const Index row = model.body_map.row(found.body);
+        if (row != no_index && marked[static_cast<std::size_t>(row)] != 0)
+            rows.self_crossings.push_back({found.body.slot, found.self_contact, found.first_time, found.last_time,
+                                           found.last_places, found.most_places});
+    }
     rows.enabled_pairs = world.ranks.enabled_pairs;
     return rows;
 }
@@ -208,6 +214,24 @@ void enable_pairs(std::span<const std::uint64_t> keys, WorldState& world) {
     }
 }
 
+/// Takes over the entries of bodies that were added. Their sender has made the last checks of these bodies.
+void take_self_crossings(std::span<const FoundSelfCrossing> added, WorldState& world) {
+    std::vector<SelfCrossing>& crossings = world.record.self_crossings;
+    for (const FoundSelfCrossing& found : added) {
+        const BodyHandle body = world.model.body_map.handle_of_slot(found.slot);
+        auto entry = std::ranges::find(crossings, body, &SelfCrossing::body);
+        if (entry == crossings.end()) {
+            const auto row = static_cast<std::size_t>(world.model.body_map.row(body));
+            entry = crossings.insert(entry, {.body = body, .name = world.model.body_records[row].name});
+        }
+        entry->self_contact = found.self_contact;
+        entry->first_time = found.first_time;
+        entry->last_time = found.last_time;
+        entry->last_places = found.last_places;
+        entry->most_places = found.most_places;
+    }
+}
+
 }  // namespace
 
 void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::span<BodyRows> added,
@@ -253,6 +277,7 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
     add_contacts(added, world);
     for (const BodyRows& rows : added) {
         enable_pairs(rows.enabled_pairs, world);
+        take_self_crossings(rows.self_crossings, world);
     }
     world.scratch.regions = RegionTable{};
     world.scratch.self_crossing_places.resize(model.bodies.slot.size());
@@ -274,7 +299,7 @@ void for_each_column(BodyRows& rows, auto&& visit) {
           AnyColumn(clusters.first_entry), AnyColumn(clusters.inverse), AnyColumn(clusters.cluster_of),
           AnyColumn(clusters.place), AnyColumn(rows.model.watch.position), AnyColumn(rows.model.watch.stiffness_sum),
           AnyColumn(rows.model.watch.step), AnyColumn(rows.place), AnyColumn(rows.watch), AnyColumn(rows.valid_until),
-           AnyColumn(rows.enabled_pairs)})
+          AnyColumn(rows.self_crossings), AnyColumn(rows.enabled_pairs)})
         visit(column);
     visit_all(rows.warm_start);
     visit_all(rows.resting);
