@@ -126,6 +126,10 @@ TEST_CASE("bodies whose tie breaks collide on every rank that gets them later", 
     CHECK(both[0].report().contact_sum == both[1].report().contact_sum);
 }
 
+TEST_CASE("bodies move between ranks with and without rigid bodies", "[ranks]") {
+    run_both(own_scene("apart"), 2, 4);
+}
+
 TEST_CASE("bodies of all ranks that cross themselves are reported", "[ranks]") {
     const std::vector<World> both = run_both(own_scene("folded"), 2, 2);
     const auto messages = [](const World& world) {
