@@ -58,11 +58,14 @@ struct ContactsDone {
     std::span<const Vec3> impulse;     // [N s]
     std::span<const Vec3> point = {};  // contact points; empty if no body is rigid or implicit [m]
 
-    static ContactsDone bind(const Binder& binder, const ContactTable& contact, const RigidBodyTable& rigid) {
-        return {.key = binder.read(contact.key),
-                .normal = binder.read(contact.normal),
-                .impulse = binder.read(contact.impulse),
-                .point = binder.read_if(!binder.value(rigid.mass).empty(), contact.point)};
+    /// `stores_points`: true if points must be stored although no body of the table is rigid or implicit.
+    static ContactsDone bind(const Binder& binder, const ContactTable& contact, const RigidBodyTable& rigid,
+                             const bool& stores_points) {
+        return {
+            .key = binder.read(contact.key),
+            .normal = binder.read(contact.normal),
+            .impulse = binder.read(contact.impulse),
+            .point = binder.read_if(!binder.value(rigid.mass).empty() || binder.value(stores_points), contact.point)};
     }
 };
 

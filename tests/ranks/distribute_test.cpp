@@ -91,6 +91,56 @@ TEST_CASE("bodies that get new owners while they touch move as without ranks", "
     }
 }
 
+/// Runs a scene without ranks and then on ranks, and checks that the state of both is equal at the end. Returns the
+/// worlds.
+std::vector<World> run_both(const RankScene& scene, int count, int calls) {
+    std::vector<World> both;
+    both.push_back(scene.make(1));
+    for (int call = 0; call < calls; ++call) both[0].advance(scene.seconds / calls);
+    std::optional<World> whole;
+    run_on_ranks(count, [&](Ranks& ranks) {
+        World world = scene.make(1);
+        distribute(world, ranks);
+        WorldState& state = WorldAccess::state_of(world);
+        for (std::int32_t call = 0; call < calls; ++call) {
+            world.advance(scene.seconds / calls);
+            if (call + 1 < calls) move_to_owners(state, next_owners(state.ranks, call));
+        }
+        if (std::optional<World> all = gathered(world)) whole.emplace(std::move(*all));
+    });
+    both.push_back(std::move(*whole));
+    INFO(scene.name);
+    CHECK(both[0].state_hash() == both[1].state_hash());
+    return both;
+}
+
+TEST_CASE("a body that a contact throws at a body of another rank within a step meets it", "[ranks]") {
+    const std::vector<World> both = run_both(own_scene("thrown"), 3, 1);
+    CHECK(both[0].report().contact_sum == both[1].report().contact_sum);
+}
+
+TEST_CASE("bodies whose tie breaks collide on every rank that gets them later", "[ranks]") {
+    std::vector<World> both = run_both(own_scene("released"), 2, 4);
+    for (World& world : both) world.advance(0.02);
+    CHECK(both[0].state_hash() == both[1].state_hash());
+    CHECK(both[0].report().contact_sum == both[1].report().contact_sum);
+}
+
+TEST_CASE("bodies move between ranks with and without rigid bodies", "[ranks]") {
+    run_both(own_scene("apart"), 2, 4);
+}
+
+TEST_CASE("bodies of all ranks that cross themselves are reported", "[ranks]") {
+    const std::vector<World> both = run_both(own_scene("folded"), 2, 2);
+    const auto messages = [](const World& world) {
+        std::vector<std::string> all;
+        for (const SelfCrossing& found : world.report().self_crossings) all.push_back(found.message());
+        return all;
+    };
+    REQUIRE(messages(both[0]).size() > 0);
+    CHECK(messages(both[0]) == messages(both[1]));
+}
+
 /// Two boxes that fly towards each other and collide after 0.095 s.
 World approaching_boxes() {
     World world({.gravity = Vec3::Zero()});

@@ -36,6 +36,7 @@ void hold_everywhere(World& world, Ranks& ranks) {
     // no rank needs to search for other bodies
     mine.margin.assign(bodies.slot.size(), infinity);
     mine.moved.assign(bodies.slot.size(), 0);
+    mine.tried_speed.assign(bodies.slot.size(), 0);
     mine.whole.searched_step = std::numeric_limits<std::uint64_t>::max() / 2;
     note_ghosts(state);
     list_step_again(state);

@@ -14,6 +14,7 @@
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 #include "skerry/tie.h"
+#include "systems/collision/inputs/may_collide.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/contact/prepare_ties.h"
 #include "systems/dynamics/motion/move_colliders.h"
@@ -298,9 +299,13 @@ void release_ties(WorldState& world) {
         ties.parts[t] = 0;
         if (parted_by_another(ties, t)) continue;
         const bool of_collider = ties.collider[t] != no_index;
-        if (of_collider || ties.second[t] != no_index)
-            enable_pair(world, of_collider ? PairKind::collider : PairKind::bodies, ties.first[t],
-                        of_collider ? ties.collider[t] : ties.second[t]);
+        if (!of_collider && ties.second[t] == no_index) continue;
+        const PairKind kind = of_collider ? PairKind::collider : PairKind::bodies;
+        const Index second = of_collider ? ties.collider[t] : ties.second[t];
+        enable_pair(world, kind, ties.first[t], second);
+        if (world.ranks.on())
+            world.ranks.enabled_pairs.push_back(
+                pair_key(world.model.bodies, world.model.colliders, kind, ties.first[t], second));
     }
 }
 

@@ -108,7 +108,8 @@ struct RankState {
     // For each row of BodyTable: distance by which the body may move before its holders must be found again; infinite
     // for ghosts. `moved`: bound of the distance by which it has moved since they were found [m].
     Column<Real> margin, moved;
-    WholeWorld whole;  // empty if `ranks` is null
+    Column<Real> tried_speed;  // by row of BodyTable: greatest speed in the last attempt at a step [m/s]
+    WholeWorld whole;          // empty if `ranks` is null
     // For each place: number of pieces of the stable-step checks of all bodies before it (count_pieces).
     Column<std::uint64_t> pieces_before;
     // For each row of BodyTable: 1 if this rank sends the predicted velocities of the body to its holders
@@ -118,6 +119,8 @@ struct RankState {
     PredictionMail predictions;
     RankSleep sleep;
     RankShare share;
+    // keys of the pairs that released ties have enabled, as far as this rank knows (DisabledPairTable)
+    Column<std::uint64_t> enabled_pairs;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
     Column<Index> stale;           // places of own bodies whose copies on other ranks have lost their validity

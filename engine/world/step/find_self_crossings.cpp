@@ -54,7 +54,8 @@ void find_self_crossings(Executor& executor, Model& model, Real time, Column<Ind
             places[b] = may_have_changed(model, b) ? count_crossings(model, inputs, static_cast<Index>(b)) : unchanged;
     });
     for (std::size_t b = 0; b < places.size(); ++b)
-        if (places[b] > 0 || (!crossings.empty() && model.bodies.kind[b] == BodyKind::deformable))
+        if (places[b] > 0 ||
+            (!crossings.empty() && model.bodies.kind[b] == BodyKind::deformable && !model.bodies.is_ghost(b)))
             note(model, b, time, places[b], crossings);
 }
 

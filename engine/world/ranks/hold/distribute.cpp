@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "engine/world/complaint.h"
 #include "engine/world/ranks/hold/ghosts.h"
@@ -12,23 +13,32 @@ namespace skerry {
 namespace {
 
 [[noreturn]] void refuse_division(const char* field, const char* found, const char* expected, const char* hint) {
-    Complaint{
-        .file = {}, .object = "distribute", .field = field, .found = found, .expected = expected, .hint = hint}
+    Complaint{.file = {}, .object = "distribute", .field = field, .found = found, .expected = expected, .hint = hint}
         .raise();
 }
 
 /// Refuses worlds that ranks cannot divide.
 void require_divisible(const WorldState& world) {
     const Settings& settings = world.model.settings;
-    if (world.ranks.on()) refuse_division("world", "a world that is already divided", "an undivided world", "call it once");
+    if (world.ranks.on())
+        refuse_division("world", "a world that is already divided", "an undivided world", "call it once");
     if (settings.integrator == Integrator::leapfrog)
-        refuse_division("settings.integrator", "leapfrog", "symplectic_euler", "several ranks have only this integrator");
+        refuse_division("settings.integrator", "leapfrog", "symplectic_euler",
+                        "several ranks have only this integrator");
     if (settings.contact_regions == ContactRegions::global)
         refuse_division("settings.contact_regions", "global", "separate", "ranks solve regions concurrently");
     if (world.record.forces.on())
         refuse_division("measure_forces", "forces that are measured", "none", "measure forces with one process");
     if (world.record.problem_watch.take)
-        refuse_division("watch_problems", "a subscription to contact problems", "none", "export problems with one process");
+        refuse_division("watch_problems", "a subscription to contact problems", "none",
+                        "export problems with one process");
+}
+
+/// Orders the entries as the undivided world does: by the check that found the crossing first, then by row.
+void sort_self_crossings(WorldState& world) {
+    std::ranges::stable_sort(world.record.self_crossings, {}, [&](const SelfCrossing& found) {
+        return std::pair(found.first_time, world.model.body_map.row(found.body));
+    });
 }
 
 }  // namespace
@@ -90,6 +100,7 @@ std::optional<World> gathered(const World& world) {
         kept.push_back(owner == mine.rank || owner == WholeWorld::everywhere);
     }
     replace_rows(copy, kept, added, [](std::uint64_t) { return true; });
+    sort_self_crossings(copy);
     copy.ranks = {};
     note_ghosts(copy);
     copy.model.of_ranks = {};

@@ -29,8 +29,9 @@ constexpr Real body_cost = 20;
 /// Distance by which a body may move before its holders are found again [m]. `speed`: greatest speed of a node [m/s].
 Real margin_of(const WorldState& world, std::size_t body, Real speed) {
     const Model& model = world.model;
-    const Real h = std::max(world.clock.step_before, trusted_step(model));
-    const Real time = std::isfinite(h) ? steps_of_margin * h : 0;
+    Real h = std::max(world.clock.step_before, world.scratch.parameters.h);
+    if (const Real trusted = trusted_step(model); std::isfinite(trusted)) h = std::max(h, trusted);
+    const Real time = steps_of_margin * h;
     const BodyTable& bodies = model.bodies;
     const Real size = bodies.mean_edge[body] + bodies.round_radius[body] / 8 + bodies.contact_distance[body];
     return size + time * (speed + model.settings.gravity.norm() * time);
@@ -44,6 +45,8 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
     if (const Index core = bodies.core_nodes[body]; core > 0) nodes.end = nodes.begin + core;
     Aabb box = empty_box();
     Real speed = bodies.max_speed[body];  // that of the last step; a contact may have slowed the body
+    const std::span<const Real> tried = world.ranks.tried_speed;
+    if (body < tried.size() && std::isfinite(tried[body])) speed = std::max(speed, tried[body]);
     for (Index node = nodes.begin; node < nodes.end; ++node) {
         grow(box, model.nodes.position[node]);
         speed = std::max(speed, model.nodes.velocity[node].norm());
@@ -249,11 +252,30 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
     note_ghosts(world);
 }
 
-/// Finds whether a body may leave its box in this step.
-void watch_ghosts(const SearchState& search, std::span<const Real> margin, std::span<const Real> moved,
+/// Motion of bodies since their holders were found, by row of BodyTable.
+struct GhostMotion {
+    std::span<const Real> margin, moved;  // RankState [m]
+    std::span<const Real> max_speed;      // in this attempt [m/s]
+
+    static GhostMotion bind(const Binder& binder, const RankState& ranks, const BodyTable& bodies) {
+        return {.margin = binder.read(ranks.margin),
+                .moved = binder.read(ranks.moved),
+                .max_speed = binder.read(bodies.max_speed)};
+    }
+};
+
+/// Finds whether a body may leave its box in this step. The reach of the search follows from the speed at the start of
+/// the step. Forces and contacts of the step may accelerate a body beyond it, so the motion of the attempt counts too.
+void watch_ghosts(const SearchState& search, const GhostMotion& bodies, std::span<Real> tried_speed, Real h,
                   const RunCounters& run, const std::uint64_t& searched_step, RankFindings& mine) {
     const std::span<const Real> reach = search.memory.body_reach;
-    for (std::size_t b = 0; b < margin.size(); ++b) mine.ghosts_expired |= !(moved[b] + reach[b] < margin[b]);
+    for (std::size_t b = 0; b < bodies.margin.size(); ++b) {
+        const Real speed = bodies.max_speed[b];
+        tried_speed[b] = speed;
+        // If the speed is not finite, the step is refused, and no margin would be wide enough.
+        const Real motion = std::isfinite(speed) ? std::max(reach[b], speed * h) : reach[b];
+        mine.ghosts_expired |= !(bodies.moved[b] + motion < bodies.margin[b]);
+    }
     mine.ghosts_expired |= run.steps >= searched_step + steps_between_searches;
 }
 
@@ -282,6 +304,7 @@ void note_holders(RankState& ranks, std::span<const BodyExtent> extents) {
     ranks.holders.clear();
     ranks.margin.assign(ranks.place.size(), infinity);
     ranks.moved.assign(ranks.place.size(), 0);
+    ranks.tried_speed.assign(ranks.place.size(), 0);
     for (std::size_t b = 0; b < ranks.place.size(); ++b) {
         const Index place = ranks.place[b];
         const std::int32_t owner = whole.owner[place];
@@ -302,8 +325,9 @@ void note_holders(RankState& ranks, std::span<const BodyExtent> extents) {
 
 void list_ghost_watch(WorldState& w, TaskGraph& g) {
     if (!w.ranks.on()) return;
-    g.stage("ranks/watch_ghosts", watch_ghosts, read(w.cache.search), read(w.ranks.margin), read(w.ranks.moved),
-            read(w.record.counters), read(w.ranks.whole.searched_step), make(w.ranks.mine));
+    g.stage("ranks/watch_ghosts", watch_ghosts, read(w.cache.search), inputs<GhostMotion>(w.ranks, w.model.bodies),
+            write(w.ranks.tried_speed), value(w.scratch.parameters.h), read(w.record.counters),
+            read(w.ranks.whole.searched_step), make(w.ranks.mine));
 }
 
 void list_ghost_paths(WorldState& w, TaskGraph& g) {

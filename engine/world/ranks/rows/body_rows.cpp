@@ -31,6 +31,13 @@ BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked,
         if (marked[b] != 0)
             rows.valid_until.push_back(b < valid_until.size() ? valid_until[b] : SearchState::forgotten);
     copy_contacts(world, wants_pair, rows);
+    for (const SelfCrossing& found : world.record.self_crossings) {
+        const Index row = model.body_map.row(found.body);
+        if (row != no_index && marked[static_cast<std::size_t>(row)] != 0)
+            rows.self_crossings.push_back({found.body.slot, found.self_contact, found.first_time, found.last_time,
+                                           found.last_places, found.most_places});
+    }
+    rows.enabled_pairs = world.ranks.enabled_pairs;
     return rows;
 }
 
@@ -194,6 +201,37 @@ private:
     const RowMoves& moves_;
 };
 
+/// Enables the pairs that ties released on another rank (release_ties).
+void enable_pairs(std::span<const std::uint64_t> keys, WorldState& world) {
+    Column<std::uint64_t>& disabled = world.model.disabled_pairs.key;
+    Column<std::uint64_t>& known = world.ranks.enabled_pairs;
+    for (const std::uint64_t key : keys) {
+        if (std::ranges::find(known, key) != known.end()) continue;
+        known.push_back(key);
+        const auto place = std::lower_bound(disabled.begin(), disabled.end(), key);
+        if (place != disabled.end() && *place == key)
+            disabled.erase(static_cast<std::size_t>(place - disabled.begin()), 1);
+    }
+}
+
+/// Takes over the entries of bodies that were added. Their sender has made the last checks of these bodies.
+void take_self_crossings(std::span<const FoundSelfCrossing> added, WorldState& world) {
+    std::vector<SelfCrossing>& crossings = world.record.self_crossings;
+    for (const FoundSelfCrossing& found : added) {
+        const BodyHandle body = world.model.body_map.handle_of_slot(found.slot);
+        auto entry = std::ranges::find(crossings, body, &SelfCrossing::body);
+        if (entry == crossings.end()) {
+            const auto row = static_cast<std::size_t>(world.model.body_map.row(body));
+            entry = crossings.insert(entry, {.body = body, .name = world.model.body_records[row].name});
+        }
+        entry->self_contact = found.self_contact;
+        entry->first_time = found.first_time;
+        entry->last_time = found.last_time;
+        entry->last_places = found.last_places;
+        entry->most_places = found.most_places;
+    }
+}
+
 }  // namespace
 
 void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::span<BodyRows> added,
@@ -237,6 +275,10 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
             if (added[s - 1].valid_until[b] == SearchState::forgotten)
                 world.cache.search.body_valid_until[sources[s].moves.body_now[b]] = SearchState::forgotten;
     add_contacts(added, world);
+    for (const BodyRows& rows : added) {
+        enable_pairs(rows.enabled_pairs, world);
+        take_self_crossings(rows.self_crossings, world);
+    }
     world.scratch.regions = RegionTable{};
     world.scratch.self_crossing_places.resize(model.bodies.slot.size());
     world.query_trees.forget();
@@ -256,7 +298,8 @@ void for_each_column(BodyRows& rows, auto&& visit) {
          {AnyColumn(clusters.nodes.offset), AnyColumn(clusters.nodes.item), AnyColumn(clusters.body),
           AnyColumn(clusters.first_entry), AnyColumn(clusters.inverse), AnyColumn(clusters.cluster_of),
           AnyColumn(clusters.place), AnyColumn(rows.model.watch.position), AnyColumn(rows.model.watch.stiffness_sum),
-          AnyColumn(rows.model.watch.step), AnyColumn(rows.place), AnyColumn(rows.watch), AnyColumn(rows.valid_until)})
+          AnyColumn(rows.model.watch.step), AnyColumn(rows.place), AnyColumn(rows.watch), AnyColumn(rows.valid_until),
+          AnyColumn(rows.self_crossings), AnyColumn(rows.enabled_pairs)})
         visit(column);
     visit_all(rows.warm_start);
     visit_all(rows.resting);

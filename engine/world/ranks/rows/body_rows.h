@@ -16,6 +16,14 @@ struct WatchProgress {
     StepEvaluation look;
 };
 
+/// Entry of WorldReport::self_crossings, without the name.
+struct FoundSelfCrossing {
+    std::uint32_t slot = no_slot;  // of the handle of the body
+    bool self_contact = false;
+    Real first_time = 0, last_time = 0;  // [s]
+    Index last_places = 0, most_places = 0;
+};
+
 /// Rows of bodies, of their attachments, and of the tables that join bodies (Model::for_each_joining). No row refers to
 /// a body that is not among them. Handles, records of bodies, colliders and materials are on every rank.
 struct BodyRows {
@@ -27,6 +35,8 @@ struct BodyRows {
     RestingContactTable resting;
     PairTable pairs;        // overlapping pairs, without candidates
     ContactTable contacts;  // contacts of the last step
+    Column<FoundSelfCrossing> self_crossings;
+    Column<std::uint64_t> enabled_pairs;  // RankState
 };
 
 /// Contact data that are copied with rows of bodies: those of all pairs for which the function returns true. It gets
