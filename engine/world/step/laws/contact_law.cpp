@@ -65,8 +65,9 @@ void list_memory(WorldState& w, TaskGraph& g) {
     g.stage("collision/use_crossings", use_crossings, make(w.cache.pairs), make(w.cache.crossings), if_found);
     ContactTable& c = w.scratch.contacts;
     const StepParameters& p = w.scratch.parameters;
-    g.stage("contact/store_warm_start", store_warm_start, inputs<ContactsDone>(c, m.rigid_bodies), value(p.kick),
-            make(w.cache.warm_start), if_taken(w));
+    g.stage("contact/store_warm_start", store_warm_start,
+            inputs<ContactsDone>(c, m.rigid_bodies, m.of_ranks.has_frames), value(p.kick), make(w.cache.warm_start),
+            if_taken(w));
     g.stage("contact/keep_resting_contacts", keep_resting_contacts, read(c),
             inputs<RestingInputs>(w.cache.pairs, m.bodies, m.colliders), value(p.kick), make(w.scratch.resting_memory),
             make(w.cache.resting), if_taken(w));
