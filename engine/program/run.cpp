@@ -319,6 +319,7 @@ RunResult simulate(const RunOptions& asked, RunRanks& ranks) {
     result.seconds_setup = setting_up.seconds();
     FrameLoop(scene, ranks, options, run_plan, std::move(memory), outputs ? &*outputs : nullptr, checkpoints, result)
         .run();
+    result.stopped_by = caught_signal;
     if (!outputs) return result;
 
     result.report = world.report();
@@ -332,7 +333,6 @@ RunResult simulate(const RunOptions& asked, RunRanks& ranks) {
     }
     result.state_hash = world.state_hash();
     result.seconds_simulated = world.time();
-    result.stopped_by = caught_signal;
     outputs->finish(world);
     if (checkpoints.written() > 0) result.written.push_back(checkpoints.summary());
     return result;
@@ -360,7 +360,8 @@ int run(const RunOptions& options) {
     RunRanks ranks = RunRanks::join();
     try {
         const RunResult result = simulate(options, ranks);
-        return ranks.last_code(ranks.is_first() ? conclude(result, options) : exit_ok);
+        const int code_of_signal = result.stopped_by != 0 ? exit_signal + result.stopped_by : exit_ok;
+        return ranks.last_code(ranks.is_first() ? conclude(result, options) : code_of_signal);
     } catch (const std::exception& error) {
         return ranks.fail(error);
     }

@@ -58,14 +58,15 @@ struct ContactsDone {
     std::span<const Vec3> impulse;     // [N s]
     std::span<const Vec3> point = {};  // contact points; empty if no body is rigid or implicit [m]
 
-    /// `stores_points`: true if points must be stored although no body of the table is rigid or implicit.
+    /// `frames_on_ranks`: true if the body of some rank is rigid or implicit. All ranks then store the points, because
+    /// their contacts may move to other ranks.
     static ContactsDone bind(const Binder& binder, const ContactTable& contact, const RigidBodyTable& rigid,
-                             const bool& stores_points) {
+                             const bool& frames_on_ranks) {
         return {
             .key = binder.read(contact.key),
             .normal = binder.read(contact.normal),
             .impulse = binder.read(contact.impulse),
-            .point = binder.read_if(!binder.value(rigid.mass).empty() || binder.value(stores_points), contact.point)};
+            .point = binder.read_if(!binder.value(rigid.mass).empty() || binder.value(frames_on_ranks), contact.point)};
     }
 };
 

@@ -25,17 +25,6 @@ World balls(const Settings& settings) {
     return world;
 }
 
-TEST_CASE("leapfrog steps have the same bits on ranks as without ranks", "[ranks]") {
-    const auto make = [](int threads) {
-        Settings settings;
-        settings.integrator = Integrator::leapfrog;
-        settings.threads = threads;
-        return balls(settings);
-    };
-    const RankScene scene{.name = "leapfrog", .make = make, .seconds = 0.0317};
-    CHECK(run_on_ranks_differs(scene, run_whole(scene), 3, 1, hold_everywhere) == "");
-}
-
 TEST_CASE("a call that one rank stops ends on all ranks after the same step", "[ranks]") {
     std::mutex mutex;
     std::vector<StepReport> reports;

@@ -65,7 +65,7 @@ std::vector<Vec3> impulses_of(const World& world) {
 
 TEST_CASE("bodies that get new owners while they touch move as without ranks", "[ranks]") {
     constexpr int calls = 6;
-    for (const char* name : {"pile", "shots", "linked"}) {
+    for (const char* name : {"pile", "shots", "linked", "frames"}) {
         const RankScene scene = own_scene(name);
         const Real seconds = scene.seconds / (3 * calls);
         World whole = scene.make(1);

@@ -135,11 +135,13 @@ class MpirunTest(ProgramCase):
 
     def test_a_signal_to_one_rank_ends_all_after_the_same_step(self):
         stats = self.folder / "stats.json"
-        with self.job(2, "--seconds", 1e6, "--stats", stats) as job:
-            os.kill(self.process_of(job, 0), signal.SIGTERM)
-            errors = job.communicate(timeout=60)[1]
-        self.assertEqual(job.returncode, 143, errors)
-        self.assertIn("stopped by a signal at", json.loads(stats.read_text())["status"])
+        for rank in (0, 1):
+            self.checkpoint.unlink(missing_ok=True)
+            with self.job(2, "--seconds", 1e6, "--stats", stats) as job:
+                os.kill(self.process_of(job, rank), signal.SIGTERM)
+                errors = job.communicate(timeout=60)[1]
+            self.assertEqual(job.returncode, 143, errors)
+            self.assertIn("stopped by a signal at", json.loads(stats.read_text())["status"])
 
 
 def without_regions(content):

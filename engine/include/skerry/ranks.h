@@ -39,6 +39,8 @@ struct RankSettings {
 /// Divides a world among ranks. All ranks must call the function with equal worlds. Afterwards each rank simulates the
 /// bodies that it owns. All ranks must then make the same calls of advance() and gathered(). Calls that change objects
 /// throw SceneError. Throws SceneError if the world uses something that ranks cannot divide.
+/// Reading a divided world, for instance bodies(), energy() or state_hash(), gives values of the bodies that this rank
+/// holds only; read results from gathered().
 void distribute(World& world, Ranks& ranks, const RankSettings& settings = {});
 
 /// Returns the complete world on rank 0 and nothing on the other ranks. All ranks must call the function. The result

@@ -152,13 +152,10 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.place_of(row);
 }
 
-/// Exchanges bodies with other ranks after an attempt that lacked some of them. `first`: true if no step of the call of
-/// advance was committed so far, so that the whole call may still be rolled back.
-void fetch_ghosts(WorldState& world, bool first) {
+/// Exchanges bodies with other ranks after an attempt that lacked some of them.
+void fetch_ghosts(WorldState& world) {
     if (!world.ranks.all.bodies_missing && !world.ranks.all.ghosts_expired) return;
-    if (first) world.transaction.roll_back_call(world.model, world.clock);
     update_ghosts(world);
-    if (first) world.transaction.begin_call(world.model, world.clock);
     world.scratch.parameters.h = 0;  // the next attempt must not reuse forces, which new ghosts do not have
 }
 
@@ -302,7 +299,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const StepOutcome outcome = try_step(world, plan, attempt);
         stiffened += world.scratch.findings.stiffened;  // energy also counts if the attempt is not committed
         note_outcome(outcome, world.record.counters, report);
-        if (outcome == StepOutcome::again_over_ranks) fetch_ghosts(world, report.steps == 0);
+        if (outcome == StepOutcome::again_over_ranks) fetch_ghosts(world);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
             break;

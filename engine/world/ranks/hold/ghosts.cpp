@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <tuple>
 #include <utility>
 
 #include "engine/world/ranks/rows/body_rows.h"
@@ -94,12 +95,21 @@ std::vector<std::uint8_t> owned_bodies(const WorldState& world) {
     return owned;
 }
 
+/// Sorts the rows by unit and rank. Of rows with the same unit and rank, keeps the one for the most searches.
+void keep_longest(std::vector<FetchedUnit>& fetched) {
+    std::ranges::sort(fetched, {}, [](const FetchedUnit& of) { return std::tuple(of.unit, of.rank, -of.searches); });
+    const auto repeated =
+        std::ranges::unique(fetched, {}, [](const FetchedUnit& of) { return std::pair(of.unit, of.rank); });
+    fetched.erase(repeated.begin(), repeated.end());
+}
+
 RankSearch search_ranks(WorldState& world) {
     RankState& ranks = world.ranks;
     const std::vector<BodyExtent> extents = extents_of(world, owned_bodies(world));
     std::vector<FetchedUnit> requests;
     for (const BodyRequest& request : ranks.requests)
         requests.push_back({ranks.whole.unit[request.place], request.rank, searches_of_requests});
+    keep_longest(requests);
     RankMessage mine;
     const SearchHeader header{extents.size(), requests.size(), ranks.stale.size(),
                               world.cache.crossings.row.empty() ? 0u : 1u};
@@ -139,9 +149,10 @@ public:
         for (const Index place : found.stale) stale_[static_cast<std::size_t>(whole.unit[place])] = 1;
         note_requests(whole, found.requests);
         holders_ = find_holders(whole, owner_, found.extents);
-        for (const FetchedUnit& fetched : whole.fetched)
-            for (const BodyExtent& body : found.extents)
-                if (whole.unit[body.place] == fetched.unit) insert(fetched.rank, holders_at(body.place));
+        for (const BodyExtent& body : found.extents)
+            for (const FetchedUnit& fetched :
+                 std::ranges::equal_range(whole.fetched, whole.unit[body.place], {}, &FetchedUnit::unit))
+                insert(fetched.rank, holders_at(body.place));
         keep_ghosts(found.extents, rank_count);
     }
 
@@ -166,12 +177,8 @@ private:
 
     static void note_requests(WholeWorld& whole, const std::vector<FetchedUnit>& requests) {
         for (FetchedUnit& fetched : whole.fetched) --fetched.searches;
-        for (const FetchedUnit& request : requests) {
-            std::erase_if(whole.fetched, [&](const FetchedUnit& other) {
-                return other.unit == request.unit && other.rank == request.rank;
-            });
-            whole.fetched.push_back(request);
-        }
+        whole.fetched.insert(whole.fetched.end(), requests.begin(), requests.end());
+        keep_longest(whole.fetched);
         std::erase_if(whole.fetched, [](const FetchedUnit& fetched) { return fetched.searches <= 0; });
     }
 

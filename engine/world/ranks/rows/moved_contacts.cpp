@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "components/check.h"
 #include "engine/world/edit/erase_gone.h"
 #include "engine/world/ranks/rows/compose_rows.h"
 
@@ -79,6 +80,7 @@ void copy_warm_start(WarmStartTable& from, const WantsPair& wants, WarmStartTabl
     copy(from.normal, to.normal);
     copy(from.point, to.point);
     copy(from.key, to.key);
+    SKERRY_CHECK(to.point.empty() || to.point.size() == to.key.size());
     if (!from.step.empty() && !to.key.empty()) to.step = from.step;
 }
 
