@@ -86,7 +86,7 @@ TEST_CASE("the scenes for ranks have what they are for", "[ranks]") {
 std::vector<RankScene> own_scenes() {
     std::vector<RankScene> scenes;
     for (const char* name :
-         {"pile", "shots", "sleep", "stiff", "linked", "surfaces", "refused", "one_region", "constraints"})
+         {"pile", "shots", "sleep", "stiff", "linked", "surfaces", "refused", "one_region", "constraints", "pushed"})
         scenes.push_back(own_scene(name));
     const auto slivers = [](int threads) {
         Settings settings;
