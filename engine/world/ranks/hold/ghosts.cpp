@@ -100,6 +100,10 @@ RankSearch search_ranks(WorldState& world) {
     std::vector<FetchedUnit> requests;
     for (const BodyRequest& request : ranks.requests)
         requests.push_back({ranks.whole.unit[request.place], request.rank, searches_of_requests});
+    const auto unit_and_rank = [](const FetchedUnit& request) { return std::pair(request.unit, request.rank); };
+    std::ranges::sort(requests, {}, unit_and_rank);  // several contacts may request a unit
+    const auto repeated = std::ranges::unique(requests, {}, unit_and_rank);
+    requests.erase(repeated.begin(), repeated.end());
     RankMessage mine;
     const SearchHeader header{extents.size(), requests.size(), ranks.stale.size(),
                               world.cache.crossings.row.empty() ? 0u : 1u};
@@ -139,9 +143,13 @@ public:
         for (const Index place : found.stale) stale_[static_cast<std::size_t>(whole.unit[place])] = 1;
         note_requests(whole, found.requests);
         holders_ = find_holders(whole, owner_, found.extents);
+        std::vector<std::vector<int>> fetched_by(whole.fetched.empty() ? 0 : whole.size());  // by unit
         for (const FetchedUnit& fetched : whole.fetched)
+            fetched_by[static_cast<std::size_t>(fetched.unit)].push_back(fetched.rank);
+        if (!fetched_by.empty())
             for (const BodyExtent& body : found.extents)
-                if (whole.unit[body.place] == fetched.unit) insert(fetched.rank, holders_at(body.place));
+                for (const int rank : fetched_by[static_cast<std::size_t>(whole.unit[body.place])])
+                    insert(rank, holders_at(body.place));
         keep_ghosts(found.extents, rank_count);
     }
 
