@@ -31,6 +31,7 @@ void reduce_limits(WorldState& world) {
     limits.has_implicit = model.implicit_nodes.size() > 0;
     limits.has_clusters = !model.clusters.empty();
     limits.forced = model.forced;
+    limits.follow_implicit = forces_follow_implicit_bodies(model);
     limits.clusters_grew = model.clusters_grew;
     limits.moves = model.force_rate_moves || model.joints.slot.size() > 0 || model.ties.size() > 0;
     reduce(*world.ranks.ranks, limits, [](std::byte* into, const std::byte* from) {
@@ -52,6 +53,7 @@ void reduce_limits(WorldState& world) {
         all.has_implicit |= other.has_implicit;
         all.has_clusters |= other.has_clusters;
         all.forced |= other.forced;
+        all.follow_implicit |= other.follow_implicit;
         all.clusters_grew |= other.clusters_grew;
         all.element_blocks += other.element_blocks;
         all.cluster_entries += other.cluster_entries;

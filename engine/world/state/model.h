@@ -115,6 +115,7 @@ struct LimitsOfRanks {
     bool has_implicit = false;     // true if some body is implicit
     bool has_clusters = false;     // true if some body has clusters
     bool forced = false;           // Model::forced
+    bool follow_implicit = false;  // true if forces act on implicit bodies (forces_follow_implicit_bodies)
     bool clusters_grew = false;    // Model::clusters_grew
     std::uint64_t element_blocks = 0, cluster_entries = 0;  // number of rows; number of entries of cluster matrices
     // true if stable steps depend on positions, or joints or ties limit rotation, so that each step needs a reduction
