@@ -76,6 +76,24 @@ TEST_CASE("the balance of energy and momentum over ranks is that of an undivided
     }
 }
 
+TEST_CASE("energy that bodies with copies on other ranks dissipate counts once", "[ranks]") {
+    const RankScene scene = scene_of_file("tests/ranks/scenes/twins.json");
+    World whole = scene.make(1);
+    REQUIRE(whole.advance(scene.seconds).ok());
+    const WorldReport expected = whole.report();
+    REQUIRE(expected.plastic_work > 0);
+    REQUIRE(expected.dissipated > expected.plastic_work);
+    run_on_ranks(2, [&](Ranks& ranks) {
+        World world = scene.make(1);
+        hold_everywhere(world, ranks);
+        world.advance(scene.seconds);
+        const WorldReport report = world.report();
+        if (ranks.rank() != 0) return;
+        CHECK(report.dissipated == Approx(expected.dissipated).epsilon(1e-9));
+        CHECK(report.plastic_work == Approx(expected.plastic_work).epsilon(1e-9));
+    });
+}
+
 }  // namespace rank_control_test
 }  // namespace
 }  // namespace skerry::test

@@ -30,6 +30,8 @@ void reduce_limits(WorldState& world) {
     limits.has_frames = model.rigid_bodies.size() > 0;
     limits.has_implicit = model.implicit_nodes.size() > 0;
     limits.has_clusters = !model.clusters.empty();
+    limits.forced = model.forced;
+    limits.follow_implicit = forces_follow_implicit_bodies(model);
     limits.clusters_grew = model.clusters_grew;
     limits.moves = model.force_rate_moves || model.joints.slot.size() > 0 || model.ties.size() > 0;
     reduce(*world.ranks.ranks, limits, [](std::byte* into, const std::byte* from) {
@@ -50,6 +52,8 @@ void reduce_limits(WorldState& world) {
         all.has_frames |= other.has_frames;
         all.has_implicit |= other.has_implicit;
         all.has_clusters |= other.has_clusters;
+        all.forced |= other.forced;
+        all.follow_implicit |= other.follow_implicit;
         all.clusters_grew |= other.clusters_grew;
         all.element_blocks += other.element_blocks;
         all.cluster_entries += other.cluster_entries;
@@ -59,6 +63,8 @@ void reduce_limits(WorldState& world) {
     for (Index* place : {&limits.stiffest, &limits.spinning})
         if (*place == RankFindings::nobody) *place = no_index;
     model.of_ranks = limits;
+    // Bodies without force elements have other last digits in a world with force elements.
+    model.forced |= limits.forced;
     if (limits.clusters_grew) world.ranks.pieces_before.clear();
     model.clusters_grew = false;
 }

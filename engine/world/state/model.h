@@ -105,16 +105,18 @@ struct NamedHandles : HandleMap<HandleType> {
 /// Properties of the bodies of all ranks on which the length of a step depends, as of the last reduction
 /// (reduce_limits). Without ranks it limits nothing.
 struct LimitsOfRanks {
-    Real stable_step = infinity;  // shortest stable step [s]
-    Index stiffest = no_index;    // place of the body with this stable step: its row in the undivided world
-    bool strained = false;        // true if strain has shortened this stable step (is_strained)
-    Real rest_step = infinity;    // shortest stable step at rest of a body with elements [s]
-    Real spin = 0;                // greatest angular speed of a body with a joint or tie [rad/s]
-    Index spinning = no_index;    // place of the body with this speed
-    bool has_frames = false;      // true if some body is rigid or implicit
-    bool has_implicit = false;    // true if some body is implicit
-    bool has_clusters = false;    // true if some body has clusters
-    bool clusters_grew = false;   // Model::clusters_grew
+    Real stable_step = infinity;   // shortest stable step [s]
+    Index stiffest = no_index;     // place of the body with this stable step: its row in the undivided world
+    bool strained = false;         // true if strain has shortened this stable step (is_strained)
+    Real rest_step = infinity;     // shortest stable step at rest of a body with elements [s]
+    Real spin = 0;                 // greatest angular speed of a body with a joint or tie [rad/s]
+    Index spinning = no_index;     // place of the body with this speed
+    bool has_frames = false;       // true if some body is rigid or implicit
+    bool has_implicit = false;     // true if some body is implicit
+    bool has_clusters = false;     // true if some body has clusters
+    bool forced = false;           // Model::forced
+    bool follow_implicit = false;  // true if forces act on implicit bodies (forces_follow_implicit_bodies)
+    bool clusters_grew = false;    // Model::clusters_grew
     std::uint64_t element_blocks = 0, cluster_entries = 0;  // number of rows; number of entries of cluster matrices
     // true if stable steps depend on positions, or joints or ties limit rotation, so that each step needs a reduction
     bool moves = false;

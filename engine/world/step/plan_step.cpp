@@ -58,10 +58,6 @@ StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
     return plan;
 }
 
-namespace {
-
-/// True if a force that follows the motion acts on an implicit body, or a cable runs through one. Such a force must be
-/// evaluated in every step.
 bool forces_follow_implicit_bodies(const Model& model) {
     const auto acts = [](const Column<Real>& bound, std::size_t body) { return !bound.empty() && bound[body] > 0; };
     for (const Index body : model.rigid_bodies.body) {
@@ -76,13 +72,11 @@ bool forces_follow_implicit_bodies(const Model& model) {
     });
 }
 
-}  // namespace
-
 Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
     if (!(model.settings.implicit_step > 0)) return left;
     if (model.implicit_nodes.size() == 0 && !model.of_ranks.has_implicit) return left;
     if (clock.length == 0) {
-        if (forces_follow_implicit_bodies(model)) return left;
+        if (model.of_ranks.follow_implicit || forces_follow_implicit_bodies(model)) return left;
         // The tolerance prevents an extra long step for a remaining time that is only a rounding error.
         const Real count = std::max(1.0, std::ceil(left / model.settings.implicit_step - 1e-9));
         clock.length = clock.left = left / count;

@@ -197,6 +197,9 @@ Real fastest_spin(const Model& model, Index* body = nullptr);
 /// BodyTable of the fastest of these bodies if this step is shorter than `shorter_than`; no_index if the speed was
 /// combined with other ranks (Model::of_ranks).
 Real step_of_turns(const Model& model, Real shorter_than, Index& fastest);
+/// True if a force that follows the motion acts on an implicit body, or a cable runs through one. Such a force must be
+/// evaluated in every step.
+bool forces_follow_implicit_bodies(const Model& model);
 /// Returns the time until the end of the long step that contains the next step [s]. Begins a long step if there is
 /// none. In worlds without long steps, returns `left`, the time until the end of the call.
 Real left_in_long_step(const Model& model, Real left, LongStepClock& clock);

@@ -307,7 +307,8 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
     // The relative speed of two nodes is at most twice the highest node speed in the frame of the body.
     const auto may_be_fast = [&](std::size_t body) {
         const Real altitude = state.body_min_altitude[body];
-        return altitude > 0 && 2 * speed.body_frame[body] > looked_for * altitude;
+        return altitude > 0 && !state.ghosts.contain(static_cast<Index>(body)) &&
+               2 * speed.body_frame[body] > looked_for * altitude;
     };
     std::atomic<bool> to_look_at{false};
     parallel_for(executor, body_count, checked_bodies_per_job, [&](std::size_t begin, std::size_t end) {
@@ -351,7 +352,9 @@ StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, 
     beside_fast.resize(state.velocity_next.size());
     StrainRate fastest;
     for (std::size_t body = 0; body < state.body_node_blocks.size(); ++body) {
-        if (!(state.body_min_altitude[body] > 0) || state.body_node_blocks[body].size() == 0) continue;
+        if (!(state.body_min_altitude[body] > 0) || state.body_node_blocks[body].size() == 0 ||
+            state.ghosts.contain(static_cast<Index>(body)))
+            continue;
         const Real of_body = deformation_rate(executor, state, body, rate, infinity, beside_fast);
         if (of_body > fastest.rate) fastest = {of_body, static_cast<Index>(body)};
     }

@@ -6,6 +6,7 @@
 
 #include "components/body_table.h"
 #include "components/element_table.h"
+#include "components/ghost_marks.h"
 #include "components/node_block_table.h"
 #include "components/node_table.h"
 #include "jobs/access.h"
@@ -58,6 +59,7 @@ struct CheckInputs {
     std::span<const ElementLane> element_implicit_modulus = {};
     std::span<const ElementPart> element_part = {};  // empty if no element is an inversion barrier
     std::span<const MovingFrame> body_frame = {};    // from BodyTable; empty if the frames of all bodies stand still
+    GhostMarks ghosts = {};                          // the deformation rates of their elements are not checked
 
     /// `pushed`: true if a contact pushes nodes out of penetration in this step.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
@@ -84,7 +86,8 @@ struct CheckInputs {
                 .element_gradient = binder.read(element_node.gradient),
                 .element_implicit_modulus = binder.read(element.implicit_modulus),
                 .element_part = binder.read(element.part),
-                .body_frame = binder.read(body.frame)};
+                .body_frame = binder.read(body.frame),
+                .ghosts = {binder.read(body.ghost)}};
     }
 };
 

@@ -27,7 +27,8 @@ Real measure_viscosity(Executor& executor, const ElementInputs& elements, std::s
         Real work = 0;
         const auto first = static_cast<std::size_t>(blocks.begin), last = static_cast<std::size_t>(blocks.end);
         for (std::size_t b = first; b < last; ++b) {
-            if (!(elements.viscous_time[b] > 0) || !viscous[b] || elements.is_left_out(b)) continue;
+            if (!(elements.viscous_time[b] > 0) || !viscous[b] || elements.is_left_out(b) || elements.is_of_ghost(b))
+                continue;
             const BlockNodes nodes = elements.nodes_of(b);
             work += (work_on(impulse[b], deformation_gradient(nodes, velocity)) +
                      work_on(impulse[b], deformation_gradient(nodes, velocity_next))) /

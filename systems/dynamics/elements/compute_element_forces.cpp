@@ -365,7 +365,7 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
                 const Run run{b,         after,         elements, material, kick, maxwell,
                               {x->lane}, {force->lane}, velocity, rotation, next, patches};
                 const Real relaxed = compute_run(run);
-                if (!patches.relaxed.empty()) patches.relaxed[p] += relaxed;
+                if (!patches.relaxed.empty() && !elements.is_of_ghost(b)) patches.relaxed[p] += relaxed;
                 b = after;
             }
         }

@@ -5,6 +5,7 @@
 
 #include "components/body_table.h"
 #include "components/element_table.h"
+#include "components/ghost_marks.h"
 #include "components/material_table.h"
 #include "jobs/access.h"
 #include "jobs/executor.h"
@@ -38,6 +39,7 @@ struct ElementInputs {
     std::span<const ElementLane> implicit_modulus = {};
     std::span<const FrameMass> frame_mass = {};
     std::span<const Real> frame_bound = {};  // empty if no body has frame masses [1/s^2]
+    GhostMarks ghosts = {};                  // their elements are computed, but sums of energy leave them out
 
     std::size_t blocks() const { return first.size(); }
     BlockNodes nodes_of(std::size_t block) const {
@@ -57,6 +59,9 @@ struct ElementInputs {
                (!body_unstrained.empty() && body_unstrained[static_cast<std::size_t>(body[block])]);
     }
 
+    /// True if a block belongs to a ghost, whose owner counts its energy.
+    bool is_of_ghost(std::size_t block) const { return ghosts.contain(body.empty() ? no_index : body[block]); }
+
     /// Binds all elements.
     static ElementInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
                               const MaterialTable& material) {
@@ -71,6 +76,7 @@ struct ElementInputs {
         ElementInputs elements = bind(binder, element, nodes, material);
         elements.body_idle = binder.read_if(binder.value(any_idle), body.idle);
         elements.body_unstrained = binder.read(body.unstrained);
+        elements.ghosts = {binder.read(body.ghost)};
         return elements;
     }
     /// Binds all elements without implicit_modulus, for stages that then need not wait for the stage that writes this

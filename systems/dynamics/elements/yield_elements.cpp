@@ -127,8 +127,9 @@ Real yield_elements(Executor& executor, const ElementInputs& elements, Range blo
         for (std::size_t b = begin; b < end; ++b) {
             const std::size_t block = static_cast<std::size_t>(blocks.begin) + b;
             const MaterialConstants material = elements.material_of(block);
-            if (material.yields() && material.shear_modulus > 0 && !elements.is_left_out(block))
-                parts[b / blocks_per_yield] += yield_block(elements, block, material, position, state);
+            if (!material.yields() || !(material.shear_modulus > 0) || elements.is_left_out(block)) continue;
+            const Real dissipated = yield_block(elements, block, material, position, state);
+            if (!elements.is_of_ghost(block)) parts[b / blocks_per_yield] += dissipated;
         }
     });
     return std::accumulate(parts.begin(), parts.end(), Real(0));

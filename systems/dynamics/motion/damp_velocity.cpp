@@ -203,8 +203,9 @@ bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<co
             const std::size_t body = static_cast<std::size_t>(bodies.block_body[b]);
             if (!is_damped(bodies, body)) continue;
             const NodeBlockSums& total = sums[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)];
-            sums[b].dissipated =
+            const Real taken =
                 damp_block(bodies, b, -std::expm1(-damping_of(bodies, body) * kick), total, velocity, velocity_next);
+            if (!bodies.ghosts.contain(static_cast<Index>(body))) sums[b].dissipated = taken;
         }
     });
     for (const NodeBlockSums& block : sums) dissipated += block.dissipated;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "components/body_table.h"
+#include "components/ghost_marks.h"
 #include "components/material_table.h"
 #include "components/node_block_table.h"
 #include "components/node_table.h"
@@ -25,6 +26,7 @@ struct DampingInputs {
     std::span<const Vec3> position;
     std::span<const Real> mass, inverse_mass;
     Real lag = 0;  // time by which velocities are earlier than positions [s]
+    GhostMarks ghosts = {};
 
     static DampingInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
                               const MaterialTable& material, const NodeTable& node, const Real& lag,
@@ -42,13 +44,15 @@ struct DampingInputs {
                 .position = binder.read(node.position),
                 .mass = binder.read(node.mass),
                 .inverse_mass = binder.read(node.inverse_mass),
-                .lag = binder.value(lag)};
+                .lag = binder.value(lag),
+                .ghosts = {binder.read(body.ghost)}};
     }
 };
 
 /// Removes the fraction 1 - exp(-damping kick) of the deformation velocity v - v_rigid from velocity_next. `velocity`
 /// is v at the start of the step, and not the predicted velocity: damping must not act on a body at rest under load.
-/// `kick`: time between `velocity` and velocity_next [s]. `dissipated`: removed kinetic energy [J].
+/// `kick`: time between `velocity` and velocity_next [s]. `dissipated`: removed kinetic energy, without that of ghosts
+/// [J].
 ///
 /// Damps every body with damping > 0 that is not idle, not in unstrained flight and not in RigidBodyTable. A body with
 /// pinned nodes is damped towards zero velocity. For any other body v_rigid is the rigid motion with the momentum and

@@ -165,6 +165,7 @@ public:
         }
         find_holders(model_);
         note_forces(model_);
+        model_.forced |= model_.of_ranks.forced;
         model_.links_open = true;
         note_changed_seams(model_);
     }
