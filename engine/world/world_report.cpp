@@ -235,6 +235,7 @@ WorldReport World::report() const {
         for (const Real m : world.model.elements.implicit_modulus[block].lane)
             (world.model.elements.part[block] == ElementPart::guard ? report.guards : report.implicit_elements) +=
                 m > 0;
+    if (world.model.force_rate_moves) note_force_rates(state_->model);
     report.stable_step = reported_step(world.model, &stiffest);
     report.stable_step_body = name_body(world, place_of_stiffest(world, stiffest)).name;
     for (std::size_t b = 0; b < world.model.body_records.size(); ++b)

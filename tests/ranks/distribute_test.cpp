@@ -130,6 +130,13 @@ TEST_CASE("bodies move between ranks with and without rigid bodies", "[ranks]") 
     run_both(own_scene("apart"), 2, 4);
 }
 
+TEST_CASE("a gathered world reports the stable step of the undivided world", "[ranks]") {
+    RankScene scene = own_scene("linked");
+    scene.seconds /= 10;
+    const std::vector<World> both = run_both(scene, 2, 1);
+    CHECK(both[0].report().stable_step == both[1].report().stable_step);
+}
+
 TEST_CASE("bodies of all ranks that cross themselves are reported", "[ranks]") {
     const std::vector<World> both = run_both(own_scene("folded"), 2, 2);
     const auto messages = [](const World& world) {
