@@ -57,7 +57,9 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
     return {.place = world.ranks.place[body],
             .cost = body_cost + elements + static_cast<Real>(bodies.implicit[body].size()) + contact_cost * contacts,
             .margin = margin,
-            .box = {box.lower - more, box.upper + more}};
+            .box = {box.lower - more, box.upper + more},
+            // the progress of a long step does not move with the rows of a body
+            .on_all = model.settings.implicit_step > 0 && bodies.implicit[body].size() > 0};
 }
 
 /// Facts that each rank tells all others in a rank search.
@@ -142,7 +144,7 @@ public:
         : before_(whole), owner_(std::move(owner)), stale_(whole.size(), 0) {
         for (const Index place : found.stale) stale_[static_cast<std::size_t>(whole.unit[place])] = 1;
         note_requests(whole, found.requests);
-        holders_ = find_holders(whole, owner_, found.extents);
+        holders_ = find_holders(whole, owner_, found.extents, rank_count);
         std::vector<std::vector<int>> fetched_by(whole.fetched.empty() ? 0 : whole.size());  // by unit
         for (const FetchedUnit& fetched : whole.fetched)
             fetched_by[static_cast<std::size_t>(fetched.unit)].push_back(fetched.rank);
