@@ -289,8 +289,7 @@ WorldReport World::report() const {
         report.worst_volume_body = world.model.body_records[b].name;
         report.worst_volume_element = world.model.user_tetrahedron(b, ratios.item);
     }
-    const Balance balance =
-        checked_balance(world, world.clock.time, lag_between_steps(world), world.record.balance);
+    const Balance balance = checked_balance(world, world.clock.time, lag_between_steps(world), world.record.balance);
     const auto share = [](Real of, Real whole) { return whole > 0 ? of / whole : 0; };
     report.energy_error = balance.energy_error;
     report.energy_error_share =
