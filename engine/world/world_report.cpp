@@ -235,6 +235,7 @@ WorldReport World::report() const {
         for (const Real m : world.model.elements.implicit_modulus[block].lane)
             (world.model.elements.part[block] == ElementPart::guard ? report.guards : report.implicit_elements) +=
                 m > 0;
+    if (world.model.force_rate_moves) note_force_rates(state_->model);
     report.stable_step = reported_step(world.model, &stiffest);
     report.stable_step_body = name_body(world, place_of_stiffest(world, stiffest)).name;
     for (std::size_t b = 0; b < world.model.body_records.size(); ++b)
@@ -288,8 +289,7 @@ WorldReport World::report() const {
         report.worst_volume_body = world.model.body_records[b].name;
         report.worst_volume_element = world.model.user_tetrahedron(b, ratios.item);
     }
-    const Balance balance =
-        checked_balance(world, world.clock.time, lag_between_steps(world), world.record.balance);
+    const Balance balance = checked_balance(world, world.clock.time, lag_between_steps(world), world.record.balance);
     const auto share = [](Real of, Real whole) { return whole > 0 ? of / whole : 0; };
     report.energy_error = balance.energy_error;
     report.energy_error_share =

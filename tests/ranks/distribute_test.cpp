@@ -130,6 +130,19 @@ TEST_CASE("bodies move between ranks with and without rigid bodies", "[ranks]") 
     run_both(own_scene("apart"), 2, 4);
 }
 
+TEST_CASE("a gathered world reports the stable step of the undivided world", "[ranks]") {
+    RankScene scene = own_scene("linked");
+    scene.seconds /= 10;
+    const std::vector<World> both = run_both(scene, 2, 1);
+    CHECK(both[0].report().stable_step == both[1].report().stable_step);
+}
+
+TEST_CASE("implicit bodies with long steps get new owners within a long step", "[ranks]") {
+    const RankScene scene = own_scene("long_steps");
+    const auto divide = [](World& world, Ranks& ranks) { distribute(world, ranks); };
+    CHECK(run_on_ranks_differs(scene, run_whole(scene), 3, 1, divide) == "");
+}
+
 TEST_CASE("bodies of all ranks that cross themselves are reported", "[ranks]") {
     const std::vector<World> both = run_both(own_scene("folded"), 2, 2);
     const auto messages = [](const World& world) {

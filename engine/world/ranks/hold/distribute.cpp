@@ -65,7 +65,7 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
     const std::vector<BodyExtent> extents = extents_of(state, moves);
     WholeWorld& whole = mine.whole;
     whole.owner = choose_owners(whole, extents, settings, ranks.size());
-    whole.holders = find_holders(whole, whole.owner, extents);
+    whole.holders = find_holders(whole, whole.owner, extents, ranks.size());
     std::vector<std::uint8_t> kept;
     for (std::size_t b = 0; b < moves.size(); ++b)
         kept.push_back(!moves[b] || std::ranges::binary_search(whole.holders[b], mine.rank));

@@ -58,7 +58,9 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
     return {.place = world.ranks.place[body],
             .cost = body_cost + elements + static_cast<Real>(bodies.implicit[body].size()) + contact_cost * contacts,
             .margin = margin,
-            .box = {box.lower - more, box.upper + more}};
+            .box = {box.lower - more, box.upper + more},
+            // the progress of a long step does not move with the rows of a body
+            .on_all = model.settings.implicit_step > 0 && bodies.implicit[body].size() > 0};
 }
 
 /// Facts that each rank tells all others in a rank search.
@@ -148,7 +150,7 @@ public:
         : before_(whole), owner_(std::move(owner)), stale_(whole.size(), 0) {
         for (const Index place : found.stale) stale_[static_cast<std::size_t>(whole.unit[place])] = 1;
         note_requests(whole, found.requests);
-        holders_ = find_holders(whole, owner_, found.extents);
+        holders_ = find_holders(whole, owner_, found.extents, rank_count);
         for (const BodyExtent& body : found.extents)
             for (const FetchedUnit& fetched :
                  std::ranges::equal_range(whole.fetched, whole.unit[body.place], {}, &FetchedUnit::unit))

@@ -126,7 +126,7 @@ Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> 
 }
 
 std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const std::int32_t> owner,
-                                           std::span<const BodyExtent> extents) {
+                                           std::span<const BodyExtent> extents, int rank_count) {
     const auto owner_of = [&](Index place) { return owner[static_cast<std::size_t>(place)]; };
     std::vector<std::vector<int>> of_unit(whole.size());
     const auto hold = [&](Index place, Index other) {
@@ -138,6 +138,9 @@ std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<co
         rows.push_back(static_cast<Index>(boxes.size()));
         boxes.push_back(body.box);
         hold(body.place, body.place);
+        if (!body.on_all) continue;
+        std::vector<int>& ranks = of_unit[static_cast<std::size_t>(whole.unit[body.place])];
+        for (int rank = 0; rank < rank_count; ++rank) ranks.push_back(rank);
     }
     BoxGrid grid;
     grid.build(boxes, rows);

@@ -16,6 +16,7 @@ struct BodyExtent {
     Real cost;    // computing time of a step, in units of that of an explicit element
     Real margin;  // distance by which the body may move inside the box [m]
     Aabb box;     // [m]
+    bool on_all;  // true if all ranks must hold the body
 };
 
 /// Chooses an owner for each body, the same one for all bodies of a unit. `extents`: all bodies that can move, in the
@@ -29,6 +30,6 @@ Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> 
 /// For each place, the ranks that hold its body, ascending: the ranks that own a body of its unit, or a body whose box
 /// overlaps the box of a body of its unit. `owner`: by place.
 std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const std::int32_t> owner,
-                                           std::span<const BodyExtent> extents);
+                                           std::span<const BodyExtent> extents, int rank_count);
 
 }  // namespace skerry
