@@ -38,13 +38,14 @@ bool of_ghost(const Model& model, std::size_t node) {
     return model.bodies.is_ghost(static_cast<std::size_t>(model.nodes.body[node]));
 }
 
-/// Blocks of the elements of all bodies but ghosts: one range if there are no ghosts, else one for each body.
-std::vector<Range> own_blocks(const Model& model) {
-    if (model.bodies.ghost.empty()) return {model.all_blocks()};
-    std::vector<Range> own;
+/// Returns the sum of energy(blocks) over the blocks of elements of all bodies but ghosts: one range if there are no
+/// ghosts, else one for each body.
+Real sum_of_own_blocks(const Model& model, auto&& energy) {
+    if (model.bodies.ghost.empty()) return energy(model.all_blocks());
+    Real sum = 0;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
-        if (!model.bodies.is_ghost(b)) own.push_back(model.bodies.blocks[b]);
-    return own;
+        if (!model.bodies.is_ghost(b)) sum += energy(model.bodies.blocks[b]);
+    return sum;
 }
 
 /// Energy and momentum of the bodies that this rank owns.
@@ -80,8 +81,9 @@ Present measure(const Model& model, Real time, Real lag) {
     // change in half of the next kick, without contacts. With the velocities v and v' before and after a kick and the
     // mass m, elastic bodies conserve m v.v' / 2 plus their elastic energy, as leapfrog does.
     if (lag != 0) {
-        for (const Range& blocks : own_blocks(model))
-            now.kinetic -= lag * kernels().elastic_power(model.all_elements(), blocks, nodes.position, nodes.velocity);
+        now.kinetic -= lag * sum_of_own_blocks(model, [&](const Range& blocks) {
+                           return kernels().elastic_power(model.all_elements(), blocks, nodes.position, nodes.velocity);
+                       });
         Real power = kicked.dot(model.settings.gravity);
         if (model.forced)  // the forces of the last step are used, as in balance.work
             for (std::size_t n = 0; n < nodes.position.size(); ++n) {
@@ -93,9 +95,9 @@ Present measure(const Model& model, Real time, Real lag) {
             }
         now.kinetic += lag * power;
     }
-    now.elastic = implicit;
-    for (const Range& blocks : own_blocks(model))
-        now.elastic += kernels().elastic_energy(model.all_elements(), blocks, nodes.position);
+    now.elastic = implicit + sum_of_own_blocks(model, [&](const Range& blocks) {
+                      return kernels().elastic_energy(model.all_elements(), blocks, nodes.position);
+                  });
     for (const ForceElement* element : force_elements)
         if (element->energy && element->any(model)) now.elastic += element->energy(model, time, lag);
     return now;

@@ -134,6 +134,7 @@ TEST_CASE("a study has the same bits with one and with three threads") {
 TEST_CASE("a stopped study leaves whole files only") {
     const TemporaryFolder folder;
     StudySettings settings = small_study(folder.path() / "runs");
+    settings.seconds = 100;  // so long that the first call of go_on comes before the end
     settings.go_on = [](const StudyProgress&) { return false; };
     const StudyResult stopped = study(folder.write("bar.json", bar), settings);
     REQUIRE(stopped.stopped);

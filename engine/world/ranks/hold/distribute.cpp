@@ -49,6 +49,7 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
     require_divisible(state);
     if (ranks.size() == 1) return;
     world.settle_start();
+    state.settle();
     Model& model = state.model;
     note_changed_seams(model);
     settle_clusters(model, state.scratch.stiffness_sum);
