@@ -6,6 +6,7 @@
 #include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/ranks/rows/body_rows.h"
 #include "engine/world/step/step.h"
+#include "jobs/arithmetic_scope.h"
 #include "skerry/ranks.h"
 
 namespace skerry {
@@ -48,6 +49,7 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
     state.require_between_steps("distribute");
     require_divisible(state);
     if (ranks.size() == 1) return;
+    const ArithmeticScope arithmetic;  // as in advance(), which would otherwise choose the clusters
     world.settle_start();
     state.settle();
     Model& model = state.model;

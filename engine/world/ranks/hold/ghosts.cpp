@@ -100,9 +100,10 @@ std::vector<std::uint8_t> owned_bodies(const WorldState& world) {
 /// Sorts the rows by unit and rank. Of rows with the same unit and rank, keeps the one for the most searches.
 void keep_longest(std::vector<FetchedUnit>& fetched) {
     std::ranges::sort(fetched, {}, [](const FetchedUnit& of) { return std::tuple(of.unit, of.rank, -of.searches); });
-    const auto repeated =
-        std::ranges::unique(fetched, {}, [](const FetchedUnit& of) { return std::pair(of.unit, of.rank); });
-    fetched.erase(repeated.begin(), repeated.end());
+    const auto is_same = [](const FetchedUnit& a, const FetchedUnit& b) {
+        return a.unit == b.unit && a.rank == b.rank;
+    };
+    fetched.erase(std::unique(fetched.begin(), fetched.end(), is_same), fetched.end());
 }
 
 RankSearch search_ranks(WorldState& world) {
@@ -151,10 +152,12 @@ public:
         for (const Index place : found.stale) stale_[static_cast<std::size_t>(whole.unit[place])] = 1;
         note_requests(whole, found.requests);
         holders_ = find_holders(whole, owner_, found.extents, rank_count);
-        for (const BodyExtent& body : found.extents)
-            for (const FetchedUnit& fetched :
-                 std::ranges::equal_range(whole.fetched, whole.unit[body.place], {}, &FetchedUnit::unit))
-                insert(fetched.rank, holders_at(body.place));
+        for (const BodyExtent& body : found.extents) {
+            const Index unit = whole.unit[body.place];
+            auto fetched = std::ranges::lower_bound(whole.fetched, unit, {}, &FetchedUnit::unit);
+            for (; fetched != whole.fetched.end() && fetched->unit == unit; ++fetched)
+                insert(fetched->rank, holders_at(body.place));
+        }
         keep_ghosts(found.extents, rank_count);
     }
 

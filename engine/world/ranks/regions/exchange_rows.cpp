@@ -198,8 +198,9 @@ private:
 void remove_repeated(Column<BodyRequest>& requests) {
     const auto name = [](const BodyRequest& request) { return std::pair(request.rank, request.place); };
     std::ranges::sort(requests, {}, name);
-    const auto repeated = std::ranges::unique(requests, {}, name);
-    requests.resize(requests.size() - static_cast<std::size_t>(repeated.size()));
+    const auto is_same = [&](const BodyRequest& a, const BodyRequest& b) { return name(a) == name(b); };
+    const BodyRequest* const end = std::unique(requests.begin(), requests.end(), is_same);
+    requests.resize(static_cast<std::size_t>(end - requests.begin()));
 }
 
 void exchange_rows(const SharedBodies& bodies, const RegionGroups& nodes, const JoinedBodies& joined,
