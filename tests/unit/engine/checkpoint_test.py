@@ -161,7 +161,8 @@ class CheckpointTest(ProgramCase):
         checkpoint, out, whole = self.folder / "run.skerry", self.folder / "frames", self.folder / "whole"
         with subprocess.Popen([PROGRAM, "run", self.scene, "--seconds", "1e6", "--quiet", "--out", out, "--checkpoint",
                                checkpoint, "--every", "0.02"], stderr=subprocess.PIPE, text=True) as process:
-            time.sleep(0.3)
+            while not checkpoint.exists() and process.poll() is None:
+                time.sleep(0.02)
             process.send_signal(signal.SIGTERM)
             stderr = process.communicate(timeout=120)[1]
         self.assertEqual(process.returncode, 143, stderr)
