@@ -51,7 +51,7 @@ TEST_CASE("a browser that misses frames decodes those that it gets", "[unit][liv
     Visit visit(hub);
     visit.browser.wait_for_text("begin");
     std::map<Real, std::vector<Vec3>> positions;  // by time
-    for (std::uint64_t step = 0; step < 40; ++step) {
+    for (std::uint64_t step = 0; step < 80; ++step) {
         REQUIRE(world.advance(0.005).ok());
         positions[world.time()].assign(world.positions(cube).begin(), world.positions(cube).end());
         const std::size_t frames = visit.browser.rows().size();
