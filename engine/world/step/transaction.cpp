@@ -146,6 +146,14 @@ void flow(WorldState& world) {
     world.scratch.findings.plastic = yield_blocks(world, moved, world.model.all_blocks());
 }
 
+/// Clears the mark `unstrained` of all bodies in contact. Must be called after contacts have pushed positions apart,
+/// because this can deform these bodies without a change of their velocities.
+void forget_unstrained(const ContactTable& contacts, BodyTable& bodies) {
+    for (const Column<Index>* column : {&contacts.first_body, &contacts.second_body})
+        for (const Index body : *column)
+            if (body != no_index) bodies.unstrained[body] = 0;
+}
+
 RunCounters counters_of_step(const WorldState& world) {
     const StepScratch& scratch = world.scratch;
     const StepFindings& found = scratch.findings;
@@ -167,10 +175,10 @@ void commit(WorldState& world) {
     if (!scratch.left_out) {
         keep_frames(world);
         flow(world);
-        // Contacts that push positions apart can deform bodies without a change of their velocities. The marks of all
-        // bodies are cleared, because a rank does not know which bodies other ranks have pushed.
-        if (world.ranks.on() ? world.ranks.all.pushed : scratch.regions.pushed)
-            std::ranges::fill(world.model.bodies.unstrained, std::uint16_t{0});
+        if (world.ranks.on() ? world.ranks.all.pushed : scratch.regions.pushed) {
+            forget_unstrained(scratch.contacts, world.model.bodies);
+            for (const Index body : scratch.rank_regions.touched_bodies) world.model.bodies.unstrained[body] = 0;
+        }
         add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     }
     scratch.counters = counters_of_step(world);

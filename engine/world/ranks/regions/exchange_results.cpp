@@ -122,7 +122,9 @@ public:
         list_moved();
         send();
         channel.ranks->exchange(bodies_.peers, regions_.mail.out, regions_.mail.in);
+        regions_.touched_bodies.clear();
         regions_.pushed = false;
+        for (const Index node : regions_.nodes) regions_.touched_bodies.push_back(bodies_.body_of(node));
         regions_.unit_from.assign(regions_.unit.size(), -1);
         for (std::size_t p = 0; p < bodies_.peers.size(); ++p) receive(p);
     }
@@ -285,6 +287,7 @@ private:
             out_.velocity_next[node] = mail.velocity;
             out_.push_out[node] = mail.push;
             regions_.pushed |= mail.push != Vec3::Zero();
+            regions_.touched_bodies.push_back(bodies_.body_of(node));
         }
         for (MailedBody mail = reader.take<MailedBody>(); mail.body != no_index; mail = reader.take<MailedBody>())
             receive_body(mail, reader);

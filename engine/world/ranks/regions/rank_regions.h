@@ -90,6 +90,8 @@ struct RankRegions {
     Column<Index> received_end;      // by peer: end of its contacts in `received`
     Column<Index> received_row;      // for each row of `received`: row in the contact table
     std::size_t contact_count = 0;   // number of contacts that this rank solves; rows of ties follow
+    // Bodies that contacts of other ranks touch in this attempt. A body may be listed several times.
+    Column<Index> touched_bodies;
     bool pushed = false;  // true if another rank has pushed nodes of this rank apart in this attempt
 
     UnionFind sets;                // sets of groups of nodes, later visited nodes
