@@ -360,14 +360,12 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
             break;
     }
     if (ran) world.transaction.roll_back_try(world.model);
-    if (ran && outcome == StepOutcome::again_over_ranks) world.transaction.count_unstrained_again(world.model);
     return outcome;
 }
 
 void StepTransaction::begin_try(const Model& model) {
     asleep_.resize(model.bodies.asleep.size());
     std::ranges::copy(model.bodies.asleep, asleep_.begin());
-    if (!model.bodies.ghost.empty()) unstrained_ = model.bodies.unstrained;
     copy(model.bodies.max_speed, max_speed_);
     copy(model.bodies.frame_speed, frame_speed_);
     driven_velocity_.resize(model.attachments.node.size());

@@ -90,9 +90,6 @@ class StepTransaction {
 public:
     void begin_try(const Model& model);
     void roll_back_try(Model& model) const;
-    /// Restores the marks that find_unstrained has counted down. Must be called after an attempt that only an exchange
-    /// with other ranks has ended, so that the marks do not depend on the number of ranks.
-    void count_unstrained_again(Model& model) const { model.bodies.unstrained = unstrained_; }
     /// For each body, nonzero if it was asleep when the attempt began. Valid until `rested` is called.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
     /// For each body, nonzero if it was idle when the attempt began or is asleep now. The stages, or the completion of
@@ -107,7 +104,6 @@ public:
 
 private:
     Column<std::uint8_t> asleep_;           // bodies.asleep
-    Column<std::uint16_t> unstrained_;      // bodies.unstrained, of divided worlds
     Column<Real> max_speed_, frame_speed_;  // bodies.max_speed, bodies.frame_speed [m/s]
     Column<Vec3> driven_velocity_;          // velocities of the nodes in attachments.node [m/s]
     Real time_ = 0;                         // time at the start of the call [s]
