@@ -1,4 +1,4 @@
-// All ranks decide alike: on steps, on sleep, on the end of a call, and on what the reports say.
+// All ranks take the same decisions about steps, sleep and the end of a call, and their reports are equal.
 #include <catch2/catch.hpp>
 #include <mutex>
 #include <vector>

@@ -94,7 +94,8 @@ std::vector<RankScene> own_scenes() {
         return thrown_slivers(settings);
     };
     scenes.push_back({"bodies with clusters", slivers, 0.02});
-    for (const char* name : {"clay", "forced", "frames", "mix", "spring_on_stiff"}) scenes.push_back(own_scene(name));
+    for (const char* name : {"clay", "forced", "frames", "mix", "spring_on_stiff", "fall_asleep"})
+        scenes.push_back(own_scene(name));
     return scenes;
 }
 

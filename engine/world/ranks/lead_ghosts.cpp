@@ -1,7 +1,6 @@
 // Ghosts for which only the owner computes forces. Their holders receive the predicted velocities of the owner.
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <span>
 
 #include "engine/world/ranks/hold/ghosts.h"
@@ -40,11 +39,6 @@ struct LedBodies {
     }
 };
 
-void append(std::span<const Vec3> rows, RankMessage& message) {
-    const auto bytes = std::as_bytes(rows);
-    message.insert(message.end(), bytes.begin(), bytes.end());
-}
-
 /// Sends the predicted velocities of the bodies that this rank leads, in body order, and receives those of its led
 /// ghosts. Sleeping bodies have no velocity and are left out.
 void send_predictions(const LedBodies& bodies, std::span<Vec3> velocity_next, PredictionMail& mail,
@@ -53,17 +47,16 @@ void send_predictions(const LedBodies& bodies, std::span<Vec3> velocity_next, Pr
     for (std::size_t b = 0; b < bodies.nodes.size(); ++b) {
         if (!bodies.leads[b] || bodies.asleep[b]) continue;
         for (const int peer : bodies.holders[b])
-            append(rows_of(velocity_next, bodies.nodes[b]), mail.out[static_cast<std::size_t>(peer)]);
+            put_rows<Vec3>(rows_of(velocity_next, bodies.nodes[b]), mail.out[static_cast<std::size_t>(peer)]);
     }
     channel.ranks->exchange(bodies.peers, mail.out, mail.in);
-    mail.taken.assign(bodies.peers.size(), 0);
+    mail.reader.clear();
+    for (const RankMessage& message : mail.in) mail.reader.emplace_back(message);
     for (std::size_t b = 0; b < bodies.nodes.size(); ++b) {
         if (bodies.ghost[b] != GhostKind::led || bodies.asleep[b]) continue;
         const auto peer =
             static_cast<std::size_t>(std::ranges::lower_bound(bodies.peers, bodies.owner[b]) - bodies.peers.begin());
-        const std::span<Vec3> rows = rows_of(velocity_next, bodies.nodes[b]);
-        std::memcpy(static_cast<void*>(rows.data()), mail.in[peer].data() + mail.taken[peer], rows.size_bytes());
-        mail.taken[peer] += rows.size_bytes();
+        mail.reader[peer].take_rows(rows_of(velocity_next, bodies.nodes[b]));
     }
 }
 

@@ -34,7 +34,7 @@ struct RankShare {
 
 /// Predicted velocities of bodies that have led ghosts.
 struct PredictionMail : RankMail {
-    Column<std::size_t> taken;  // by peer: number of bytes of `in` that were read
+    std::vector<MailReader> reader;  // by peer: reads `in`
 };
 
 /// A set of touching bodies that one rank has found, as told to all ranks: a body of the set with several holders.

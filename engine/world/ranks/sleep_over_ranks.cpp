@@ -3,7 +3,6 @@
 // the reduction of findings tells whether any rank needs them.
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <span>
 
 #include "engine/world/step/seams.h"
@@ -48,16 +47,6 @@ void copy(std::span<const Row> from, Column<Row>& to) {
     std::ranges::copy(from, to.begin());
 }
 
-/// Calls take(row) for each row of a message.
-template <class Row>
-void for_each_row(const RankMessage& message, auto&& take) {
-    for (std::size_t at = 0; at + sizeof(Row) <= message.size(); at += sizeof(Row)) {
-        Row row;
-        std::memcpy(&row, message.data() + at, sizeof row);
-        take(row);
-    }
-}
-
 /// Lists the sleeping bodies with several holders that this rank wakes, apart from bodies that are joined to awake
 /// ones: all holders know these. Also notes whether such a body may fall asleep in this step.
 void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<const std::uint8_t> pressed,
@@ -85,7 +74,7 @@ void join_wakes(const HeldBodies& bodies, const RankSleep& memory, Column<std::u
     pressed.resize(bodies.place.size(), 0);
     const std::span<const Index> woken = memory.woken;
     for (const RankMessage& message : channel.ranks->gather_everywhere(std::as_bytes(woken)))
-        for_each_row<Index>(message, [&](Index place) {
+        MailReader(message).take_all<Index>([&](Index place) {
             if (const Index row = row_of_place(bodies.place, place); row != no_index) pressed[row] = 1;
         });
 }
@@ -104,7 +93,7 @@ void join_sets(const HeldBodies& bodies, SleepMemory& sets, RankSleep& memory, R
     // The nodes of `joined` are the members of all messages, in order.
     Index count = 0, last_place = -1;
     for (const RankMessage& message : all)
-        for_each_row<SetMember>(message, [&](const SetMember& member) {
+        MailReader(message).take_all<SetMember>([&](const SetMember& member) {
             ++count;
             last_place = std::max(last_place, member.place);
         });
@@ -114,7 +103,7 @@ void join_sets(const HeldBodies& bodies, SleepMemory& sets, RankSleep& memory, R
     Index node = 0;
     for (const RankMessage& message : all) {
         memory.node_of_set.clear();
-        for_each_row<SetMember>(message, [&](const SetMember& member) {
+        MailReader(message).take_all<SetMember>([&](const SetMember& member) {
             const auto set = static_cast<std::size_t>(member.set);
             if (memory.node_of_set.size() <= set) memory.node_of_set.resize(set + 1, no_index);
             for (Index* const known : {&memory.node_of_place[member.place], &memory.node_of_set[set]}) {

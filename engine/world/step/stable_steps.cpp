@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <vector>
 
@@ -227,15 +226,12 @@ void gather_pieces(const Model& model, RankState& ranks) {
             mine.push_back(
                 {ranks.place[b], static_cast<std::uint32_t>(pieces_of_look(elements, model.bodies.blocks[b]))});
     ranks.pieces_before.clear();
-    for (const RankMessage& message : ranks.ranks->gather_everywhere(std::as_bytes(std::span(mine)))) {
-        std::vector<PiecesAtPlace> theirs(message.size() / sizeof(PiecesAtPlace));
-        std::memcpy(theirs.data(), message.data(), message.size());
-        for (const PiecesAtPlace& body : theirs) {
+    for (const RankMessage& message : ranks.ranks->gather_everywhere(std::as_bytes(std::span(mine))))
+        MailReader(message).take_all<PiecesAtPlace>([&](const PiecesAtPlace& body) {
             const auto place = static_cast<std::size_t>(body.place);
             ranks.pieces_before.resize(std::max(ranks.pieces_before.size(), place + 2), 0);
             ranks.pieces_before[place + 1] = body.pieces;
-        }
-    }
+        });
     for (std::size_t place = 1; place < ranks.pieces_before.size(); ++place)
         ranks.pieces_before[place] += ranks.pieces_before[place - 1];
 }

@@ -131,19 +131,15 @@ void keep_frames(WorldState& world) {
         elements.spring_strain.swap(elements.spring_strain_next);
         return;
     }
-    ElementInputs awake = world.model.awake_elements();
-    // A body that this step has woken was asleep while the stages ran, so its element rotations were not computed.
-    awake.body_idle = world.transaction.rested(world.model.bodies);
-    keep_memory(*world.executor, awake, elements);
+    // the elements that the stages have computed: bodies that fell asleep or woke in this step do not change them
+    keep_memory(*world.executor, world.model.awake_elements(), elements);
 }
 
 /// Returns the elements of the bodies that moved to the yield surface at their new positions.
 void flow(WorldState& world) {
-    ElementInputs moved = world.model.awake_elements();
-    if (world.model.any_idle) moved.body_idle = world.transaction.rested(world.model.bodies);
     const bool yields = std::ranges::any_of(world.model.materials.constants, &MaterialConstants::yields);
     const TraceZone zone(world.record.tracing && yields ? &world.record.trace : nullptr, "dynamics/yield_elements");
-    world.scratch.findings.plastic = yield_blocks(world, moved, world.model.all_blocks());
+    world.scratch.findings.plastic = yield_blocks(world, world.model.awake_elements(), world.model.all_blocks());
 }
 
 /// Clears the mark `unstrained` of all bodies in contact. Must be called after contacts have pushed positions apart,
@@ -379,11 +375,6 @@ void StepTransaction::roll_back_try(Model& model) const {
     for (std::size_t i = 0; i < driven_velocity_.size(); ++i)
         model.nodes.velocity[static_cast<std::size_t>(model.attachments.node[i])] = driven_velocity_[i];
     if (model.any_asleep) keep_at_rest(model.bodies, model.nodes.velocity_next);
-}
-
-std::span<const std::uint8_t> StepTransaction::rested(const BodyTable& bodies) {
-    for (std::size_t b = 0; b < asleep_.size(); ++b) asleep_[b] = asleep_[b] || bodies.asleep[b] || bodies.idle[b];
-    return asleep_;
 }
 
 void StepTransaction::begin_call(const Model& model, const Clock& clock) {

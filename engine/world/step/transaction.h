@@ -90,11 +90,8 @@ class StepTransaction {
 public:
     void begin_try(const Model& model);
     void roll_back_try(Model& model) const;
-    /// For each body, nonzero if it was asleep when the attempt began. Valid until `rested` is called.
+    /// For each body, nonzero if it was asleep when the attempt began.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
-    /// For each body, nonzero if it was idle when the attempt began or is asleep now. The stages, or the completion of
-    /// the attempt, skip such a body.
-    std::span<const std::uint8_t> rested(const BodyTable& bodies);
 
     /// begin_call and roll_back_call store and restore the state at the start of a call of advance, if the integrator
     /// is leapfrog. Only leapfrog moves positions before the first step of a call. With symplectic Euler the functions

@@ -93,10 +93,7 @@ std::optional<World> gathered(const World& world) {
     copy.ranks.place = mine.place;
     copy.ranks.whole = mine.whole;
     std::vector<BodyRows> added;
-    for (std::size_t rank = 1; rank < all.size(); ++rank) {
-        std::span<const std::byte> message(all[rank]);
-        added.push_back(rows_of_message(message));
-    }
+    for (std::size_t rank = 1; rank < all.size(); ++rank) added.push_back(rows_of_message(all[rank]));
     std::vector<std::uint8_t> kept;
     for (const Index place : mine.place) {
         const std::int32_t owner = mine.whole.owner[place];

@@ -1,7 +1,6 @@
 #include "engine/world/ranks/hold/ghosts.h"
 
 #include <algorithm>
-#include <cstring>
 #include <tuple>
 #include <utility>
 
@@ -69,19 +68,6 @@ struct SearchHeader {
     std::uint64_t keeps_owners;  // 1: bodies must not get new owners now
 };
 
-template <class T>
-void put_rows(std::span<T> rows, RankMessage& message) {
-    const std::span<const std::byte> bytes = std::as_bytes(rows);
-    message.insert(message.end(), bytes.begin(), bytes.end());
-}
-template <class T>
-std::vector<T> take_rows(std::span<const std::byte>& message, std::uint64_t count) {
-    std::vector<T> rows(count);
-    if (count > 0) std::memcpy(static_cast<void*>(rows.data()), message.data(), count * sizeof(T));
-    message = message.subspan(count * sizeof(T));
-    return rows;
-}
-
 /// Facts about the bodies of all ranks.
 struct RankSearch {
     std::vector<BodyExtent> extents;  // in the order of the places
@@ -116,18 +102,21 @@ RankSearch search_ranks(WorldState& world) {
     RankMessage mine;
     const SearchHeader header{extents.size(), requests.size(), ranks.stale.size(),
                               world.cache.crossings.row.empty() ? 0u : 1u};
-    put_rows(std::span(&header, 1), mine);
-    put_rows(std::span(extents), mine);
-    put_rows(std::span(requests), mine);
-    put_rows(ranks.stale.span(), mine);
+    put_rows(std::span<const SearchHeader>(&header, 1), mine);
+    put_rows(std::span<const BodyExtent>(extents), mine);
+    put_rows(std::span<const FetchedUnit>(requests), mine);
+    put_rows(std::span<const Index>(ranks.stale), mine);
     RankSearch all;
     for (const RankMessage& message : ranks.ranks->gather_everywhere(mine)) {
-        std::span<const std::byte> bytes(message);
-        const SearchHeader of_rank = take_rows<SearchHeader>(bytes, 1)[0];
-        const auto append = [](auto& to, const auto& more) { to.insert(to.end(), more.begin(), more.end()); };
-        append(all.extents, take_rows<BodyExtent>(bytes, of_rank.extents));
-        append(all.requests, take_rows<FetchedUnit>(bytes, of_rank.requests));
-        append(all.stale, take_rows<Index>(bytes, of_rank.stale));
+        MailReader reader(message);
+        const auto of_rank = reader.take<SearchHeader>();
+        const auto append = [&](auto& to, std::uint64_t count) {
+            to.resize(to.size() + count);
+            reader.take_rows(std::span(to).last(count));
+        };
+        append(all.extents, of_rank.extents);
+        append(all.requests, of_rank.requests);
+        append(all.stale, of_rank.stale);
         all.keeps_owners |= of_rank.keeps_owners != 0;
     }
     std::ranges::sort(all.extents, {}, &BodyExtent::place);
@@ -248,10 +237,7 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
         all_kept &= kept.back() != 0;
     }
     std::vector<BodyRows> added;
-    for (const RankMessage& message : in) {
-        std::span<const std::byte> bytes(message);
-        added.push_back(rows_of_message(bytes));
-    }
+    for (const RankMessage& message : in) added.push_back(rows_of_message(message));
     const bool changes = !all_kept || change.owners_change() ||
                          std::ranges::any_of(added, [](const BodyRows& rows) { return !rows.place.empty(); });
     whole.holders = change.holders();

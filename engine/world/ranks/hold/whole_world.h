@@ -17,8 +17,6 @@ struct FetchedUnit {
     Index unit;  // WholeWorld::unit
     int rank;
     int searches;  // number of rank searches after which the rank no longer needs the unit
-
-    bool operator==(const FetchedUnit&) const = default;
 };
 
 /// The *place* of a body is its row in the undivided world. The rows of a rank are in the order of their places.

@@ -12,6 +12,14 @@
 
 namespace skerry {
 
+/// Appends the bytes of rows to a message.
+template <class T>
+void put_rows(std::span<const T> rows, RankMessage& message) {
+    static_assert(std::is_trivially_destructible_v<T>);
+    const std::span<const std::byte> bytes = std::as_bytes(rows);
+    message.insert(message.end(), bytes.begin(), bytes.end());
+}
+
 /// Messages to and from all peers. Their memory is reused, so that a steady state allocates nothing.
 struct RankMail {
     std::vector<RankMessage> out, in;  // by index in RankState::peers
@@ -23,9 +31,7 @@ struct RankMail {
     }
     template <class T>
     void put(std::size_t peer, const T& value) {
-        static_assert(std::is_trivially_destructible_v<T>);
-        const auto* const bytes = reinterpret_cast<const std::byte*>(&value);
-        out[peer].insert(out[peer].end(), bytes, bytes + sizeof value);
+        put_rows(std::span<const T>(&value, 1), out[peer]);
     }
 };
 
@@ -35,13 +41,23 @@ public:
     explicit MailReader(std::span<const std::byte> message) : rest_(message) {}
 
     bool at_end() const { return rest_.empty(); }
+    /// Reads as many rows as `rows` has.
+    template <class T>
+    void take_rows(std::span<T> rows) {
+        SKERRY_CHECK(rest_.size() >= rows.size_bytes());
+        if (!rows.empty()) std::memcpy(static_cast<void*>(rows.data()), rest_.data(), rows.size_bytes());
+        rest_ = rest_.subspan(rows.size_bytes());
+    }
     template <class T>
     T take() {
-        SKERRY_CHECK(rest_.size() >= sizeof(T));
         T value;
-        std::memcpy(static_cast<void*>(&value), rest_.data(), sizeof value);
-        rest_ = rest_.subspan(sizeof value);
+        take_rows(std::span(&value, 1));
         return value;
+    }
+    /// Calls visit(row) for each row up to the end of the message.
+    template <class T>
+    void take_all(auto&& visit) {
+        while (!at_end()) visit(take<T>());
     }
 
 private:

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -308,35 +307,27 @@ void for_each_column(BodyRows& rows, auto&& visit) {
     visit_all(rows.contacts);
 }
 
-void append_bytes(const void* from, std::size_t count, RankMessage& to) {
-    const auto* const bytes = static_cast<const std::byte*>(from);
-    to.insert(to.end(), bytes, bytes + count);
-}
-
 }  // namespace
 
 RankMessage message_of(BodyRows& rows) {
     RankMessage message;
     for_each_column(rows, [&](const AnyColumn& column) {
         const std::uint64_t count = column.size();
-        append_bytes(&count, sizeof count, message);
-        append_bytes(column.read(), count * column.type().bytes, message);
+        put_rows(std::span<const std::uint64_t>(&count, 1), message);
+        put_rows(std::span<const std::byte>(column.read(), count * column.type().bytes), message);
     });
     return message;
 }
 
-BodyRows rows_of_message(std::span<const std::byte>& message) {
+BodyRows rows_of_message(std::span<const std::byte> message) {
     BodyRows rows;
-    const auto take = [&](void* to, std::size_t count) {
-        if (count > 0) std::memcpy(to, message.data(), count);
-        message = message.subspan(count);
-    };
+    MailReader reader(message);
     for_each_column(rows, [&](const AnyColumn& column) {
-        std::uint64_t count = 0;
-        take(&count, sizeof count);
+        const auto count = reader.take<std::uint64_t>();
         column.resize(count);
-        take(column.write(), count * column.type().bytes);
+        reader.take_rows(std::span(column.write(), count * column.type().bytes));
     });
+    SKERRY_CHECK(reader.at_end());
     return rows;
 }
 

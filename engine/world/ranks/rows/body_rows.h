@@ -55,7 +55,7 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
 
 /// Message with all columns of the rows, for a rank that runs the same program.
 RankMessage message_of(BodyRows& rows);
-/// Reads a message of message_of from its start, which is removed from the span.
-BodyRows rows_of_message(std::span<const std::byte>& message);
+/// Reads a message of message_of.
+BodyRows rows_of_message(std::span<const std::byte> message);
 
 }  // namespace skerry
