@@ -238,7 +238,8 @@ void LiveRun::show(const World& world, bool between_calls) {
     const Clock::time_point now = Clock::now();
     const Clock::duration interval = seconds_of(1 / frames_per_second);
     if (now < (between_calls ? next_show_ : next_show_ + interval)) return;
-    next_show_ = now + interval;
+    // Times on a grid keep the rate where calls of sync() come a little early or late.
+    next_show_ = std::max(next_show_, now - interval) + interval;
     if (std::exchange(changed_, false) || world.time() != shown_time_) hub_.mark_changed();
     shown_time_ = world.time();
     if (between_calls && taker_.is_other_run(world)) begin_run(world);
