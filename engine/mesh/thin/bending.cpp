@@ -14,7 +14,7 @@ constexpr Real remaining_excess = 0.8;
 
 /// Displacements of pure bending with the curvature 1, about the middle of a column.
 struct Bending {
-    std::size_t part;
+    std::size_t part, column;
     Vec3 middle;                   // point of zero strain [m]
     Vec3 tangent, across, normal;  // orthonormal: direction of bending, its axis, and direction of the column
     Real poisson_ratio, young_modulus;
@@ -101,8 +101,9 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
     const Surroundings nearby = surroundings_of(mesh, columns, zones);
     // Several columns of a part may cross a tetrahedron. The first of them determines how the part bends there.
     std::vector<std::vector<Bending>> bendings(nearby.tetrahedra.size());
-    std::vector<Real> exact(part_count, 0), found(part_count, 0);
-    for (const BentColumn& bent : columns) {
+    std::vector<Real> exact(columns.size(), 0), found(columns.size(), 0);  // energies by column [J]
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        const BentColumn& bent = columns[c];
         const ThinColumn& column = *bent.column;
         const Vec3 middle = column.start + neutral_distance(column, nearby, materials) * column.direction;
         for (const Crossing& crossing : column.crossings) {
@@ -110,9 +111,9 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
             std::vector<Bending>& known = bendings[row];
             if (std::ranges::find(known, bent.part, &Bending::part) != known.end()) continue;
             const ElasticConstants& material = materials[static_cast<std::size_t>(nearby.material[row])];
-            known.push_back({bent.part, middle, bent.tangent, column.direction.cross(bent.tangent), column.direction,
+            known.push_back({bent.part, c, middle, bent.tangent, column.direction.cross(bent.tangent), column.direction,
                              material.poisson_ratio, material.young_modulus});
-            exact[bent.part] += exact_energy(nearby.tetrahedra[row], mesh.nodes, known.back());
+            exact[c] += exact_energy(nearby.tetrahedra[row], mesh.nodes, known.back());
         }
     }
 
@@ -135,13 +136,21 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
                 gradient += bending.displacement(mesh.nodes[static_cast<std::size_t>(elements.node[k])]) *
                             elements.gradient[k].transpose();
             const Real volume = skerry::six_volumes(nearby.tetrahedra[row], mesh.nodes) / 6 / covered[row][kind];
-            found[bending.part] += volume * energy_density(gradient, bending, elements.part[e]);
+            found[bending.column] += volume * energy_density(gradient, bending, elements.part[e]);
         }
     });
 
+    // Columns under the same moment bend in inverse proportion to their stiffness, so their compliances are averaged. In
+    // a mean of stiffnesses a few slivers would count more than all other columns.
+    std::vector<Real> energy(part_count, 0), compliance(part_count, 0);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        if (!(exact[c] > 0)) continue;
+        energy[columns[c].part] += exact[c];
+        compliance[columns[c].part] += exact[c] * exact[c] / found[c];
+    }
     std::vector<Real> stiffness(part_count, 1);
     for (std::size_t p = 0; p < part_count; ++p)
-        if (exact[p] > 0) stiffness[p] = 1 + remaining_excess * (found[p] / exact[p] - 1);
+        if (energy[p] > 0) stiffness[p] = 1 + remaining_excess * (energy[p] / compliance[p] - 1);
     return stiffness;
 }
 

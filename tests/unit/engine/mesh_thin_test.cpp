@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numeric>
 
 #include "engine/mesh/thin/thin_parts.h"
@@ -123,6 +124,20 @@ TEST_CASE("the stiffness of a thin strip in bending is estimated within a factor
             CHECK(part.stiffness < 1.5 * measured);
             CHECK(part.stiffness > measured / 1.5);
         }
+}
+
+TEST_CASE("a strip with long cells in one half bends like its two halves in series", "[unit]") {
+    const auto with_cells = [](int count) { return mesh::box({0.05, 0.01, 0.001}, {count, 10, 1}); };
+    Mesh strip = with_cells(30);  // 25 cubic cells, then 5 cells five times as long
+    for (Vec3& x : strip.nodes) {
+        const long plane = std::lround((x.x() + 0.025) / (0.05 / 30));
+        x.x() = plane <= 25 ? -0.025 + 0.001 * static_cast<Real>(plane) : 0.005 * static_cast<Real>(plane - 25);
+    }
+    for (const ElementKind kind : {ElementKind::linear, ElementKind::smoothed}) {
+        const auto stiffness = [&](const Mesh& mesh) { return thin_parts_of(mesh, kind).front().stiffness; };
+        const Real in_series = 2 / (1 / stiffness(with_cells(50)) + 1 / stiffness(with_cells(10)));
+        CHECK(stiffness(strip) == Approx(in_series).epsilon(0.25));
+    }
 }
 
 TEST_CASE("the estimate does not depend on the place, the orientation and the unit of length", "[unit]") {
