@@ -15,7 +15,7 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-inline constexpr Real standard_pressure = 101325;  // [Pa]
+inline constexpr Real standard_pressure = 101325;  // standard atmosphere [Pa]
 
 /// A gas with p V^exponent = const while its mass is constant. p is the absolute pressure and V the volume. At ambient
 /// pressure the gas has the density `density`.
@@ -40,7 +40,7 @@ struct LiquidFilling {
 /// Faces of a body under one pressure. The pressure acts on the deformed faces, against the outward normal of the body.
 /// The alternatives of `filling` are a prescribed pressure above ambient [Pa], a gas and a liquid.
 struct CavitySettings {
-    BodyHandle body{};
+    BodyHandle body{};  // body of the faces
     // Faces of World::surface, each given by its three nodes. Default: the walls of all hollows inside of the body, or
     // the whole surface of a body without hollows.
     std::optional<std::vector<std::array<Index, 3>>> faces{};
@@ -54,7 +54,7 @@ struct CavitySettings {
 
 /// Present state of a cavity.
 struct CavityState {
-    BodyHandle body{};
+    BodyHandle body{};                    // body of the faces
     CavityLaw law = CavityLaw::pressure;  // kind of the filling
     Index faces = 0;                      // number of faces
     bool closed = false;                  // whether the faces enclose a volume
@@ -68,18 +68,18 @@ struct CavityState {
 /// A pipe between two cavities with the same gas, or between a cavity and a reservoir of this gas. The mass flow is
 /// conductance times the difference of the pressures.
 struct PipeSettings {
-    CavityHandle first{};
-    std::optional<CavityHandle> second{};  // default: a reservoir
+    CavityHandle first{};                  // cavity at the first end
+    std::optional<CavityHandle> second{};  // cavity at the second end; default: a reservoir
     Real conductance = 0;                  // >= 0 [kg/(s Pa)]
     TimeTable pressure{};                  // pressure of the reservoir above ambient; 0: the atmosphere [Pa]
 };
 
 /// Present state of a pipe.
 struct PipeState {
-    CavityHandle first{};
-    std::optional<CavityHandle> second{};
-    Real conductance = 0;  // [kg/(s Pa)]
-    Real flow = 0;         // mean mass flow out of the first cavity in the last step [kg/s]
+    CavityHandle first{};                  // cavity at the first end
+    std::optional<CavityHandle> second{};  // cavity at the second end; missing for a reservoir
+    Real conductance = 0;                  // mass flow per difference of the pressures [kg/(s Pa)]
+    Real flow = 0;                         // mean mass flow out of the first cavity in the last step [kg/s]
 };
 
 extern template class __attribute__((visibility("default"))) ObjectView<CavityHandle>;

@@ -29,9 +29,9 @@ struct FibreSettings {
 
 /// Present state of a family of fibres.
 struct FibreState {
-    BodyHandle body{};
-    Real tension = 0;  // present active tension [Pa]
-    Real energy = 0;   // energy of the stretch [J]
+    BodyHandle body{};  // body of the fibres
+    Real tension = 0;   // present active tension [Pa]
+    Real energy = 0;    // energy of the stretch [J]
     // Numbers of the tetrahedra with fibres, and a value for each of them:
     std::vector<Index> tetrahedra{};
     std::vector<Real> stretch{};  // present length of fibres over their length at rest

@@ -21,12 +21,14 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-// Loss factor of explicit bodies whose material has none, and upper bounds of the properties of a material.
-inline constexpr Real default_loss_factor = 0.05, largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
+inline constexpr Real default_loss_factor = 0.05;  // loss factor of explicit bodies whose material gives none
+inline constexpr Real largest_loss_factor = 0.3;   // upper bound of MaterialSettings::loss_factor
+inline constexpr Real largest_bulk_viscosity = 1;  // upper bound of MaterialSettings::bulk_viscosity
 
-/// Term of the law `ogden`: share of the shear modulus, from 0 (not used) to 1, and exponent of the stretches.
+/// Term of the law `ogden` (Ogden 1972; docs/methods/elasticity.md 2.5).
 struct StretchTerm {
-    Real share = 0, exponent = 2;
+    Real share = 0;     // share of the shear modulus, from 0 (the term is not used) to 1
+    Real exponent = 2;  // exponent of the stretches; its magnitude is from 0.1 to 100
 
     bool operator==(const StretchTerm&) const = default;
 };
@@ -71,17 +73,21 @@ struct MaterialSettings {
 };
 
 /// Kind of motion of a body. Rigid and implicit bodies do not limit the step and have no self-contact.
-/// - explicit_elastic: the body deforms, and the step must be stable for its stiffest element.
-/// - rigid: the body does not deform. It has the mass and the inertia of its mesh, or given ones. From its materials it
-///   uses only density, friction and restitution (docs/methods/rigid_bodies.md).
-/// - implicit_elastic: the body deforms by backward Euler (see Settings::theta), which is stable at any step length. It
-///   is meant for stiff bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by
-///   Newton's method (docs/methods/implicit_bodies.md).
-/// - automatic (default): the body becomes implicit if this more than halves the predicted cost and the expected strain
-///   is at most 2 %, otherwise explicit. The choice is made when the body is added, for the step length that the other
-///   bodies then allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a body that is added later
-///   requires short steps, an implicit body becomes explicit where this costs less, as by World::set_dynamics().
-enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid, implicit_elastic, automatic };
+enum class BodyDynamics : std::uint8_t {
+    explicit_elastic,  // the body deforms, and the step must be stable for its stiffest element
+    // The body does not deform. It has the mass and the inertia of its mesh, or given ones. From its materials it uses
+    // only density, friction and restitution (docs/methods/rigid_bodies.md).
+    rigid,
+    // The body deforms by backward Euler (see Settings::theta), which is stable at any step length. This suits stiff
+    // bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by Newton's method
+    // (docs/methods/implicit_bodies.md).
+    implicit_elastic,
+    // The body becomes implicit if this more than halves the predicted cost and the expected strain is at most 2 %,
+    // otherwise explicit. The choice is made when the body is added, for the step length that the other bodies then
+    // allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a body that is added later requires short
+    // steps, an implicit body becomes explicit where this costs less, as by World::set_dynamics().
+    automatic,
+};
 template <>
 struct EnumNames<BodyDynamics> {
     static constexpr std::array<std::pair<BodyDynamics, std::string_view>, 4> table{{
@@ -117,10 +123,9 @@ struct BodySettings {
     std::optional<Real> mass{};            // > 0 [kg]
     std::optional<Vec3> center_of_mass{};  // [m]
     std::optional<Mat3> inertia{};         // symmetric and positive definite [kg m^2]
-    // Each object has a set of collision groups and a mask, both as bits. Two objects can touch only if each of the two
-    // masks contains a group of the other object.
+    // Groups of the body, as bits. Two objects can touch only if the mask of each contains a group of the other.
     std::uint32_t collision_group = 1;
-    std::uint32_t collision_mask = 0xffffffffu;
+    std::uint32_t collision_mask = 0xffffffffu;   // groups that the body can touch, as bits; default: all groups
     ElementKind element = ElementKind::smoothed;  // finite elements of a deformable body
     std::string name{};                           // name of the body in messages and output
 };

@@ -16,7 +16,8 @@ namespace skerry {
 /// A spring, a damper, or both in parallel, between two anchors. At least one anchor must be on a body. Stiffness and
 /// damping must not both be 0.
 struct SpringSettings {
-    Anchor first{}, second{};
+    Anchor first{};                          // one end
+    Anchor second{};                         // the other end
     Real stiffness = 0;                      // >= 0 [N/m]
     Real damping = 0;                        // force per rate of the length, >= 0 [N s/m]
     std::optional<TimeTable> rest_length{};  // each value >= 0; default: the present length [m]

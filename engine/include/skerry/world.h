@@ -187,7 +187,7 @@ public:
     void wake(BodyHandle body);              // wakes a sleeping body; bodies that touch this body wake in later steps
     Real mean_edge(BodyHandle body) const;   // mean edge length of the surface of a body in its rest shape [m]
     std::vector<BodyHandle> bodies() const;  // all bodies, in the order added (but see set_dynamics)
-    std::vector<ColliderHandle> colliders() const;
+    std::vector<ColliderHandle> colliders() const;  // all colliders, in the order added
     /// Present pose of a collider: position and rotation vector (axis times angle). For a plane it is the point of the
     /// plane and a rotation that takes +z to its normal.
     MotionKey pose(ColliderHandle collider) const;
