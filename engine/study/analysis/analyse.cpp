@@ -53,7 +53,8 @@ Measured measure_all(const StudyFamily& family, const StudySettings& settings) {
     for (std::size_t column = 0; column < found.scales.size(); ++column) {
         const StudyColumn& what = family.scene->columns[column];
         if (!what.reported || (what.is_statistic && !found.is_chaotic(family) && reports_bodies)) continue;
-        // Values below the effect of 1e-12 m or of rounding mean nothing, as the stress of a body that flies freely.
+        // Values below the effect of rounding, or of 1e-12 m at the start, are noise, such as the stress of a body in
+        // free flight.
         if (settings.probes.empty() && what.what.unit != "m" &&
             family.sizes[column] < agreement_share * found.scales[column])
             continue;
@@ -97,7 +98,7 @@ OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& set
         const StudyQuantity& r = quantity.result;
         const Real wanted = settings.error * r.scale;
         open.noise |= r.noise > noise_share * wanted;
-        // The error of two step lengths is that of order 1; a third one may show that it is smaller.
+        // With two step lengths the step error assumes order 1. A third step length may show that it is smaller.
         open.step |= r.step > step_share * wanted && !(r.step < share_of_bar * r.error);
     }
     return open;

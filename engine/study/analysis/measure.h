@@ -32,7 +32,7 @@ struct StudyFamily {
 struct MeasuredQuantity {
     StudyQuantity result;
     Convergence mesh{}, step{}, contact{};
-    Real noise = 0;                                         // largest difference of the perturbed runs
+    Real noise = 0;  // largest difference between a perturbed run and the scene as it is
     std::vector<std::pair<StudyVariant, Real>> elements{};  // value of each run with another kind of element
     Real shape = 0;       // part of the mesh error that finer meshes keep, see StudyColumn::shape_error
     Real least_mesh = 0;  // mesh error that linear elements have at least, by comparison with smoothed ones
