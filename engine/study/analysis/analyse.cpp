@@ -11,12 +11,12 @@ namespace skerry {
 namespace {
 
 std::string chaos_text(const StudyResult& result) {
-    std::string text = "Runs begun 1e-12 m apart agree until " + short_number(result.agree_until) + " s";
+    std::string text = "Runs whose starts differ by 1e-12 m agree until " + short_number(result.agree_until) + " s";
     if (result.growth_rate > 0)
         text += "; small differences grow tenfold every " + duration_text(std::log(10) / result.growth_rate);
     return text +
-           ". After that no run, however fine, tells where a single body is: read the values named _agreed, and "
-           "the statistics of all bodies.";
+           ". After that, no run predicts the place of a single body, however fine its mesh and steps: use the values "
+           "named _agreed, and the statistics of all bodies.";
 }
 
 /// Names the runs that ended well and cannot be compared with the scene as it is.
@@ -25,7 +25,7 @@ void add_run_sentences(const StudyFamily& family, std::vector<std::string>& sent
         const StudyRun& run = (*family.all)[i];
         if (run.status == StudyRunStatus::ok && std::ranges::find(family.comparable, &run) == family.comparable.end())
             sentences.push_back("Run " + std::to_string(i) +
-                                " is not used: its rows differ from those of the scene as it is.");
+                                " is not used: the times of its rows differ from those of the scene as it is.");
     }
 }
 

@@ -170,7 +170,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     if (figure != StudyFigure::agreed && !scene.is_statistic && quantity.noise > agreement_share * r.scale) {
         r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
         return decide(StudyVerdict::chaotic,
-                      "runs begun 1e-12 m apart end with other values, so this one value says nothing about them");
+                      "runs whose starts differ by 1e-12 m end with different values, so this value is accidental");
     }
     if (const std::string text = singular_text(family, column, figure); !text.empty()) {
         r.error = r.mesh = infinity;
@@ -205,7 +205,8 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     check("step", quantity.step, r.step);
     for (const StudyRun& run : *family.all)
         if (run.variant.draw != 0 && run.status == StudyRunStatus::failed && r.sentence.empty())
-            decide(StudyVerdict::irregular, "a run begun 1e-12 m apart failed, so this scene may fail by chance");
+            decide(StudyVerdict::irregular,
+                   "a run whose start differs by 1e-12 m failed, so this scene may fail by chance");
     for (const auto& [variant, value] : quantity.elements)
         if (variant.element == ElementKind::smoothed &&
             std::abs(value - r.value) > std::max(r.error, share_of_wanted * wanted * r.scale))
