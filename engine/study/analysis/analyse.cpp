@@ -24,8 +24,9 @@ void add_run_sentences(const StudyFamily& family, std::vector<std::string>& sent
     for (std::size_t i = 0; i < family.all->size(); ++i) {
         const StudyRun& run = (*family.all)[i];
         if (run.status == StudyRunStatus::ok && std::ranges::find(family.comparable, &run) == family.comparable.end())
-            sentences.push_back("Run " + std::to_string(i) +
-                                " is not used: the times of its rows differ from those of the scene as it is.");
+            sentences.push_back(
+                "Run " + std::to_string(i) +
+                " is not used: its columns or its number of rows differ from those of the scene as it is.");
     }
 }
 

@@ -20,9 +20,10 @@ enum class StudyFigure { end, largest, smallest, mean, agreed };
 /// Runs of a study that can be compared.
 struct StudyFamily {
     const std::vector<StudyRun>* all = nullptr;
-    const StudyRun* scene = nullptr;            // the scene as it is
-    std::vector<const StudyRun*> comparable{};  // runs that ended well, with the times of `scene`; includes `scene`
-    std::vector<Real> sizes{};                  // size of the values of each column, see column_sizes()
+    const StudyRun* scene = nullptr;  // the scene as it is
+    std::vector<const StudyRun*>
+        comparable{};           // runs that ended well, with the columns and rows of `scene`; includes `scene`
+    std::vector<Real> sizes{};  // size of the values of each column, see column_sizes()
 
     explicit StudyFamily(const std::vector<StudyRun>& runs);
     PerturbedRuns perturbed() const;

@@ -400,7 +400,7 @@ TEST_CASE("runs that failed or differ in their rows are not evaluated", "[unit][
     runs[2].time.pop_back();
     const StudyResult result = analyse(runs, {});
     CHECK(result.sentences.back() ==
-          "Run 2 is not used: the times of its rows differ from those of the scene as it is.");
+          "Run 2 is not used: its columns or its number of rows differ from those of the scene as it is.");
     CHECK(only_quantity(result).verdict == StudyVerdict::not_measured);
 }
 
