@@ -21,8 +21,8 @@ enum class StudyFigure { end, largest, smallest, mean, agreed };
 struct StudyFamily {
     const std::vector<StudyRun>* all = nullptr;
     const StudyRun* scene = nullptr;  // the scene as it is
-    std::vector<const StudyRun*>
-        comparable{};           // runs that ended well, with the columns and rows of `scene`; includes `scene`
+    // Runs that ended well and have the columns and the number of rows of `scene`; includes `scene`.
+    std::vector<const StudyRun*> comparable{};
     std::vector<Real> sizes{};  // size of the values of each column, see column_sizes()
 
     explicit StudyFamily(const std::vector<StudyRun>& runs);
