@@ -18,7 +18,7 @@ namespace skerry {
 /// Forces on a body or a collider, summed over all steps of the last call of advance. A step that needed several
 /// attempts counts once.
 struct ForceReport {
-    Vec3 impulse = Vec3::Zero();  // [N s]
+    Vec3 impulse = Vec3::Zero();  // sum of the impulses on the object [N s]
     // Sum of the moments of the impulses about `moment_point` [N m s]. Each impulse acts at its contact point at the
     // start of the step.
     Vec3 moment_impulse = Vec3::Zero();

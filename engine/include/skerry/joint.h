@@ -48,7 +48,7 @@ struct JointPassive {
 struct JointMimic {
     JointHandle leader{};  // another hinge or slider, which must not mimic this joint, directly or through others
     Real ratio = 1;        // not 0; [m/rad] or [rad/m] between a slider and a hinge
-    Real offset = 0;       // [rad or m]
+    Real offset = 0;       // coordinate of this joint if that of the leader is 0 [rad or m]
 
     bool operator==(const JointMimic&) const = default;
 };
@@ -83,8 +83,8 @@ struct JointState {
     std::optional<BodyHandle> second{};  // the second body; missing if the first is joined to the world
     Vec3 point = Vec3::Zero();           // point of the joint on the first body, in world coordinates [m]
     Vec3 axis = {0, 0, 1};               // axis of the joint on the second body, in world coordinates
-    Real coordinate = 0;                 // [rad or m]
-    Real speed = 0;                      // [rad/s or m/s]
+    Real coordinate = 0;                 // present coordinate, see JointSettings [rad or m]
+    Real speed = 0;                      // rate of the coordinate [rad/s or m/s]
     Vec3 force = Vec3::Zero();           // force acting at `point` [N]
     Vec3 moment = Vec3::Zero();          // [N m]
     // Parts of the moment (hinge) or force (slider) along the axis: of the motor, of spring, damper and friction

@@ -55,7 +55,7 @@ struct GravityScale {
 /// are not longer than 1/rate.
 struct DragField {
     std::optional<BodyHandle> body{};  // if it is not given, the field acts on all bodies
-    Real rate = 0;                     // > 0 [1/s]
+    Real rate = 0;                     // force per mass and relative velocity, > 0 [1/s]
     Vec3 wind = Vec3::Zero();          // velocity of the wind [m/s]
     TimeTable scale = 1;               // factor of `wind`
 };

@@ -107,10 +107,10 @@ struct StageReport {
 
 /// Energies of a world.
 struct Energy {
-    Real kinetic = 0;     // [J]
-    Real elastic = 0;     // [J]
+    Real kinetic = 0;     // energy of the motion of all bodies [J]
+    Real elastic = 0;     // energy stored by deformation [J]
     Real potential = 0;   // energy of the weight, relative to the origin [J]
-    Real dissipated = 0;  // by contacts, damping, material losses and plastic flow since the start [J]
+    Real dissipated = 0;  // energy lost since the start to contacts, damping, material losses and plastic flow [J]
 };
 
 /// Report of one call of `advance`. Filling the report allocates no memory unless an error is reported.
@@ -125,7 +125,7 @@ public:
     /// first element that turned inside out. Empty if there is neither such a body nor such an element.
     std::string warning() const;
 
-    StepStatus status = StepStatus::ok;  // kind of the failure
+    StepStatus status = StepStatus::ok;  // result of the call
     BodyHandle body;                     // the body that caused the failure, if not ok
     Index node = -1;                     // number of the node within the body, if a node caused the failure
     // Number of the element within the body, if an element caused the failure; `node` is one of its corners
@@ -134,7 +134,7 @@ public:
     // too_far: rounding error of positions over mean edge length. too_stiff: stable step [s].
     Real value = 0;
     Real step_size = 0;  // length of the last step [s]
-    int steps = 0;       // committed steps
+    int steps = 0;       // number of committed steps
     // Number of attempts at a step that were repeated with a shorter step. Reasons: a body was too fast, surfaces
     // crossed, an element turned inside out, or Newton's method failed.
     int shortened = 0;
@@ -314,7 +314,7 @@ inline constexpr Real largest_trusted_error = 0.5;
 
 /// The counters of the run, and measures of the present state. Computing these measures takes a pass over all tables.
 struct WorldReport : RunCounters {
-    Real time = 0;                                                   // [s]
+    Real time = 0;                                                   // simulated time [s]
     std::size_t asleep = 0;                                          // number of bodies that are asleep now
     std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;  // numbers of objects now
     // Stable step of the stiffest body now [s]. If no body limits the step: the step that advance() takes.
@@ -350,7 +350,7 @@ struct WorldReport : RunCounters {
     Real held_penetration = 0;
     std::string held_body, held_in;        // see held_penetration
     Energy energy;                         // present energies of the world
-    Vec3 momentum = Vec3::Zero();          // [kg m/s]
+    Vec3 momentum = Vec3::Zero();          // momentum of all bodies [kg m/s]
     Vec3 angular_momentum = Vec3::Zero();  // angular momentum about the origin [kg m^2/s]
     // Errors of the balances of energy and momentum: changes that loads, weight, colliders and losses do not explain.
     // These balances are checked every 256 steps (every 128 steps if there are clusters) and now; the largest error

@@ -50,7 +50,7 @@ struct TieState {
     std::optional<ColliderHandle> to_collider{};  // the other object, if it is a collider
     Real break_force = infinity;                  // TieSettings::break_force [N]
     Vec3 point = Vec3::Zero();      // mean position of the tied nodes, for a ball weighted by their masses [m]
-    Vec3 force = Vec3::Zero();      // [N]
+    Vec3 force = Vec3::Zero();      // force on `body` [N]
     Vec3 moment = Vec3::Zero();     // moment about `point` [N m]
     Real largest_force = 0;         // largest magnitude of `force` in a step since the tie was added [N]
     Real error = 0;                 // largest error of a node that has not broken off [m]
