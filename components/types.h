@@ -1,4 +1,4 @@
-// Number and vector types of the engine. This header and options.h are the only public headers of components: they are
+// Number and vector types of the engine. cmake/install.cmake lists this and the other headers of components/ that are
 // installed with the library.
 #pragma once
 
