@@ -7,10 +7,13 @@
 
 namespace skerry {
 
-using CableHandle = Handle<struct CableTag>;
+using CableHandle = Handle<struct CableTag>;  // refers to a cable of a world
 
-/// Quantity of a cable that its keys prescribe: the tension of its first segment [N], its greatest length [m], or the
-/// rate of its greatest length [m/s].
-enum class CableControl : std::uint8_t { tension, length, rate };
+/// Quantity of a cable that its keys prescribe.
+enum class CableControl : std::uint8_t {
+    tension,  // tension of the first segment [N]
+    length,   // greatest length; a shorter cable is slack [m]
+    rate,     // rate of the greatest length; negative draws the cable in [m/s]
+};
 
 }  // namespace skerry

@@ -22,11 +22,11 @@ struct Handle {
     auto operator<=>(const Handle&) const = default;
 };
 
-using MaterialHandle = Handle<struct MaterialTag>;
-using BodyHandle = Handle<struct BodyTag>;
-using ColliderHandle = Handle<struct ColliderTag>;
-using AttachmentHandle = Handle<struct AttachmentTag>;
-using FibreHandle = Handle<struct FibreTag>;
+using MaterialHandle = Handle<struct MaterialTag>;      // refers to a material of a world
+using BodyHandle = Handle<struct BodyTag>;              // refers to a deformable or rigid body
+using ColliderHandle = Handle<struct ColliderTag>;      // refers to a collider, which no force moves
+using AttachmentHandle = Handle<struct AttachmentTag>;  // refers to nodes with a prescribed motion
+using FibreHandle = Handle<struct FibreTag>;            // refers to a family of fibres in a body
 
 /// Maps handles to rows of a table. Rows may move down when earlier rows are erased.
 template <class HandleType>

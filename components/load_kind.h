@@ -8,11 +8,16 @@
 
 namespace skerry {
 
-using LoadHandle = Handle<struct LoadTag>;
+using LoadHandle = Handle<struct LoadTag>;  // refers to a load of a world
 
-/// Force that a load exerts. force: a total force on some nodes. traction: a force per area of some faces.
-/// acceleration: a uniform acceleration. gravity: a factor of the weight. drag: a force towards the velocity of a wind.
-enum class LoadKind : std::uint8_t { force, traction, acceleration, gravity, drag };
+/// Force that a load exerts.
+enum class LoadKind : std::uint8_t {
+    force,         // total force on some nodes (ForceLoad)
+    traction,      // force per area of some faces (TractionLoad)
+    acceleration,  // uniform acceleration (AccelerationField)
+    gravity,       // factor of the weight (GravityScale)
+    drag,          // force towards the velocity of a wind (DragField)
+};
 template <>
 struct EnumNames<LoadKind> {
     static constexpr std::array<std::pair<LoadKind, std::string_view>, 5> table{{
@@ -24,8 +29,11 @@ struct EnumNames<LoadKind> {
     }};
 };
 
-/// Area on which a traction acts: of the faces in the rest shape (dead load), or of the deformed faces.
-enum class LoadArea : std::uint8_t { reference, present };
+/// Area on which a traction acts.
+enum class LoadArea : std::uint8_t {
+    reference,  // area of the faces in the rest shape: the force is constant (dead load)
+    present,    // area of the deformed faces
+};
 template <>
 struct EnumNames<LoadArea> {
     static constexpr std::array<std::pair<LoadArea, std::string_view>, 2> table{{

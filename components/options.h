@@ -9,39 +9,78 @@
 
 namespace skerry {
 
-/// Material laws. guard: the inversion barrier, which acts on tetrahedra that are about to invert
-/// (docs/methods/elasticity.md 7.7). A user cannot select guard as the law of a material.
-enum class MaterialModel { linear, corotational, stable_neo_hookean, ogden, orthotropic, hencky, guard };
-/// Elements that compute the stress of a body. linear: tetrahedra with constant strain, which lock in bending and in
-/// nearly incompressible materials. edge_smoothed: one element per edge, with the mean strain of the tetrahedra around
-/// the edge. edge_node_smoothed: elements at edges for the shear stress, elements at nodes for the volumetric stress.
-/// smoothed: edge_smoothed up to a Poisson ratio of 0.25, edge_node_smoothed above (docs/methods/elasticity.md 7).
-enum class ElementKind { linear, smoothed, edge_smoothed, edge_node_smoothed };
-/// Friction laws. cone: Coulomb's friction cone. pyramid: the approximation of the cone with four sides of Lazarevych
-/// et al. (2010) (docs/methods/friction.md 1.3).
-enum class Friction { cone, pyramid };
-/// Division of contacts into regions. separate: contacts that do not influence each other are solved separately.
-/// global: all contacts form one region.
-enum class ContactRegions { separate, global };
-/// Contact solvers (docs/solvers.md).
-enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr };
+/// Material laws (docs/methods/elasticity.md 2). Near the rest shape all isotropic laws agree with Hooke's law.
+enum class MaterialModel {
+    linear,              // Hooke's law of small strain, for small rotations only
+    corotational,        // Hooke's law of small strain, relative to the mean rotation of the element
+    stable_neo_hookean,  // for large strain; the energy is finite even for inverted elements (Smith et al. 2018)
+    ogden,               // for rubber at large strain (Ogden 1972); see MaterialSettings::terms
+    orthotropic,         // for wood and composites at strains of some per cent; see MaterialSettings::orthotropic
+    hencky,              // logarithmic strain; the only law that can yield, see MaterialSettings::plasticity
+    guard,               // the inversion barrier of docs/methods/elasticity.md 7.7; materials cannot have this law
+};
+/// Elements that compute the stress of a body (docs/methods/elasticity.md 7).
+enum class ElementKind {
+    linear,         // tetrahedra with constant strain, which lock in bending and in nearly incompressible materials
+    smoothed,       // edge_smoothed up to a Poisson ratio of 0.25, edge_node_smoothed above
+    edge_smoothed,  // one element per edge, with the mean strain of the tetrahedra around the edge
+    edge_node_smoothed,  // elements at edges for the shear stress, elements at nodes for the volumetric stress
+};
+/// Friction laws.
+enum class Friction {
+    cone,     // Coulomb's friction cone
+    pyramid,  // approximation of the cone with four sides (Lazarevych et al. 2010; docs/methods/friction.md 1.3)
+};
+/// Division of contacts into regions.
+enum class ContactRegions {
+    separate,  // contacts that do not influence each other are solved separately
+    global,    // all contacts form one region
+};
+/// Contact solvers (docs/solvers.md, docs/methods/region_solver.md).
+enum class SolverMethod {
+    automatic,  // ags; for rigid and implicit bodies also Newton steps where they are cheaper
+    ags,        // accelerated block Gauss-Seidel sweeps
+    pgs,        // block Gauss-Seidel sweeps without acceleration
+    pcg_pgs,    // Algorithm 2 of Lazarevych et al. (2010): projected conjugate gradients, then sweeps
+    newton,     // semismooth Newton's method with a dense matrix
+    pcg_fr,     // first phase of pcg_pgs with the formula of Fletcher and Reeves
+    pcg_pr,     // first phase of pcg_pgs with the formula of Polak and Ribiere
+};
 /// Libraries that run the tasks of a step on several threads.
-enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first backend of this build
-enum class WarmStart { off, on };
-/// Treatment of new bodies that overlap other bodies or colliders, before the next step. resolve: the bodies are moved
-/// apart without adding energy if a short displacement suffices; otherwise they are refused. refuse: the bodies are
-/// refused. ignore: the overlaps are reported, and the simulation starts with them
+enum class Backend {
+    tbb,        // oneTBB
+    openmp,     // OpenMP
+    threads,    // threads of the C++ standard library
+    serial,     // no library: the calling thread runs all tasks
+    automatic,  // the first backend of this build
+};
+/// Initial contact impulses of the solver (docs/methods/region_solver.md 7).
+enum class WarmStart {
+    off,  // zero
+    on,   // the impulses of the last step
+};
+/// Treatment of new bodies that overlap other bodies or colliders, before the next step
 /// (docs/decisions/0017-start-overlaps.md).
-enum class StartOverlaps { resolve, refuse, ignore };
-/// Kind of overlap of two objects. crossing: their surfaces intersect. inside: the first object is inside the second.
-/// around: the second object is inside the first. coincident: each object is inside the other.
-enum class OverlapKind { crossing, inside, around, coincident };
-/// Time integrators (docs/step_length.md). Both integrators alternate a kick, in which forces change velocities, and a
-/// drift, in which velocities change positions. symplectic_euler: first order in the step length when started from
-/// given velocities, with bounded energy. leapfrog: the positions also drift forward by half a step before the first
-/// step of a call, and back by half a step after the last step of the call. This makes the method second order in
-/// smooth motion.
-enum class Integrator { symplectic_euler, leapfrog };
+enum class StartOverlaps {
+    resolve,  // moves the bodies apart without adding energy; refuses them if no short displacement suffices
+    refuse,   // refuses the bodies
+    ignore,   // reports the overlaps and starts the simulation with them
+};
+/// Kind of overlap of two objects.
+enum class OverlapKind {
+    crossing,    // their surfaces intersect
+    inside,      // the first object is inside the second
+    around,      // the second object is inside the first
+    coincident,  // each object is inside the other
+};
+/// Time integrators (docs/step_length.md). Both alternate a kick, in which forces change velocities, and a drift, in
+/// which velocities change positions.
+enum class Integrator {
+    symplectic_euler,  // first order in the step length when started from given velocities, with bounded energy
+    // Second order in smooth motion: the positions also drift forward by half a step before the first step of a call,
+    // and back by half a step after the last step of the call.
+    leapfrog,
+};
 
 template <class Enum>
 struct EnumNames;

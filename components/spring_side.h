@@ -8,11 +8,14 @@
 
 namespace skerry {
 
-using SpringHandle = Handle<struct SpringTag>;
+using SpringHandle = Handle<struct SpringTag>;  // refers to a spring of a world
 
-/// Side on which a spring and its damper exert forces. tension: only while the spring is longer than its rest length,
-/// like a cord. compression: only while it is shorter, like a buffer.
-enum class SpringSide : std::uint8_t { both, tension, compression };
+/// Side on which a spring and its damper exert forces.
+enum class SpringSide : std::uint8_t {
+    both,         // at any length
+    tension,      // only while the spring is longer than its rest length, like a cord
+    compression,  // only while the spring is shorter than its rest length, like a buffer
+};
 template <>
 struct EnumNames<SpringSide> {
     static constexpr std::array<std::pair<SpringSide, std::string_view>, 3> table{{

@@ -8,11 +8,14 @@
 
 namespace skerry {
 
-using TieHandle = Handle<struct TieTag>;
+using TieHandle = Handle<struct TieTag>;  // refers to a tie of a world
 
-/// Motion of a tied node relative to its point on the other object. weld: none. slide: in the plane through the point,
-/// normal to the surface. ball: any; only the mean point of all tied nodes, weighted by their masses, stays at a point.
-enum class TieKind : std::uint8_t { weld, slide, ball };
+/// Motion of a tied node relative to its point on the other object.
+enum class TieKind : std::uint8_t {
+    weld,   // no motion
+    slide,  // motion in the tangent plane of the surface at the point
+    ball,   // any motion; only the mean point of all tied nodes, weighted by their masses, stays at a point
+};
 template <>
 struct EnumNames<TieKind> {
     static constexpr std::array<std::pair<TieKind, std::string_view>, 3> table{{

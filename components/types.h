@@ -1,4 +1,4 @@
-// Number and vector types of the engine. This header and options.h are the only public headers of components: they are
+// Number and vector types of the engine. cmake/install.cmake lists this and the other headers of components/ that are
 // installed with the library.
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace skerry {
 
-using Real = double;  // number type of all quantities
-inline constexpr Real infinity = std::numeric_limits<Real>::infinity();
+using Real = double;                                                     // number type of all quantities
+inline constexpr Real infinity = std::numeric_limits<Real>::infinity();  // as a bound: no bound
 using Vec3 = Eigen::Matrix<Real, 3, 1>;  // 24 bytes, no padding: a Column<Vec3> is a flat array of reals
 using Mat3 = Eigen::Matrix<Real, 3, 3>;  // rotation, inertia, stress or strain
 

@@ -36,7 +36,8 @@ public:
 class LiveHub {
 public:
     static constexpr std::size_t most_clients = 4;
-    static constexpr std::size_t most_waiting = 1000;  // commands of all browsers, and messages to one browser
+    // Largest number of waiting commands of all browsers, and of waiting messages to one browser.
+    static constexpr std::size_t most_waiting = 1000;
 
     LiveHub() = default;
     ~LiveHub();
@@ -116,7 +117,7 @@ private:
     bool has_frame_for(const Client& client) const;
     void serve(Client& client);
 
-    mutable std::mutex mutex_;  // guards all that follows
+    mutable std::mutex mutex_;  // protects all members below, except atomics
     std::condition_variable changed_;
     std::list<Client> clients_;
     std::uint64_t last_client_ = 0;
@@ -126,7 +127,7 @@ private:
     LiveState state_;
     std::string failure_;  // reason why the run is paused by a failed step; empty if it is not
     std::uint64_t run_ = 0, version_ = 0, last_snapshot_ = 0;
-    std::vector<std::shared_ptr<Snapshot>> snapshots_;  // all that were made; those in use have other owners, too
+    std::vector<std::shared_ptr<Snapshot>> snapshots_;  // all snapshots; a snapshot in use has further owners
     std::shared_ptr<Snapshot> latest_;
 
     std::atomic<bool> busy_ = false, commands_waiting_ = false;

@@ -22,7 +22,7 @@ struct Snapshot {
     std::uint64_t version = 0;              // number of the state that it shows (LiveHub::mark_changed)
     std::vector<std::vector<Real>> probes;  // values by probe and column
     std::vector<Real> sliders;              // values of the sliders
-    std::vector<std::pair<std::uint64_t, PullState>> pulls;  // by number of the browser that pulls
+    std::vector<std::pair<std::uint64_t, PullState>> pulls;  // number of a browser, and the pull of its user
     Real speed = 0;                                          // simulated time per wall time
 
     using Triangles = std::vector<std::array<Index, 3>>;

@@ -8,7 +8,8 @@
 
 namespace skerry {
 
-/// Values of the bodies in a frame. Each content includes those above it, and takes longer to collect.
+/// Values of the bodies in a frame. Each value of this enum includes the data of the values above it, and takes longer
+/// to collect.
 enum class FrameContent {
     motion,       // positions, velocities, contacts and lines
     node_fields,  // stress and strain by node

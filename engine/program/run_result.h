@@ -16,7 +16,7 @@
 
 namespace skerry {
 
-/// A tie of which nodes have broken off.
+/// A tie that has lost nodes.
 struct BrokenTie {
     std::string name;
     std::size_t nodes = 0, broken = 0;          // numbers of tied nodes, and of those that have broken off
@@ -31,12 +31,12 @@ struct RunResult {
     bool distrusted = false;    // true if the run reached its end, but WorldReport::distrust() is not empty
     int stopped_by = 0;         // signal that stopped the run; 0 if there was none
     Settings settings;
-    int threads = 0;  // number of threads that the run used, of each rank
+    int threads = 0;  // number of threads of each rank
     RanksReport ranks;
     double seconds_simulated = 0;
     double seconds_wall = 0;    // wall time of the steps, without outputs [s]
     double seconds_load = 0;    // wall time for reading the scene and its meshes [s]
-    double seconds_setup = 0;   // wall time from then on until the first frame: adding bodies, choosing the step [s]
+    double seconds_setup = 0;   // wall time between reading the scene and the first frame [s]
     double seconds_output = 0;  // wall time for writing outputs and checkpoints [s]
     int frames = 0;
     std::optional<double> restarted_at;           // time of the checkpoint from which the run resumed [s]
@@ -45,7 +45,7 @@ struct RunResult {
     Real peak_kinetic_energy = 0;  // largest kinetic energy at the end of a frame [J]
     Real mean_edge = 0;            // mean edge length of the surfaces, averaged over the bodies [m]
     WorldReport report;
-    std::vector<ErrorEstimate> errors;  // by body; of the part of the run after --restart
+    std::vector<ErrorEstimate> errors;  // by body; cover only the part of the run after --restart
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;
     std::vector<BrokenTie> broken_ties;
@@ -54,7 +54,7 @@ struct RunResult {
     std::vector<std::string> plan_warnings;   // warnings about values in the scene
     std::vector<std::string> bad_boundaries;  // one sentence for each mesh whose boundary is not a closed manifold
     std::vector<std::string> thin_parts;      // one sentence for each mesh that is too stiff in bending
-    std::vector<std::string> contact_areas;   // one sentence for each body with too small contact areas for its mesh
+    std::vector<std::string> contact_areas;   // one sentence for each body with a mesh too coarse for its contacts
     std::vector<std::string> notes;           // remarks about the input that do not question the result
     std::string nearest;                      // result of nearest_text() for a run without any contact, else empty
     std::vector<std::pair<std::string, double>> series;  // figures of the time series of the probes, see SeriesFigures

@@ -77,13 +77,14 @@ bool is_name(const std::string& name, const BodyEntry& body, const std::string& 
 }  // namespace
 
 Real FlatBody::error() const {
-    // The displacement of a shell under pressure grows with the square of the radius, and the faces take up the load.
+    // Error of the displacements over that of the radius: the displacement of a shell under pressure grows with the
+    // square of the radius, and the load acts on the flat faces.
     constexpr Real errors_of_radius = 3;
     return is_held ? errors_of_radius * faces.share : 0;
 }
 
 FlatFaces flat_faces(std::span<const Vec3> nodes, std::span<const std::array<Index, 3>> triangles) {
-    constexpr Real least_angle = 0.01;  // of a surface that is curved, and not flat but for rounding [rad]
+    constexpr Real least_angle = 0.01;  // a surface that turns less along its edges counts as flat [rad]
     const std::vector<Vec3> normals = normals_of(nodes, triangles);
     const std::vector<std::array<Vec3, 3>> corners = corner_normals(nodes, triangles, normals);
     Real curved = 0, sum = 0;

@@ -1,4 +1,4 @@
-// Error of flat faces that stand for a curved surface (docs/methods/study.md 2).
+// Error of flat faces that approximate a curved surface (docs/methods/study.md 2).
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Flat faces of a mesh that stand for a curved surface.
+/// Flat faces of a mesh that approximate a curved surface.
 struct FlatFaces {
     // Mean distance of the flat faces from a smooth surface through their nodes, divided by its radius of curvature. 0
     // if no part of the surface is curved.

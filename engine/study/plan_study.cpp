@@ -116,7 +116,8 @@ void predict_levels(const StudiedScene& scene, std::span<const StudyRun> runs, s
     for (PlannedRun& planned : plan) {
         const int level = planned.variant.refine;
         if (level < 1) continue;
-        // Parts of the time that do not grow with the mesh lose weight, so the ratio grows from level to level.
+        // On finer meshes, work that does not depend on the mesh takes a smaller share of the time. The cost ratio of
+        // two levels therefore grows from level to level, by up to this factor.
         constexpr double growth = 1.5;
         const double made = seconds(level), coarser = seconds(level - 1), coarsest = seconds(level - 2);
         const double most = most_cost_of_level(scene);
@@ -130,7 +131,7 @@ bool gets_all_threads(double cost, double total, int threads) {
 }
 
 double wall_time(std::vector<double> costs, int threads) {
-    constexpr double efficiency = 0.7;  // gain of each further thread of a run
+    constexpr double efficiency = 0.7;  // gain of each further thread, relative to one thread
     std::ranges::sort(costs, std::greater());
     double total = 0, wall = 0;
     for (const double cost : costs) total += cost;

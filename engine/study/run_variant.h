@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// A run that is to be made.
+/// A run to be made.
 struct VariantJob {
     std::filesystem::path scene;
     SceneOverrides overrides;  // assignments of the variant, and the number of threads

@@ -24,7 +24,7 @@ public:
     ElementInputs elements;
     Range blocks;
     ElementCover cover;
-    std::span<const Vec3> position;  // nodes that `elements` refers to [m]
+    std::span<const Vec3> position;  // positions of the nodes that `elements` refers to [m]
     Index first_node = 0;            // first node of the body in `position`
     Mat3 built = Mat3::Identity();   // rotation of the elements at rest against the mesh
 

@@ -133,10 +133,10 @@ PAGE = """# Error bars against known solutions
 This page shows how far you can trust the error bars of [`skerry study`](study.md) and the
 [error estimates](methods/error_estimates.md) of every run. `scripts/error_bars` studies {all} items with known
 solutions and writes this page; {count} have results. The scenes have coarse meshes and default settings. They were
-chosen before the first study, except the quantities of some items, and the stiff block and slow push of
-`incline_slide`. The last {checks} items ([check_items.py](../profiling/error_bars/check_items.py)) played no part in
-the choice of the rules; their first study showed that one needs friction, and that the formula of another one is less
-exact. [error_bars.csv](error_bars/error_bars.csv) lists values, formulas and orders.
+fixed before the first study, except some quantities, and the stiff block and slow push of `incline_slide`. The last
+{checks} items ([check_items.py](../profiling/error_bars/check_items.py)) were not used to choose the rules. Their first
+study led to two corrections: one item needs friction, and the formula of another one is less exact.
+[error_bars.csv](error_bars/error_bars.csv) lists values, formulas and orders.
 
 | claim | all items | the last {checks} |
 |---|---:|---:|
@@ -145,7 +145,8 @@ exact. [error_bars.csv](error_bars/error_bars.csv) lists values, formulas and or
 | the estimate of the run is within a factor of 3 of the true error | {estimated} | {check_estimated} |
 
 Errors below 0.001 % of the known value count as 0.001 %. Some known values have errors themselves, up to 7 % for an
-impact after Hertz: the column `doubt`, which the first line adds to the error bar. Inside only because of it:
+impact after Hertz. The column `doubt` lists these errors, which the first line adds to the error bar. Without them
+these items would be outside:
 {doubted}. An item without a finite value meets the first two lines if the study names it as {verdicts}. The third line
 leaves out items with an error below their doubt.
 

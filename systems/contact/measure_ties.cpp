@@ -9,7 +9,8 @@ namespace skerry {
 
 namespace {
 
-/// Sum of the velocities before and after the step with which a node's body moves the point of a tie [m/s]
+/// Sum of the velocities of the point of a tie before and after the step [m/s]. The point moves with the node, or with
+/// the frame of its rigid or implicit body.
 Vec3 twice_mean(const TieWorkInputs& motion, Index node, const Vec3& point) {
     const auto n = static_cast<std::size_t>(node);
     Vec3 sum = motion.velocity[n] + motion.velocity_next[n];

@@ -14,9 +14,9 @@ namespace skerry {
 /// The point of a rigid body may be anywhere. The point of a deformable body must be inside the body, or at most one
 /// mean edge length of the body's surface outside. It then moves with the nearest tetrahedron.
 struct Anchor {
-    std::optional<BodyHandle> body{};  // at most one of `body` and `collider` may be given
-    std::optional<ColliderHandle> collider{};
-    Vec3 point = Vec3::Zero();  // position in the world at the time when the anchor is created [m]
+    std::optional<BodyHandle> body{};          // the anchor moves with this body; not together with `collider`
+    std::optional<ColliderHandle> collider{};  // the anchor moves with this collider
+    Vec3 point = Vec3::Zero();                 // position in the world at the time when the anchor is created [m]
 };
 
 }  // namespace skerry

@@ -25,7 +25,7 @@ struct CableDrive {
 /// first point.
 struct CableSettings {
     std::vector<Anchor> points;  // at least two; neighbours must not coincide
-    CableDrive drive;
+    CableDrive drive;            // prescribed tension, greatest length or rate
     // Friction coefficient mu at the points between the first and the last, >= 0. A cable that bends by the angle theta
     // at a point slides there if the tensions on both sides have the ratio exp(mu theta) (Euler and Eytelwein).
     Real friction = 0;

@@ -15,7 +15,7 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-inline constexpr Real standard_pressure = 101325;  // [Pa]
+inline constexpr Real standard_pressure = 101325;  // standard atmosphere [Pa]
 
 /// A gas with p V^exponent = const while its mass is constant. p is the absolute pressure and V the volume. At ambient
 /// pressure the gas has the density `density`.
@@ -23,7 +23,7 @@ struct GasFilling {
     Real pressure = 0;                 // pressure above ambient at the start, > -ambient [Pa]
     Real exponent = 1.4;               // polytropic exponent, >= 1; 1: isothermal, 1.4: adiabatic air
     Real ambient = standard_pressure;  // absolute pressure outside of the body, > 0 [Pa]
-    Real density = 1.204;              // > 0; default: air at 20 degrees Celsius [kg/m^3]
+    Real density = 1.204;              // density at ambient pressure, > 0; default: air at 20 degrees Celsius [kg/m^3]
     TimeTable inflow{};                // flow of gas into the cavity, negative to draw gas out [kg/s]
 };
 
@@ -31,7 +31,7 @@ struct GasFilling {
 /// with the volume V of the cavity, and at least -ambient. The smaller the bulk modulus, the longer the stable step. An
 /// error of pressure / bulk_modulus in the volume is often acceptable.
 struct LiquidFilling {
-    Real bulk_modulus = 2.2e9;  // > 0; default: water [Pa]
+    Real bulk_modulus = 2.2e9;  // bulk modulus, > 0; default: water [Pa]
     // volume of the liquid at ambient pressure, > 0; default: the volume of the cavity when it is added [m^3]
     std::optional<TimeTable> volume{};
     Real ambient = standard_pressure;  // absolute pressure outside of the body, >= 0 [Pa]
@@ -40,11 +40,12 @@ struct LiquidFilling {
 /// Faces of a body under one pressure. The pressure acts on the deformed faces, against the outward normal of the body.
 /// The alternatives of `filling` are a prescribed pressure above ambient [Pa], a gas and a liquid.
 struct CavitySettings {
-    BodyHandle body{};
+    BodyHandle body{};  // body of the faces
     // Faces of World::surface, each given by its three nodes. Default: the walls of all hollows inside of the body, or
     // the whole surface of a body without hollows.
     std::optional<std::vector<std::array<Index, 3>>> faces{};
-    std::variant<TimeTable, GasFilling, LiquidFilling> filling{};  // default: the pressure 0
+    // Prescribed pressure, gas or liquid; default: the pressure 0.
+    std::variant<TimeTable, GasFilling, LiquidFilling> filling{};
     // Volume of the gas or liquid at the start. Required if the faces do not enclose a volume, as those of a piston:
     // the volume then changes by the volume that the faces sweep in steps. Calls that place nodes, such as
     // World::reset(body), keep this volume and the mass of the gas; World::reset(saved) restores those of the saved
@@ -54,12 +55,12 @@ struct CavitySettings {
 
 /// Present state of a cavity.
 struct CavityState {
-    BodyHandle body{};
+    BodyHandle body{};                    // body of the faces
     CavityLaw law = CavityLaw::pressure;  // kind of the filling
     Index faces = 0;                      // number of faces
     bool closed = false;                  // whether the faces enclose a volume
-    Real pressure = 0;                    // above ambient [Pa]
-    Real volume = 0;                      // 0 if neither faces nor settings define a volume [m^3]
+    Real pressure = 0;                    // pressure above ambient [Pa]
+    Real volume = 0;                      // volume of the cavity; 0 if neither faces nor settings define one [m^3]
     Real mass = 0;                        // mass of the gas; 0 for other fillings [kg]
     Real energy = 0;                      // work that the filling would do if it expanded to ambient pressure [J]
     Vec3 force = Vec3::Zero();            // sum of the pressure forces on the body; zero for closed faces [N]
@@ -68,18 +69,18 @@ struct CavityState {
 /// A pipe between two cavities with the same gas, or between a cavity and a reservoir of this gas. The mass flow is
 /// conductance times the difference of the pressures.
 struct PipeSettings {
-    CavityHandle first{};
-    std::optional<CavityHandle> second{};  // default: a reservoir
-    Real conductance = 0;                  // >= 0 [kg/(s Pa)]
+    CavityHandle first{};                  // cavity at the first end
+    std::optional<CavityHandle> second{};  // cavity at the second end; default: a reservoir
+    Real conductance = 0;                  // mass flow per difference of the pressures, >= 0 [kg/(s Pa)]
     TimeTable pressure{};                  // pressure of the reservoir above ambient; 0: the atmosphere [Pa]
 };
 
 /// Present state of a pipe.
 struct PipeState {
-    CavityHandle first{};
-    std::optional<CavityHandle> second{};
-    Real conductance = 0;  // [kg/(s Pa)]
-    Real flow = 0;         // mean mass flow out of the first cavity in the last step [kg/s]
+    CavityHandle first{};                  // cavity at the first end
+    std::optional<CavityHandle> second{};  // cavity at the second end; missing for a reservoir
+    Real conductance = 0;                  // mass flow per difference of the pressures [kg/(s Pa)]
+    Real flow = 0;                         // mean mass flow out of the first cavity in the last step [kg/s]
 };
 
 extern template class __attribute__((visibility("default"))) ObjectView<CavityHandle>;
@@ -100,7 +101,8 @@ public:
     void remove(PipeHandle pipe) { ObjectView<PipeHandle>(*world_).remove(pipe); }
     /// True if the pipe is in the world, false if it was removed.
     bool alive(PipeHandle pipe) const { return ObjectView<PipeHandle>(*world_).alive(pipe); }
-    std::vector<PipeHandle> pipes() const { return ObjectView<PipeHandle>(*world_).all(); }  // in the order added
+    /// All pipes, in the order added.
+    std::vector<PipeHandle> pipes() const { return ObjectView<PipeHandle>(*world_).all(); }
     /// Pressure, volume, mass and energy of a cavity after the last step.
     CavityState state(CavityHandle cavity) const;
     /// Cavities, conductance and flow of a pipe.

@@ -11,13 +11,13 @@ namespace skerry {
 
 /// Position and orientation of a collider, an attachment or a body.
 struct Pose {
-    Vec3 position = Vec3::Zero();  // [m]
+    Vec3 position = Vec3::Zero();  // position of the origin in the world [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
 };
 
 /// Velocities of a rigid motion.
 struct Twist {
-    Vec3 velocity = Vec3::Zero();          // of the centre of mass of a body, or of the origin of a pose [m/s]
+    Vec3 velocity = Vec3::Zero();          // velocity of the centre of mass of a body, or of the origin of a pose [m/s]
     Vec3 angular_velocity = Vec3::Zero();  // [rad/s]
 };
 
@@ -32,9 +32,9 @@ struct CollisionGroups {
 struct SurfaceSettings {
     // Coulomb's friction coefficient, >= 0; default value of static_friction and dynamic_friction
     std::optional<Real> friction{};
-    std::optional<Real> static_friction{};   // >= dynamic_friction
-    std::optional<Real> dynamic_friction{};  // >= 0
-    std::optional<Real> restitution{};       // in [0, 1]
+    std::optional<Real> static_friction{};   // friction coefficient of sticking contacts, >= dynamic_friction
+    std::optional<Real> dynamic_friction{};  // friction coefficient of sliding contacts, >= 0
+    std::optional<Real> restitution{};       // rebound speed over impact speed, from 0 to 1
 };
 
 }  // namespace skerry

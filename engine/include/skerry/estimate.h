@@ -17,8 +17,8 @@ inline constexpr Real not_estimated = std::numeric_limits<Real>::quiet_NaN();
 /// Estimated relative errors of one body. A value is `not_estimated` if the error does not exist for the body, as the
 /// error of the mesh of a rigid body.
 struct ErrorEstimate {
-    BodyHandle body{};
-    std::string name;  // name of the body
+    BodyHandle body{};  // the body
+    std::string name;   // name of the body
     // Error of the stress of the tetrahedra, due to the mesh: energy norm of the error over that of the stress. This
     // and the next three values are those at the sample with the largest elastic energy of the body.
     Real mesh = not_estimated;

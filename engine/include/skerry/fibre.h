@@ -22,16 +22,17 @@ struct FibreSettings {
     std::vector<Index> tetrahedra{};
     // Directions in the mesh, of any length except zero: one for all tetrahedra, or one for each of them.
     std::vector<Vec3> direction{Vec3::UnitX()};
-    Real stiffness = 0;     // k_1 >= 0; near the rest length a fibre has Young's modulus 4 k_1 [Pa]
-    Real exponent = 0;      // k_2 >= 0
+    // Constant k_1 of the energy, >= 0. Near the rest length, fibres have Young's modulus 4 k_1 [Pa].
+    Real stiffness = 0;
+    Real exponent = 0;      // constant k_2 of the energy, >= 0
     TimeTable tension = 0;  // active tension >= 0: force along the fibres per area of the rest shape [Pa]
 };
 
 /// Present state of a family of fibres.
 struct FibreState {
-    BodyHandle body{};
-    Real tension = 0;  // present active tension [Pa]
-    Real energy = 0;   // energy of the stretch [J]
+    BodyHandle body{};  // body of the fibres
+    Real tension = 0;   // present active tension [Pa]
+    Real energy = 0;    // energy of the stretch [J]
     // Numbers of the tetrahedra with fibres, and a value for each of them:
     std::vector<Index> tetrahedra{};
     std::vector<Real> stretch{};  // present length of fibres over their length at rest

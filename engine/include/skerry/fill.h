@@ -16,7 +16,7 @@ namespace skerry::mesh {
 
 /// Limits of one run of a mesher.
 struct FillLimits {
-    Real seconds = 300;  // [s]
+    Real seconds = 300;  // wall time [s]
     Real bytes = 8e9;    // memory of the mesher and the processes that it started [bytes]
 };
 

@@ -18,7 +18,7 @@ namespace skerry {
 /// Forces on a body or a collider, summed over all steps of the last call of advance. A step that needed several
 /// attempts counts once.
 struct ForceReport {
-    Vec3 impulse = Vec3::Zero();  // [N s]
+    Vec3 impulse = Vec3::Zero();  // sum of the impulses on the object [N s]
     // Sum of the moments of the impulses about `moment_point` [N m s]. Each impulse acts at its contact point at the
     // start of the step.
     Vec3 moment_impulse = Vec3::Zero();
@@ -52,13 +52,12 @@ private:
     }
 };
 
-/// Forces between two partners: two bodies, a body and a collider, or a body that touches itself. `on_first` is the
-/// force that the second partner exerts on the first.
+/// Forces between two partners: two bodies, a body and a collider, or a body that touches itself.
 struct PairForces {
-    BodyHandle first{};
+    BodyHandle first{};         // the body on which the forces act
     BodyHandle second{};        // the second body; a stale handle if the second partner is a collider
     ColliderHandle collider{};  // the collider; a stale handle if the second partner is a body
-    ForceReport on_first;
+    ForceReport on_first;       // forces that the second partner exerts on the first
 };
 
 /// A view of the measured forces of a world. It is valid until the world is moved or destroyed. Contacts of

@@ -48,7 +48,7 @@ struct JointPassive {
 struct JointMimic {
     JointHandle leader{};  // another hinge or slider, which must not mimic this joint, directly or through others
     Real ratio = 1;        // not 0; [m/rad] or [rad/m] between a slider and a hinge
-    Real offset = 0;       // [rad or m]
+    Real offset = 0;       // coordinate of this joint if that of the leader is 0 [rad or m]
 
     bool operator==(const JointMimic&) const = default;
 };
@@ -62,8 +62,8 @@ struct JointLimits {
 /// joint measures the motion of the first body relative to the second. For a hinge it is the angle about the axis,
 /// counting full revolutions [rad]. For a slider it is the displacement along the axis [m].
 struct JointSettings {
-    JointKind kind = JointKind::ball;
-    BodyHandle first{};  // handle of a rigid body
+    JointKind kind = JointKind::ball;  // relative motion that the joint permits
+    BodyHandle first{};                // handle of a rigid body
     // another rigid body; if it is not given, the first body is joined to the world
     std::optional<BodyHandle> second{};
     Vec3 point = Vec3::Zero();             // position of the joint in the world [m]
@@ -78,15 +78,15 @@ struct JointSettings {
 /// State of a joint. Force and moment are those of the last step. They act on the first body and are given in world
 /// axes.
 struct JointState {
-    JointKind kind = JointKind::ball;
-    BodyHandle first{};
-    std::optional<BodyHandle> second{};
-    Vec3 point = Vec3::Zero();   // point of the joint on the first body, in world coordinates [m]
-    Vec3 axis = {0, 0, 1};       // axis of the joint on the second body, in world coordinates
-    Real coordinate = 0;         // [rad or m]
-    Real speed = 0;              // [rad/s or m/s]
-    Vec3 force = Vec3::Zero();   // force acting at `point` [N]
-    Vec3 moment = Vec3::Zero();  // [N m]
+    JointKind kind = JointKind::ball;    // relative motion that the joint permits
+    BodyHandle first{};                  // the first body
+    std::optional<BodyHandle> second{};  // the second body; missing if the first is joined to the world
+    Vec3 point = Vec3::Zero();           // point of the joint on the first body, in world coordinates [m]
+    Vec3 axis = {0, 0, 1};               // axis of the joint on the second body, in world coordinates
+    Real coordinate = 0;                 // present coordinate, see JointSettings [rad or m]
+    Real speed = 0;                      // rate of the coordinate [rad/s or m/s]
+    Vec3 force = Vec3::Zero();           // force acting at `point` [N]
+    Vec3 moment = Vec3::Zero();          // [N m]
     // Parts of the moment (hinge) or force (slider) along the axis: of the motor, of spring, damper and friction
     // together, and of the limits [N m or N].
     Real motor = 0, passive = 0, limit = 0;
@@ -125,7 +125,7 @@ public:
     /// Makes a hinge or a slider mimic another joint, or ends this if no mimic is given. A deviation is corrected at
     /// the bounded speed that set_limits describes. Removing the leader ends the mimic.
     void set_mimic(JointHandle joint, const std::optional<JointMimic>& mimic);
-    /// Return the present settings.
+    /// The leader that a joint mimics, and its ratio; empty if there is none.
     std::optional<JointMimic> mimic(JointHandle joint) const;
     /// The motor of a joint; empty if it has none.
     std::optional<JointMotor> motor(JointHandle joint) const;

@@ -15,13 +15,10 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-// Every load is multiplied by its `scale`, which may change over time. A step uses the mean of the scale in the time in
-// which forces act, so that the impulses of all steps add up to the integral of the force over time.
-
 /// A force on some nodes of a body, for example on the tip of a beam. The nodes share the force in proportion to the
 /// masses that they have when the load is added.
 struct ForceLoad {
-    BodyHandle body{};
+    BodyHandle body{};           // body of the nodes
     std::vector<Index> nodes{};  // numbers in the mesh of the body, at least one, each at most once
     Vec3 force = Vec3::Zero();   // total force on all nodes, in world axes [N]
     TimeTable scale = 1;         // factor over time
@@ -30,7 +27,7 @@ struct ForceLoad {
 /// A traction on some surface faces of a body. Its direction is fixed in the world. The nodes of a face share its force
 /// equally.
 struct TractionLoad {
-    BodyHandle body{};
+    BodyHandle body{};  // body of the faces
     // Faces as World::surface(body) lists them: numbers of nodes in any order; at least one face, each at most once.
     std::vector<std::array<Index, 3>> faces{};
     Vec3 traction = Vec3::Zero();         // force per area, in world axes [Pa]
@@ -58,7 +55,7 @@ struct GravityScale {
 /// are not longer than 1/rate.
 struct DragField {
     std::optional<BodyHandle> body{};  // if it is not given, the field acts on all bodies
-    Real rate = 0;                     // > 0 [1/s]
+    Real rate = 0;                     // force per mass and relative velocity, > 0 [1/s]
     Vec3 wind = Vec3::Zero();          // velocity of the wind [m/s]
     TimeTable scale = 1;               // factor of `wind`
 };
@@ -68,7 +65,7 @@ using AnyLoad = std::variant<ForceLoad, TractionLoad, AccelerationField, Gravity
 
 /// State of a load at the present time.
 struct LoadState {
-    LoadKind kind = LoadKind::force;
+    LoadKind kind = LoadKind::force;   // force that the load exerts
     std::optional<BodyHandle> body{};  // missing if the load acts on all bodies
     // Value without the scale: force [N], traction [Pa], acceleration [m/s^2] or velocity of the wind [m/s]. Zero for a
     // factor of the weight.
@@ -81,7 +78,9 @@ struct LoadState {
 
 extern template class __attribute__((visibility("default"))) ObjectView<LoadHandle>;
 
-/// A view of the loads of a world. Loads act on explicit, implicit and rigid bodies. Forces of World::set_loads are
+/// A view of the loads of a world. Loads act on explicit, implicit and rigid bodies. Every load is multiplied by its
+/// `scale`, which may change over time. A step uses the mean of the scale over the time in which its forces act, so
+/// that the impulses of all steps add up to the integral of the force over time. Forces of World::set_loads are
 /// independent of these loads.
 class Loads : public ObjectView<LoadHandle> {
 public:

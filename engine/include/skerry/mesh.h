@@ -182,7 +182,7 @@ struct MeshReport {
     // Numbers of nodes, tetrahedra, triangles of the surface, and parts without a common node.
     std::size_t nodes = 0, tetrahedra = 0, boundary_triangles = 0, components = 0;
     Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // bounding box [m]
-    Real volume = 0;                                  // [m^3]
+    Real volume = 0;                                  // volume of all tetrahedra [m^3]
     Real mean_edge = 0, min_edge = 0, max_edge = 0;   // edge lengths [m]
     Real min_altitude = 0;                            // smallest altitude of a tetrahedron [m]
     // Quality 12 (3 V)^(2/3) / (sum of squared edge lengths) of a tetrahedron of volume V: 1 for a regular tetrahedron,

@@ -35,7 +35,7 @@ public:
     HandleType find(const std::string& name) const;
 
 protected:
-    World* world_;
+    World* world_;  // the viewed world
 };
 
 }  // namespace skerry

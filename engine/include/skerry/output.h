@@ -70,7 +70,12 @@ private:
 };
 
 /// Quantity that the colours of a film show.
-enum class FilmColor { none, stress, speed, contact };
+enum class FilmColor {
+    none,     // no quantity: each body has its own colour
+    stress,   // von Mises stress of the nodes [Pa]
+    speed,    // speed of the nodes [m/s]
+    contact,  // contact pressure [Pa]
+};
 template <>
 struct EnumNames<FilmColor> {
     static constexpr std::array<std::pair<FilmColor, std::string_view>, 4> table{{

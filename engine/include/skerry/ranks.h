@@ -16,9 +16,12 @@ namespace skerry {
 /// The processes that simulate one world together. Each process is a rank.
 class Ranks;
 
-/// Rule that chooses the ranks that own bodies: equal shares of the cost along a space-filling curve, which keeps
-/// neighbours together; in turn; or at random. The results are the same for all rules.
-enum class OwnerMap : std::uint8_t { curve, round_robin, random };
+/// Rule that chooses the ranks that own bodies. The results are the same for all rules.
+enum class OwnerMap : std::uint8_t {
+    curve,        // equal shares of the cost along the Hilbert curve, which keeps neighbours together
+    round_robin,  // in turn: body by body, with connected bodies as one
+    random,       // at random, by RankSettings::seed
+};
 template <>
 struct EnumNames<OwnerMap> {
     static constexpr std::array<std::pair<OwnerMap, std::string_view>, 3> table{{
@@ -28,8 +31,9 @@ struct EnumNames<OwnerMap> {
     }};
 };
 
+/// Settings of distribute().
 struct RankSettings {
-    OwnerMap map = OwnerMap::curve;
+    OwnerMap map = OwnerMap::curve;  // rule that chooses the owners
     // The bodies get new owners if the greatest cost of a rank exceeds the mean cost by this factor. Only for
     // OwnerMap::curve.
     double most_imbalance = 1.2;

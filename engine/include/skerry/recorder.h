@@ -23,7 +23,7 @@ namespace skerry {
 /// Records position, displacement and velocity of a material point of a body. The point is the weighted mean of up to
 /// four nodes. The weights must sum to one.
 struct PointProbe {
-    BodyHandle body{};
+    BodyHandle body{};             // body of the point
     std::array<Index, 4> node{};   // numbers of the nodes within the body
     std::array<Real, 4> weight{};  // weight of each of these nodes
     // Position from which the displacement is measured [m]. Default: the position when the recorder is made.
@@ -36,71 +36,72 @@ PointProbe probe_point(const World& world, BodyHandle body, const Vec3& point);
 
 /// Records position, displacement and velocity of the centre of mass of a body.
 struct BodyProbe {
-    BodyHandle body{};
+    BodyHandle body{};             // the recorded body
     std::optional<Vec3> origin{};  // see PointProbe::origin
 };
 /// Records the contact forces on a body, summed over all contacts, or over the contacts with one other body or
-/// collider.
+/// collider: impulse, mean force and moment, largest force of a step, pressing force, friction force, and number of
+/// contacts (ForceReport).
 struct BodyForceProbe {
-    BodyHandle body{};
+    BodyHandle body{};                                             // body on which the forces act
     std::optional<std::variant<BodyHandle, ColliderHandle>> by{};  // the other object; default: all objects
 };
-/// Records the contact forces on a collider, summed over all contacts, or over the contacts with one body.
+/// Records the contact forces on a collider, summed over all contacts, or over the contacts with one body. The columns
+/// are those of a BodyForceProbe.
 struct ColliderForceProbe {
-    ColliderHandle collider{};
+    ColliderHandle collider{};       // collider on which the forces act
     std::optional<BodyHandle> by{};  // the touching body; default: all bodies
 };
-/// Records the force of an attachment on its body.
+/// Records the force of an attachment on its body: impulse, mean force and moment, and largest force of a step.
 struct ReactionProbe {
-    AttachmentHandle attachment{};
+    AttachmentHandle attachment{};  // attachment that exerts the force
 };
 /// Records force and moment of a joint at the last step, and for a hinge or slider also its coordinate, its speed, and
 /// the parts of the moment or force that its motor and its limits exert (JointState).
 struct JointProbe {
-    JointHandle joint{};
+    JointHandle joint{};  // joint of any kind
 };
-/// Records force, moment and error of a tie at the last step (TieState).
+/// Records force, moment and error of a tie at the last step, and the number of nodes that have broken off (TieState).
 struct TieProbe {
-    TieHandle tie{};
+    TieHandle tie{};  // tie of any kind
 };
 /// Records the tensions, the length, the rate, the work and the friction loss of a cable (CableState).
 struct CableProbe {
-    CableHandle cable{};
+    CableHandle cable{};  // the recorded cable
 };
 /// Records pressure, volume, gas mass and energy of a cavity, and its force on the body (CavityState).
 struct CavityProbe {
-    CavityHandle cavity{};
+    CavityHandle cavity{};  // cavity with any filling; without gas the mass is 0
 };
 /// Records length, rate, force and energy of a spring (SpringState).
 struct SpringProbe {
-    SpringHandle spring{};
+    SpringHandle spring{};  // the recorded spring
 };
 /// Records the kinetic, elastic, potential and dissipated energy of the world.
 struct EnergyProbe {};
-/// Records the largest von Mises stress at the given nodes of a body, or at all its nodes if none is given. `nodes` are
-/// numbers within the body.
+/// Records the largest von Mises stress, the largest and the smallest principal stress at some nodes of a body [Pa].
 struct StressProbe {
-    BodyHandle body{};
+    BodyHandle body{};           // body of the nodes
     std::vector<Index> nodes{};  // numbers within the body; empty: all nodes
 };
 /// Records the smallest ratio of present volume to rest volume among the tetrahedra of a body. A negative ratio means
 /// that a tetrahedron is inverted.
 struct VolumeProbe {
-    BodyHandle body{};
+    BodyHandle body{};  // body of the tetrahedra
 };
 /// Records the pose of a body, a collider or an attachment: position and rotation vector (World::pose).
 struct PoseProbe {
-    std::variant<BodyHandle, ColliderHandle, AttachmentHandle> object{};
+    std::variant<BodyHandle, ColliderHandle, AttachmentHandle> object{};  // the recorded object
 };
 /// Records velocity and angular velocity. For a body they are the velocity of the centre of mass and the angular
 /// velocity of the rigid motion with the same angular momentum. For a collider or an attachment they are those of the
 /// last step, for the origin of its pose.
 struct VelocityProbe {
-    std::variant<BodyHandle, ColliderHandle, AttachmentHandle> object{};
+    std::variant<BodyHandle, ColliderHandle, AttachmentHandle> object{};  // the recorded object
 };
-/// Records the positions of all nodes of a body.
+/// Records the positions of all nodes of a body: three columns for each node.
 struct NodesProbe {
-    BodyHandle body{};
+    BodyHandle body{};  // body of the nodes
 };
 
 /// A named quantity that a Recorder samples.

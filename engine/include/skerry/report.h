@@ -17,25 +17,35 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Result of a call of World::advance. ok: all steps were taken. stopped: the caller ended the call between two steps.
-/// With the other values a step was refused. not_finite: a velocity would not be finite. too_fast: a body would deform
-/// too far in one step. too_far: a body is so far from the origin that its positions have too few digits. too_stiff:
-/// the stable step is too short to advance the time. unsolved: Newton's method for large strain did not converge.
-enum class StepStatus { ok, not_finite, too_fast, too_far, too_stiff, unsolved, stopped };
-/// Motion of a contact in the last step. open: the objects do not press on each other.
-enum class ContactMotion { open, stick, slide };
+/// Result of a call of World::advance. With all values but `ok` and `stopped`, a step was refused.
+enum class StepStatus {
+    ok,          // all steps were taken
+    not_finite,  // a velocity would not be finite
+    too_fast,    // a body would deform too far in one step, even in 1/1024 of the stable step
+    too_far,     // a body is so far from the origin that its positions have too few digits
+    too_stiff,   // the stable step is too short to advance the time
+    unsolved,    // Newton's method for large strain did not converge
+    stopped,     // the caller ended the call between two steps
+};
+/// Motion of a contact in the last step.
+enum class ContactMotion {
+    open,   // the objects do not press on each other
+    stick,  // the objects press on each other without sliding
+    slide,  // the objects press on each other and slide
+};
 /// The condition that limits the length of a step (docs/step_length.md). The speed limit is computed before a step.
 /// Inversions, crossings and sudden impacts are found during an attempt at a step, which is then discarded. After such
 /// an attempt, each step is at most a fifth longer than the last.
-/// - setting: step_size of the settings.
-/// - rest: the stable step of a body in its rest shape.
-/// - strain: the stable step of a deformed body. Also an implicit body of large strain for which Newton's method fails
-///   at longer steps.
-/// - speed: the deformation gradient of an element would change by more than 0.2 in a step (Frobenius norm), or a body
-///   with a joint would rotate by more than 0.1 rad.
-/// - inversion: an element would turn inside out.
-/// - crossing: surfaces would pass through each other.
-enum class StepLimit { setting, rest, strain, speed, inversion, crossing };
+enum class StepLimit {
+    setting,  // Settings::step_size
+    rest,     // the stable step of a body in its rest shape
+    strain,   // the stable step of a deformed body, or Newton's method failed for a longer step of an implicit body
+    // The deformation gradient of an element would change by more than 0.2 in a step (Frobenius norm), or a body with a
+    // joint would rotate by more than 0.1 rad.
+    speed,
+    inversion,  // an element would turn inside out
+    crossing,   // surfaces would pass through each other
+};
 
 template <>
 struct EnumNames<StepLimit> {
@@ -97,10 +107,10 @@ struct StageReport {
 
 /// Energies of a world.
 struct Energy {
-    Real kinetic = 0;     // [J]
-    Real elastic = 0;     // [J]
+    Real kinetic = 0;     // energy of the motion of all bodies [J]
+    Real elastic = 0;     // energy stored by deformation [J]
     Real potential = 0;   // energy of the weight, relative to the origin [J]
-    Real dissipated = 0;  // by contacts, damping, material losses and plastic flow since the start [J]
+    Real dissipated = 0;  // energy lost since the start to contacts, damping, material losses and plastic flow [J]
 };
 
 /// Report of one call of `advance`. Filling the report allocates no memory unless an error is reported.
@@ -115,7 +125,7 @@ public:
     /// first element that turned inside out. Empty if there is neither such a body nor such an element.
     std::string warning() const;
 
-    StepStatus status = StepStatus::ok;  // kind of the failure
+    StepStatus status = StepStatus::ok;  // result of the call
     BodyHandle body;                     // the body that caused the failure, if not ok
     Index node = -1;                     // number of the node within the body, if a node caused the failure
     // Number of the element within the body, if an element caused the failure; `node` is one of its corners
@@ -124,7 +134,7 @@ public:
     // too_far: rounding error of positions over mean edge length. too_stiff: stable step [s].
     Real value = 0;
     Real step_size = 0;  // length of the last step [s]
-    int steps = 0;       // committed steps
+    int steps = 0;       // number of committed steps
     // Number of attempts at a step that were repeated with a shorter step. Reasons: a body was too fast, surfaces
     // crossed, an element turned inside out, or Newton's method failed.
     int shortened = 0;
@@ -168,14 +178,14 @@ struct StepLimitReport {
 };
 
 /// The reason why BodyDynamics::automatic made a body explicit or implicit.
-/// - given: no choice was made, because the caller gave the kind.
-/// - self_contact: explicit, because implicit bodies have no self-contact.
-/// - losses: explicit, because a material of the body sets a loss factor above 0.
-/// - plasticity: explicit, because a material of the body yields.
-/// - strain: explicit, because the body may deform by more than the limit for implicit bodies.
-/// - cost: chosen by the predicted computing times. The body is implicit if implicit steps cost less than half as much
-///   as explicit steps.
-enum class DynamicsReason : std::uint8_t { given, self_contact, losses, plasticity, strain, cost };
+enum class DynamicsReason : std::uint8_t {
+    given,         // no choice was made, because the caller gave the kind
+    self_contact,  // explicit, because implicit bodies have no self-contact
+    losses,        // explicit, because a material of the body sets a loss factor above 0
+    plasticity,    // explicit, because a material of the body yields
+    strain,        // explicit, because the body may deform by more than the limit for implicit bodies
+    cost,          // implicit if implicit steps are predicted to cost less than half as much as explicit ones
+};
 template <>
 struct EnumNames<DynamicsReason> {
     static constexpr std::array<std::pair<DynamicsReason, std::string_view>, 6> table{{
@@ -190,9 +200,9 @@ struct EnumNames<DynamicsReason> {
 
 /// The estimate behind the choice of BodyDynamics::automatic (docs/methods/implicit_bodies.md 6).
 struct DynamicsEstimate {
-    DynamicsReason reason = DynamicsReason::given;
-    Real explicit_step = 0;  // step length of the world if the body is explicit [s]
-    Real implicit_step = 0;  // step length of the world if the body is implicit [s]
+    DynamicsReason reason = DynamicsReason::given;  // why this kind was chosen
+    Real explicit_step = 0;                         // step length of the world if the body is explicit [s]
+    Real implicit_step = 0;                         // step length of the world if the body is implicit [s]
     // Step length for the deformation of the body if it is implicit [s]: the larger of the member implicit_step and
     // Settings::implicit_step.
     Real deforming_step = 0;
@@ -208,10 +218,10 @@ struct DynamicsEstimate {
 
 /// The kind that was chosen for a body added as `automatic`, and the estimate behind the choice.
 struct DynamicsChoice {
-    BodyHandle body{};
-    std::string name;
+    BodyHandle body{};                                       // the body that was added as `automatic`
+    std::string name;                                        // name of the body
     BodyDynamics dynamics = BodyDynamics::explicit_elastic;  // the kind that was chosen
-    DynamicsEstimate estimate{};
+    DynamicsEstimate estimate{};                             // predicted steps and costs of both kinds
 
     /// Returns a text such as "implicit: 0.8 s of CPU time per simulated second, in steps of 0.00833 s; explicit: 9 s
     /// of CPU time per simulated second, in steps of 1.4e-05 s; vibrations above 9.5 Hz are damped".
@@ -221,7 +231,7 @@ struct DynamicsChoice {
 /// Two bodies, or a body and a collider, that overlapped when the first step began after one of them was added or moved
 /// by the user. Surfaces that only touch, or are closer than the contact distance, do not overlap.
 struct StartOverlap {
-    BodyHandle first{};
+    BodyHandle first{};                        // the body that `depth` and `direction` refer to
     BodyHandle second{};                       // the other body; a stale handle if the partner is a collider
     ColliderHandle collider{};                 // the collider; a stale handle if both partners are bodies
     std::string first_name, second_name;       // names of the two partners when the overlap was found
@@ -238,16 +248,16 @@ struct StartOverlap {
 
 /// A body that was moved before its first step, so that it overlaps no other object.
 struct StartMove {
-    BodyHandle body{};
-    std::string name;
-    Vec3 translation = Vec3::Zero();  // [m]
+    BodyHandle body{};                // the moved body
+    std::string name;                 // name of the body when it was moved
+    Vec3 translation = Vec3::Zero();  // displacement of all its nodes [m]
 };
 
 /// A deformable body whose surface was found to cross itself. Surfaces are checked every 256 steps (every 128 steps if
 /// there are clusters) and by World::report.
 struct SelfCrossing {
-    BodyHandle body{};
-    std::string name;  // name of the body when the crossing was found
+    BodyHandle body{};  // the body whose surface crosses itself
+    std::string name;   // name of the body when the crossing was found
     // true if the body's setting self_contact was on when the crossing was last found
     bool self_contact = false;
     Real first_time = 0, last_time = 0;  // times of the first and of the last check that found a crossing [s]
@@ -304,7 +314,7 @@ inline constexpr Real largest_trusted_error = 0.5;
 
 /// The counters of the run, and measures of the present state. Computing these measures takes a pass over all tables.
 struct WorldReport : RunCounters {
-    Real time = 0;                                                   // [s]
+    Real time = 0;                                                   // simulated time [s]
     std::size_t asleep = 0;                                          // number of bodies that are asleep now
     std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;  // numbers of objects now
     // Stable step of the stiffest body now [s]. If no body limits the step: the step that advance() takes.
@@ -340,7 +350,7 @@ struct WorldReport : RunCounters {
     Real held_penetration = 0;
     std::string held_body, held_in;        // see held_penetration
     Energy energy;                         // present energies of the world
-    Vec3 momentum = Vec3::Zero();          // [kg m/s]
+    Vec3 momentum = Vec3::Zero();          // momentum of all bodies [kg m/s]
     Vec3 angular_momentum = Vec3::Zero();  // angular momentum about the origin [kg m^2/s]
     // Errors of the balances of energy and momentum: changes that loads, weight, colliders and losses do not explain.
     // These balances are checked every 256 steps (every 128 steps if there are clusters) and now; the largest error

@@ -18,31 +18,31 @@ namespace skerry {
 /// Moves a collider or an attachment, so that it reaches a pose at the end of the interval (World::move_to). Numbers:
 /// position [m] and rotation vector [rad].
 struct PoseControl {
-    std::variant<ColliderHandle, AttachmentHandle> object{};
+    std::variant<ColliderHandle, AttachmentHandle> object{};  // the moved object
 };
 /// Moves a collider or an attachment at constant velocities (World::set_velocity). Numbers: velocity [m/s] and angular
 /// velocity [rad/s].
 struct VelocityControl {
-    std::variant<ColliderHandle, AttachmentHandle> object{};
+    std::variant<ColliderHandle, AttachmentHandle> object{};  // the moved object
 };
 /// Sets the target speed of the motor of a hinge or slider. The joint must have a motor, which keeps its `strength`.
 /// Numbers: the speed [rad/s or m/s].
 struct MotorSpeedControl {
-    JointHandle joint{};
+    JointHandle joint{};  // joint with the motor
 };
 /// Sets the target coordinate of the motor of a hinge or slider. The joint must have a motor, which keeps its
 /// `strength` and `fastest`. Numbers: the coordinate [rad or m].
 struct MotorPositionControl {
-    JointHandle joint{};
+    JointHandle joint{};  // joint with the motor
 };
 /// Sets the external forces on all nodes of a body (World::set_loads). Numbers: three per node [N].
 struct NodeForceControl {
-    BodyHandle body{};
+    BodyHandle body{};  // body of the nodes
 };
 /// Sets an external force on a body. The force is distributed over the nodes in proportion to their masses, so that it
 /// acts at the centre of mass. Numbers: three [N].
 struct BodyForceControl {
-    BodyHandle body{};
+    BodyHandle body{};  // body on which the force acts
 };
 /// Sets the acceleration of gravity. Numbers: three [m/s^2].
 struct GravityControl {};
@@ -50,6 +50,7 @@ struct GravityControl {};
 /// whichever is prescribed; pressure [Pa], inflow [kg/s] or liquid volume [m^3] of a cavity; pressure of the reservoir
 /// of a pipe [Pa]; rest length of a spring [m]; scale of a load; active tension of fibres [Pa].
 struct ValueControl {
+    // object whose value is set
     std::variant<CableHandle, CavityHandle, PipeHandle, SpringHandle, LoadHandle, FibreHandle> object{};
 };
 

@@ -16,16 +16,15 @@ namespace skerry {
 
 /// Values with which the caller replaces settings of a scene file.
 struct SceneOverrides {
-    // Values of the members of Settings with the same names.
-    std::optional<int> threads{};
-    std::optional<Backend> backend{};
-    std::optional<ContactRegions> contact_regions{};
-    std::optional<SolverMethod> method{};
-    std::optional<Friction> friction{};
-    std::optional<Real> tolerance{};
-    std::optional<int> max_iterations{};
-    std::optional<StartOverlaps> start_overlaps{};
-    std::optional<Real> step_size{};
+    std::optional<int> threads{};                     // Settings::threads
+    std::optional<Backend> backend{};                 // Settings::backend
+    std::optional<ContactRegions> contact_regions{};  // Settings::contact_regions
+    std::optional<SolverMethod> method{};             // Settings::method
+    std::optional<Friction> friction{};               // Settings::friction
+    std::optional<Real> tolerance{};                  // Settings::tolerance
+    std::optional<int> max_iterations{};              // Settings::max_iterations
+    std::optional<StartOverlaps> start_overlaps{};    // Settings::start_overlaps
+    std::optional<Real> step_size{};                  // Settings::step_size [s]
     std::optional<ElementKind> element{};  // element kind for all bodies, in place of the kinds in the scene file
     // Assignments PLACE=VALUE, such as bodies[0].position=[0,0,1]. They are applied to the scene file itself, not to
     // the files that it includes, in the given order and before all members above. PLACE has the form used in error
@@ -36,15 +35,15 @@ struct SceneOverrides {
 
 /// A set of nodes of a body whose contacts a run reports, such as the feet of a table.
 struct Probe {
-    std::string name;
-    BodyHandle body;
+    std::string name;          // name in the report
+    BodyHandle body;           // body of the nodes
     std::vector<Index> nodes;  // numbers of the nodes within the body
 };
 
 /// A scene file's content, with the world already built.
 struct Scene {
-    std::string name;
-    std::string description;
+    std::string name;                     // key `name` of the file; by default the name of the file
+    std::string description;              // key `description` of the file
     std::vector<std::string> materials;   // names of the materials, in the order added
     Real seconds = 2;                     // default duration of a run [s]
     Real frame_step = 1.0 / 60;           // time between two frames of output [s]
@@ -54,7 +53,7 @@ struct Scene {
     // Time between two samples of `probes`, or between two recorded rows of `recorded` [s].
     Real probe_step = 1.0 / 60;
     std::vector<Slider> sliders{};     // values that a user of the live view changes
-    std::vector<std::string> notes{};  // corrections and doubts of the reading, for example of filled surfaces
+    std::vector<std::string> notes{};  // corrections and warnings of the reading, for example of filled surfaces
 };
 
 /// Reads a scene file and builds its world. Relative paths of mesh files start at the folder of the scene file. Throws

@@ -21,12 +21,14 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-// Loss factor of explicit bodies whose material has none, and upper bounds of the properties of a material.
-inline constexpr Real default_loss_factor = 0.05, largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
+inline constexpr Real default_loss_factor = 0.05;  // loss factor of explicit bodies whose material gives none
+inline constexpr Real largest_loss_factor = 0.3;   // upper bound of MaterialSettings::loss_factor
+inline constexpr Real largest_bulk_viscosity = 1;  // upper bound of MaterialSettings::bulk_viscosity
 
-/// Term of the law `ogden`: share of the shear modulus, from 0 (not used) to 1, and exponent of the stretches.
+/// Term of the law `ogden` (Ogden 1972; docs/methods/elasticity.md 2.5).
 struct StretchTerm {
-    Real share = 0, exponent = 2;
+    Real share = 0;     // share of the shear modulus, from 0 (the term is not used) to 1
+    Real exponent = 2;  // exponent of the stretches; its magnitude is from 0.1 to 100
 
     bool operator==(const StretchTerm&) const = default;
 };
@@ -41,13 +43,13 @@ struct Plasticity {
 
 /// Elasticity, losses, friction and plasticity of a material.
 struct MaterialSettings {
-    Real young_modulus = 1e5;  // > 0 [Pa]
+    Real young_modulus = 1e5;  // Young's modulus at small strain, > 0 [Pa]
     Real poisson_ratio = 0.4;  // Poisson's ratio, > -1 and < 0.5
-    Real density = 1000;       // > 0 [kg/m^3]
+    Real density = 1000;       // mass per volume of the rest shape, > 0 [kg/m^3]
     // Coulomb's friction coefficient, >= 0. It is the default of static_friction and dynamic_friction.
     Real friction = 0.5;
-    std::optional<Real> static_friction{};   // >= dynamic_friction
-    std::optional<Real> dynamic_friction{};  // >= 0
+    std::optional<Real> static_friction{};   // friction coefficient of sticking contacts, >= dynamic_friction
+    std::optional<Real> dynamic_friction{};  // friction coefficient of sliding contacts, >= 0
     // Rebound speed over impact speed of a surface point (not of the whole body), from 0 to 1.
     Real restitution = 0;
     // Decay rate of velocities relative to the rigid motion of the body, >= 0 [1/s]. Momentum is conserved.
@@ -71,17 +73,21 @@ struct MaterialSettings {
 };
 
 /// Kind of motion of a body. Rigid and implicit bodies do not limit the step and have no self-contact.
-/// - explicit_elastic: the body deforms, and the step must be stable for its stiffest element.
-/// - rigid: the body does not deform. It has the mass and the inertia of its mesh, or given ones. From its materials it
-///   uses only density, friction and restitution (docs/methods/rigid_bodies.md).
-/// - implicit_elastic: the body deforms by backward Euler (see Settings::theta), which is stable at any step length. It
-///   is meant for stiff bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by
-///   Newton's method (docs/methods/implicit_bodies.md).
-/// - automatic (default): the body becomes implicit if this more than halves the predicted cost and the expected strain
-///   is at most 2 %, otherwise explicit. The choice is made when the body is added, for the step length that the other
-///   bodies then allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a body that is added later
-///   requires short steps, an implicit body becomes explicit where this costs less, as by World::set_dynamics().
-enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid, implicit_elastic, automatic };
+enum class BodyDynamics : std::uint8_t {
+    explicit_elastic,  // the body deforms, and the step must be stable for its stiffest element
+    // The body does not deform. It has the mass and the inertia of its mesh, or given ones. From its materials it uses
+    // only density, friction and restitution (docs/methods/rigid_bodies.md).
+    rigid,
+    // The body deforms by backward Euler (see Settings::theta), which is stable at any step length. This suits stiff
+    // bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by Newton's method
+    // (docs/methods/implicit_bodies.md).
+    implicit_elastic,
+    // The body becomes implicit if this more than halves the predicted cost and the expected strain is at most 2 %,
+    // otherwise explicit. The choice is made when the body is added, for the step length that the other bodies then
+    // allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a body that is added later requires short
+    // steps, an implicit body becomes explicit where this costs less, as by World::set_dynamics().
+    automatic,
+};
 template <>
 struct EnumNames<BodyDynamics> {
     static constexpr std::array<std::pair<BodyDynamics, std::string_view>, 4> table{{
@@ -105,8 +111,8 @@ struct BodySettings {
     std::map<std::string, MaterialHandle> materials_of_sets{};
     Vec3 position = Vec3::Zero();          // [m]
     Vec3 rotation = Vec3::Zero();          // rotation axis times angle [rad]
-    Vec3 velocity = Vec3::Zero();          // [m/s]
-    Vec3 angular_velocity = Vec3::Zero();  // angular velocity about the centre of mass [rad/s]
+    Vec3 velocity = Vec3::Zero();          // initial velocity of the centre of mass [m/s]
+    Vec3 angular_velocity = Vec3::Zero();  // initial angular velocity about the centre of mass [rad/s]
     // contact distance, >= 0; default: 2 % of the mean edge length of the surface [m]
     std::optional<Real> contact_distance{};
     bool self_contact = false;                        // true: the body may touch itself
@@ -114,13 +120,12 @@ struct BodySettings {
     // Mass properties of a rigid body. If none are given, they follow from the shape and the densities. `mass` alone
     // scales the densities. `center_of_mass` and `inertia` require each other and `mass`. They are in the frame of the
     // mesh, and the inertia tensor is about the centre of mass.
-    std::optional<Real> mass{};            // > 0 [kg]
-    std::optional<Vec3> center_of_mass{};  // [m]
-    std::optional<Mat3> inertia{};         // symmetric and positive definite [kg m^2]
-    // Each object has a set of collision groups and a mask, both as bits. Two objects can touch only if each of the two
-    // masks contains a group of the other object.
+    std::optional<Real> mass{};            // mass of the body, > 0 [kg]
+    std::optional<Vec3> center_of_mass{};  // centre of mass in the frame of the mesh [m]
+    std::optional<Mat3> inertia{};         // inertia tensor, symmetric and positive definite [kg m^2]
+    // Groups of the body, as bits. Two objects can touch only if the mask of each contains a group of the other.
     std::uint32_t collision_group = 1;
-    std::uint32_t collision_mask = 0xffffffffu;
+    std::uint32_t collision_mask = 0xffffffffu;   // groups that the body can touch, as bits; default: all groups
     ElementKind element = ElementKind::smoothed;  // finite elements of a deformable body
     std::string name{};                           // name of the body in messages and output
 };
@@ -128,7 +133,7 @@ struct BodySettings {
 /// A half-space. The side that the normal points to is free.
 struct Plane {
     Vec3 normal = {0, 0, 1};    // normal vector, of any length except zero
-    Vec3 point = Vec3::Zero();  // [m]
+    Vec3 point = Vec3::Zero();  // a point of the plane [m]
 };
 /// A sphere around the origin of its frame.
 struct Sphere {
@@ -150,8 +155,8 @@ struct Cylinder {
 };
 /// An open cylindrical container. In its own frame the inner side of the floor lies at z = 0.
 struct Bucket {
-    Real radius = 0.5;      // inner [m]
-    Real height = 1;        // inner [m]
+    Real radius = 0.5;      // inner radius [m]
+    Real height = 1;        // inner height [m]
     Real thickness = 0.05;  // thickness of wall and floor [m]
 };
 /// The shape of a collider.
@@ -190,7 +195,7 @@ struct ColliderSettings {
     // Friction coefficient. If given, a contact uses the geometric mean of this value and the value of the body. If not
     // given, it uses the value of the body.
     std::optional<Real> friction{};
-    std::optional<Real> static_friction{}, dynamic_friction{};  // each by default `friction`
+    std::optional<Real> static_friction{}, dynamic_friction{};  // default of each: `friction`
     // Coefficient of restitution. If given, a contact uses the larger of this value and the value of the body. If not
     // given, it uses the value of the body.
     std::optional<Real> restitution{};

@@ -16,8 +16,9 @@ namespace skerry {
 /// A spring, a damper, or both in parallel, between two anchors. At least one anchor must be on a body. Stiffness and
 /// damping must not both be 0.
 struct SpringSettings {
-    Anchor first{}, second{};
-    Real stiffness = 0;                      // >= 0 [N/m]
+    Anchor first{};                          // one end
+    Anchor second{};                         // the other end
+    Real stiffness = 0;                      // force per elongation, >= 0 [N/m]
     Real damping = 0;                        // force per rate of the length, >= 0 [N s/m]
     std::optional<TimeTable> rest_length{};  // each value >= 0; default: the present length [m]
     SpringSide only = SpringSide::both;      // side on which the spring and its damper act
@@ -27,9 +28,9 @@ struct SpringSettings {
 /// Present state of a spring. Before the first step `force` is zero.
 struct SpringState {
     Anchor first{}, second{};  // at their present positions
-    Real length = 0;           // [m]
+    Real length = 0;           // distance of the anchors [m]
     Real rate = 0;             // rate of the length [m/s]
-    Real rest_length = 0;      // [m]
+    Real rest_length = 0;      // present rest length [m]
     Real force = 0;            // force in the last step; positive if it pulls the anchors together [N]
     Real energy = 0;           // elastic energy [J]
 };

@@ -30,12 +30,13 @@ struct StudyVariant {
     bool operator==(const StudyVariant&) const = default;
 };
 
-/// End of a run of a study.
-/// - ok: the run reached its end.
-/// - failed: a step was refused.
-/// - refused: the scene cannot be built with these settings.
-/// - left_out: the run was not made, because it did not fit into the budget or the scene cannot be changed so.
-enum class StudyRunStatus { ok, failed, refused, left_out };
+/// Outcome of a run of a study.
+enum class StudyRunStatus {
+    ok,       // the run reached its end
+    failed,   // a step was refused
+    refused,  // the scene cannot be built with these settings, or the run records other columns than the scene as it is
+    left_out,  // the run was not made: it did not fit into the budget, or the scene does not allow this change
+};
 template <>
 struct EnumNames<StudyRunStatus> {
     static constexpr std::array<std::pair<StudyRunStatus, std::string_view>, 4> table{{
@@ -48,50 +49,53 @@ struct EnumNames<StudyRunStatus> {
 
 /// A time series of a run.
 struct StudyColumn {
-    SeriesColumn what;
-    Real size = 0;  // diagonal of the bounding box of the body at the start, or of all bodies for other columns [m]
+    SeriesColumn what;  // probe, quantity and unit
+    Real size = 0;      // diagonal of the bounding box of the body at the start, or of all bodies for other columns [m]
     // False for a column that gets no error bar of its own, such as the place of one of many bodies.
     bool reported = true;
     bool is_statistic = false;   // true for a mean, least or largest value of all bodies, which chaos leaves meaningful
     std::vector<Real> values{};  // one per time; NaN if unknown
-    // For a column of a largest stress: number within the body, and position at the start [m], of the node that had the
-    // largest value of the run. Else no_index.
+    // For a column of a largest stress: number within the body of the node that had the largest value of the run. Else
+    // no_index.
     Index node = no_index;
-    Vec3 place = Vec3::Zero();
-    Real shape_error = 0;  // error of the values, relative, because flat faces stand for a curved surface
+    Vec3 place = Vec3::Zero();  // position of `node` at the start [m]
+    // Relative error of the values because flat faces approximate a curved surface.
+    Real shape_error = 0;
 };
 
 /// The faces on which a traction of a scene acts.
 struct StudyLoad {
-    std::string name;  // of the load
-    Real area = 0;     // of its faces at the start [m^2]
+    std::string name;  // name of the load
+    Real area = 0;     // area of its faces at the start [m^2]
     bool operator==(const StudyLoad&) const = default;
 };
 
 /// A run of a study. `skerry run SCENE` with the assignments as --set repeats the run, except for its perturbation.
 struct StudyRun {
-    StudyVariant variant;
-    std::vector<std::string> assignments;
-    StudyRunStatus status = StudyRunStatus::ok;
-    std::string message{};                // reason, unless the status is ok
-    std::vector<std::string> warnings{};  // reasons not to rely on the run
-    double cpu_seconds = 0;               // CPU time of the steps; predicted if the run was left out [s]
-    std::uint64_t steps = 0;
-    Integrator integrator = Integrator::symplectic_euler;
-    std::uint64_t state_hash = 0;  // hash of the state at the end
-    std::size_t tetrahedra = 0, max_contacts = 0;
-    std::vector<StudyLoad> loads{};
-    std::vector<Real> time{};  // simulated time of each row [s]
-    std::vector<StudyColumn> columns{};
+    StudyVariant variant;                        // difference to the scene as it is
+    std::vector<std::string> assignments;        // the same difference, as SceneOverrides::assignments
+    StudyRunStatus status = StudyRunStatus::ok;  // outcome
+    std::string message{};                       // reason, unless the status is ok
+    std::vector<std::string> warnings{};         // reasons not to rely on the run
+    double cpu_seconds = 0;                      // CPU time of the steps; predicted if the run was left out [s]
+    std::uint64_t steps = 0;                     // number of steps
+    Integrator integrator = Integrator::symplectic_euler;  // Settings::integrator
+    std::uint64_t state_hash = 0;                          // hash of the state at the end
+    std::size_t tetrahedra = 0;                            // number of tetrahedra of all bodies
+    std::size_t max_contacts = 0;                          // largest number of contacts in any step
+    std::vector<StudyLoad> loads{};                        // the tractions of the scene
+    std::vector<Real> time{};                              // simulated time of each row [s]
+    std::vector<StudyColumn> columns{};                    // the recorded time series
 };
 
 /// Reliability of a quantity.
-/// - known: the error bar follows from runs whose differences behave as the theory says.
-/// - irregular: the differences do not; the error bar is a multiple of the largest difference.
-/// - singular: the largest stress grows without limit as the mesh is refined; `error` is infinite.
-/// - chaotic: the value depends on differences of the start that nobody can measure; see StudyResult::agree_until.
-/// - not_measured: the runs that could show the error are missing.
-enum class StudyVerdict { known, irregular, singular, chaotic, not_measured };
+enum class StudyVerdict {
+    known,         // the error bar follows from runs whose differences behave as the theory says
+    irregular,     // the differences do not behave so; the error bar is a multiple of the largest difference
+    singular,      // the largest stress grows without limit as the mesh is refined; `error` is infinite
+    chaotic,       // differences of 1e-12 m at the start change the value; see StudyQuantity::agree_until
+    not_measured,  // the runs that could show the error are missing
+};
 template <>
 struct EnumNames<StudyVerdict> {
     static constexpr std::array<std::pair<StudyVerdict, std::string_view>, 5> table{{
@@ -111,18 +115,20 @@ struct StudyQuantity {
     // Value extrapolated to vanishing edges, steps and tolerance, and its error.
     Real best = std::numeric_limits<Real>::quiet_NaN(), best_error = std::numeric_limits<Real>::quiet_NaN();
     Real error = std::numeric_limits<Real>::quiet_NaN();  // half width of the error bar of `value`
-    // Parts of `error` from the mesh, the step length and the contact solver, and from differences of 1e-12 m at the
-    // start. A part is 0 if the study has no runs for it.
-    Real mesh = std::numeric_limits<Real>::quiet_NaN(), step = std::numeric_limits<Real>::quiet_NaN(),
-         contact = std::numeric_limits<Real>::quiet_NaN(), noise = std::numeric_limits<Real>::quiet_NaN();
+    // Part of `error` from the mesh. Each part is 0 if the study has no runs for it.
+    Real mesh = std::numeric_limits<Real>::quiet_NaN();
+    Real step = std::numeric_limits<Real>::quiet_NaN();     // part of `error` from the step length
+    Real contact = std::numeric_limits<Real>::quiet_NaN();  // part of `error` from the tolerance of the contact solver
+    Real noise = std::numeric_limits<Real>::quiet_NaN();    // part of `error` from differences of 1e-12 m at the start
     // Scale to which relative errors refer, for example the largest absolute value over the run.
     Real scale = std::numeric_limits<Real>::quiet_NaN();
-    // Observed orders of convergence and those of the theory.
-    Real mesh_order = std::numeric_limits<Real>::quiet_NaN(), step_order = std::numeric_limits<Real>::quiet_NaN(),
-         expected_mesh_order = std::numeric_limits<Real>::quiet_NaN(),
-         expected_step_order = std::numeric_limits<Real>::quiet_NaN();
-    StudyVerdict verdict = StudyVerdict::not_measured;
-    std::string sentence{};       // verdict in words
+    // Observed order of convergence: the part `mesh` is proportional to this power of the edge length.
+    Real mesh_order = std::numeric_limits<Real>::quiet_NaN();
+    Real step_order = std::numeric_limits<Real>::quiet_NaN();           // observed order in the step length
+    Real expected_mesh_order = std::numeric_limits<Real>::quiet_NaN();  // order in the edge length by theory
+    Real expected_step_order = std::numeric_limits<Real>::quiet_NaN();  // order in the step length by theory
+    StudyVerdict verdict = StudyVerdict::not_measured;                  // reliability
+    std::string sentence{};                                             // verdict in words
     Real agree_until = infinity;  // time until which perturbed runs agree on the column of the quantity [s]
     // Value of each run and half width of its error bar, in the order of StudyResult::runs; NaN if unknown.
     std::vector<Real> run_values{}, run_errors{};
@@ -130,25 +136,25 @@ struct StudyQuantity {
 
 /// The cheapest settings whose predicted errors are at most the wanted error.
 struct CheapestSettings {
-    StudyVariant variant;
+    StudyVariant variant;    // difference to the scene as it is
     bool reaches = false;    // false: no settings reach the wanted error, and these come nearest
     double error = 0;        // predicted largest relative error of all quantities with a known error
     double cpu_seconds = 0;  // predicted CPU time [s]
-    std::string sentence{};
+    std::string sentence{};  // the quantity with the largest error, or why no settings reach the wanted error
     std::vector<std::string> assignments{};  // for `skerry run --set`; filled in by study()
 };
 
 /// Error bars of the quantities of a scene, and the runs that they come from.
 struct StudyResult {
-    std::string scene;           // name of the scene
-    std::vector<StudyRun> runs;  // the first is the scene as it is
-    std::vector<StudyQuantity> quantities;
-    double wanted_error = 0;  // StudySettings::error
+    std::string scene;                      // name of the scene
+    std::vector<StudyRun> runs;             // the first is the scene as it is
+    std::vector<StudyQuantity> quantities;  // values and error bars of all reported columns
+    double wanted_error = 0;                // StudySettings::error
     // Half width of the error bar of each value of each column of the first run; empty for columns that are not
     // reported.
     std::vector<std::vector<Real>> bands;
-    std::optional<CheapestSettings> cheapest;
-    Real agree_until = infinity;         // time until which perturbed runs agree on all columns [s]
+    std::optional<CheapestSettings> cheapest;  // empty if no quantity has a known error
+    Real agree_until = infinity;               // time until which perturbed runs agree on all columns [s]
     Real growth_rate = 0;                // rate at which small differences of the start grow; 0 if they do not [1/s]
     std::vector<std::string> sentences;  // remarks on the study as a whole
     bool stopped = false;                // true if go_on ended the study; quantities are then empty
@@ -156,8 +162,10 @@ struct StudyResult {
 
 /// Progress of a study, for StudySettings::go_on.
 struct StudyProgress {
-    int runs_done = 0, runs_running = 0, runs = 0;
-    double share = 0;  // share of the predicted CPU time that is done, from 0 to 1
+    int runs_done = 0;     // number of completed runs
+    int runs_running = 0;  // number of runs that are being made
+    int runs = 0;          // number of planned runs
+    double share = 0;      // share of the predicted CPU time that is done, from 0 to 1
 };
 
 /// Extent of a study, and its stopping.

@@ -55,7 +55,7 @@ struct EnumNames<SurfaceFaultKind> {
 
 /// All faults of one kind. Triangles have their number in the given surface, counted from 0.
 struct SurfaceFault {
-    SurfaceFaultKind kind{};    // the kind
+    SurfaceFaultKind kind{};    // kind of the fault
     std::size_t count = 0;      // number of triangles, edges, nodes, pairs of triangles, holes, shells or places
     Index triangle = no_index;  // first triangle with the fault; for holes: a triangle at the longest hole
     Index other = no_index;     // second triangle of the first pair, or first triangle of the other shell
@@ -78,7 +78,7 @@ struct SurfaceShell {
 
 /// Result of mesh::check_surface: sizes, faults and shells of a surface, and the repaired surface.
 struct SurfaceReport {
-    std::size_t nodes = 0, triangles = 0;             // of the given surface
+    std::size_t nodes = 0, triangles = 0;             // numbers of nodes and triangles of the given surface
     Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // bounding box [m]
     Real tolerance = 0;                               // nodes up to this distance apart were merged; negative: none [m]
     std::size_t merged = 0;                           // number of nodes that were merged into another node

@@ -18,12 +18,13 @@ namespace skerry {
 /// ties the mean point of all nodes, weighted by their masses, and leaves its distance from a rigid object free: the
 /// impulse of the tie acts on the nodes in proportion to their masses.
 struct TieSettings {
-    TieKind kind = TieKind::weld;
-    BodyHandle body{};           // a deformable body
-    std::vector<Index> nodes{};  // numbers of its tied nodes in its mesh, each given once
-    // At most one of the two may be given. A tie of kind `slide` needs one of them, since the world has no surface.
+    TieKind kind = TieKind::weld;  // motion that the tie permits
+    BodyHandle body{};             // a deformable body
+    std::vector<Index> nodes{};    // numbers of its tied nodes in its mesh, each given once
+    // The other object, if it is a body. A tie of kind `slide` needs a body or a collider, since the world has no
+    // surface.
     std::optional<BodyHandle> to_body{};
-    std::optional<ColliderHandle> to_collider{};
+    std::optional<ColliderHandle> to_collider{};  // the other object, if it is a collider; not together with `to_body`
     // Force at which a node breaks off, > 0 [N]. It applies to each node: the node breaks off at the end of the first
     // step in which its force is greater. For a ball it is the force of the tie. By default, a tie does not break.
     Real break_force = infinity;
@@ -43,13 +44,13 @@ struct TiedNode {
 
 /// State of a tie. Force and moment are those of the last step and act on the body whose nodes are tied.
 struct TieState {
-    TieKind kind = TieKind::weld;
-    BodyHandle body{};
-    std::optional<BodyHandle> to_body{};
-    std::optional<ColliderHandle> to_collider{};
-    Real break_force = infinity;    // [N]
+    TieKind kind = TieKind::weld;                 // motion that the tie permits
+    BodyHandle body{};                            // body of the tied nodes
+    std::optional<BodyHandle> to_body{};          // the other object, if it is a body
+    std::optional<ColliderHandle> to_collider{};  // the other object, if it is a collider
+    Real break_force = infinity;                  // TieSettings::break_force [N]
     Vec3 point = Vec3::Zero();      // mean position of the tied nodes, for a ball weighted by their masses [m]
-    Vec3 force = Vec3::Zero();      // [N]
+    Vec3 force = Vec3::Zero();      // force on `body` [N]
     Vec3 moment = Vec3::Zero();     // moment about `point` [N m]
     Real largest_force = 0;         // largest magnitude of `force` in a step since the tie was added [N]
     Real error = 0;                 // largest error of a node that has not broken off [m]

@@ -14,8 +14,11 @@ namespace skerry {
 struct TimeTable {
     std::vector<TimeKey> keys{{0, 0}};  // at least one key
 
+    /// The constant value 0.
     TimeTable() = default;
+    /// A constant value.
     TimeTable(Real constant) : keys{{0, constant}} {}
+    /// A value given by keys. Objects refuse an empty list, and times that do not ascend.
     TimeTable(std::vector<TimeKey> values) : keys(std::move(values)) {}
 
     bool operator==(const TimeTable&) const = default;

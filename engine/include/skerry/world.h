@@ -33,7 +33,7 @@ struct StepProblem;  // defined in problem.h
 /// original world is used. If this build does not have the backend of the original world, `automatic` is used.
 struct LoadSettings {
     std::optional<Backend> backend{};  // library that manages the threads
-    std::optional<int> threads{};      // >= 0; a world with one thread starts no other thread
+    std::optional<int> threads{};      // number of threads, >= 0; a world with one thread starts no other thread
 };
 
 /// A simulation. A world must not be used by several threads at once, not even for reading. Different worlds are
@@ -142,25 +142,25 @@ public:
 
     // State of a body. The spans are valid until bodies are added or removed. advance() changes the positions and
     // velocities in the spans.
-    std::span<const Vec3> positions(BodyHandle body) const;                   // [m]
-    std::span<const Vec3> velocities(BodyHandle body) const;                  // [m/s]
+    std::span<const Vec3> positions(BodyHandle body) const;                   // positions of the nodes [m]
+    std::span<const Vec3> velocities(BodyHandle body) const;                  // velocities of the nodes [m/s]
     std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // node numbers of boundary triangles
     std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;  // node numbers of tetrahedra
     /// Cauchy stress [Pa], without the relaxing part of the viscous stress, and Green strain. The value of a
     /// tetrahedron is the mean over the elements that cover it. Values of nodes are recovered from the elements around,
     /// and from the traction on the surface (docs/methods/elasticity.md 7.9). Between two materials the stress jumps;
     /// nodes on the interface have the mean of both sides.
-    std::vector<Mat3> stress(BodyHandle body) const;       // by tetrahedron
-    std::vector<Mat3> strain(BodyHandle body) const;       // by tetrahedron
-    std::vector<Mat3> node_stress(BodyHandle body) const;  // by node
-    std::vector<Mat3> node_strain(BodyHandle body) const;  // by node
+    std::vector<Mat3> stress(BodyHandle body) const;       // Cauchy stress by tetrahedron [Pa]
+    std::vector<Mat3> strain(BodyHandle body) const;       // Green strain by tetrahedron
+    std::vector<Mat3> node_stress(BodyHandle body) const;  // Cauchy stress by node [Pa]
+    std::vector<Mat3> node_strain(BodyHandle body) const;  // Green strain by node
     /// Stress at the given nodes, in the given order, computed from the elements around these nodes only. The values
     /// are bitwise those of node_stress(body). Throws SceneError if the body has no such node.
     std::vector<Mat3> node_stress(BodyHandle body, std::span<const Index> nodes) const;
     /// Equivalent plastic strain, by tetrahedron. Strains of a material that yields are elastic strains.
     std::vector<Real> plastic_strain(BodyHandle body) const;
-    std::vector<Real> von_mises_stress(BodyHandle body) const;         // by tetrahedron [Pa]
-    std::vector<Real> node_von_mises_stress(BodyHandle body) const;    // by node [Pa]
+    std::vector<Real> von_mises_stress(BodyHandle body) const;         // von Mises stress by tetrahedron [Pa]
+    std::vector<Real> node_von_mises_stress(BodyHandle body) const;    // von Mises stress by node [Pa]
     std::vector<Vec3> node_principal_stresses(BodyHandle body) const;  // by node, the largest first [Pa]
     /// Step that each tetrahedron allows in the present shape of the body [s]: the stable step of the stiffest element
     /// that covers the tetrahedron. The shortest of these steps is the stable step of the body; a strained body can
@@ -180,14 +180,14 @@ public:
     /// Present pose of the frame of the body's mesh; initially the pose in BodySettings. For a deformed body it is the
     /// best fit, given by the centre of mass and the mean rotation.
     MotionKey pose(BodyHandle body) const;
-    Real mass(BodyHandle body) const;              // [kg]
-    Vec3 center_of_mass(BodyHandle body) const;    // [m]
-    Real contact_distance(BodyHandle body) const;  // [m]
+    Real mass(BodyHandle body) const;              // mass of all nodes [kg]
+    Vec3 center_of_mass(BodyHandle body) const;    // present centre of mass [m]
+    Real contact_distance(BodyHandle body) const;  // BodySettings::contact_distance, or its default [m]
     bool asleep(BodyHandle body) const;            // true if the body is asleep, see Settings::sleep
     void wake(BodyHandle body);              // wakes a sleeping body; bodies that touch this body wake in later steps
     Real mean_edge(BodyHandle body) const;   // mean edge length of the surface of a body in its rest shape [m]
     std::vector<BodyHandle> bodies() const;  // all bodies, in the order added (but see set_dynamics)
-    std::vector<ColliderHandle> colliders() const;
+    std::vector<ColliderHandle> colliders() const;  // all colliders, in the order added
     /// Present pose of a collider: position and rotation vector (axis times angle). For a plane it is the point of the
     /// plane and a rotation that takes +z to its normal.
     MotionKey pose(ColliderHandle collider) const;

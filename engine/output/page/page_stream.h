@@ -43,14 +43,14 @@ PageRow row_of(const Frame& frame);
 ///   lines (LineStream)
 class PageStream {
 public:
-    /// Returns the bytes of the frame, which are valid until the next call. Bodies without stresses and strains, or
-    /// without errors of the mesh, have the value 0 of these.
+    /// Returns the bytes of the frame, which are valid until the next call. Missing stresses, strains and mesh errors
+    /// of a body are written as 0.
     std::string_view pack(const Frame& frame);
 
     // Objects of all frames so far. The position in a list is the number of the object in the stream.
     std::span<const std::string> body_names() const { return body_names_; }
     std::span<const BodyHandle> body_handles() const { return body_handles_; }
-    /// Number of the visual surface of each body, or no_index. A body has that of its first frame.
+    /// Number of the visual surface of each body, or no_index. A body keeps the visual surface of its first frame.
     std::span<const Index> visual_numbers() const { return visual_numbers_; }
     const VisualStream& visuals() const { return visuals_; }
     std::span<const BodyStream> bodies() const { return bodies_; }

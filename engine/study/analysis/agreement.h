@@ -18,8 +18,8 @@ struct PerturbedRuns {
     std::vector<const StudyRun*> perturbed{};
 };
 
-/// Largest difference of the perturbed runs to the run in the first row: that of the perturbation itself. 0 for columns
-/// without a value before the first step.
+/// Largest difference between a perturbed run and the run in the first row, which shows the perturbation itself. 0 for
+/// columns without a value before the first step.
 Real first_difference(const PerturbedRuns& runs, std::size_t column);
 
 /// Returns the last time at which all runs agree on a column, infinity if they agree to the end [s].

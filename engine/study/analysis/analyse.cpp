@@ -11,12 +11,12 @@ namespace skerry {
 namespace {
 
 std::string chaos_text(const StudyResult& result) {
-    std::string text = "Runs begun 1e-12 m apart agree until " + short_number(result.agree_until) + " s";
+    std::string text = "Runs whose starts differ by 1e-12 m agree until " + short_number(result.agree_until) + " s";
     if (result.growth_rate > 0)
         text += "; small differences grow tenfold every " + duration_text(std::log(10) / result.growth_rate);
     return text +
-           ". After that no run, however fine, tells where a single body is: read the values named _agreed, and "
-           "the statistics of all bodies.";
+           ". After that, no run predicts the place of a single body, however fine its mesh and steps: use the values "
+           "named _agreed, and the statistics of all bodies.";
 }
 
 /// Names the runs that ended well and cannot be compared with the scene as it is.
@@ -24,8 +24,9 @@ void add_run_sentences(const StudyFamily& family, std::vector<std::string>& sent
     for (std::size_t i = 0; i < family.all->size(); ++i) {
         const StudyRun& run = (*family.all)[i];
         if (run.status == StudyRunStatus::ok && std::ranges::find(family.comparable, &run) == family.comparable.end())
-            sentences.push_back("Run " + std::to_string(i) +
-                                " is not used: its rows differ from those of the scene as it is.");
+            sentences.push_back(
+                "Run " + std::to_string(i) +
+                " is not used: its columns or its number of rows differ from those of the scene as it is.");
     }
 }
 
@@ -53,7 +54,8 @@ Measured measure_all(const StudyFamily& family, const StudySettings& settings) {
     for (std::size_t column = 0; column < found.scales.size(); ++column) {
         const StudyColumn& what = family.scene->columns[column];
         if (!what.reported || (what.is_statistic && !found.is_chaotic(family) && reports_bodies)) continue;
-        // Values below the effect of 1e-12 m or of rounding mean nothing, as the stress of a body that flies freely.
+        // Values below the effect of rounding, or of 1e-12 m at the start, are noise, such as the stress of a body in
+        // free flight.
         if (settings.probes.empty() && what.what.unit != "m" &&
             family.sizes[column] < agreement_share * found.scales[column])
             continue;
@@ -97,7 +99,7 @@ OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& set
         const StudyQuantity& r = quantity.result;
         const Real wanted = settings.error * r.scale;
         open.noise |= r.noise > noise_share * wanted;
-        // The error of two step lengths is that of order 1; a third one may show that it is smaller.
+        // With two step lengths the step error assumes order 1. A third step length may show that it is smaller.
         open.step |= r.step > step_share * wanted && !(r.step < share_of_bar * r.error);
     }
     return open;

@@ -37,14 +37,14 @@ std::vector<Option> mesh_options(const StudyFamily& family) {
     return options;
 }
 
-/// Options of the steps, with `member` StudyVariant::step, or of the tolerances.
+/// Options of the step length (`member`: StudyVariant::step) or of the tolerance (StudyVariant::tolerance).
 std::vector<Option> factor_options(const StudyFamily& family, Real StudyVariant::*member) {
     std::vector<Option> options;
     for (const StudyRun* run : family.comparable) {
         StudyVariant rest = run->variant;
         rest.*member = 1;
         if (!rest.is_scene()) continue;
-        // Shorter steps and lower tolerances never save time; clocks are not exact.
+        // Measured times scatter. Shorter steps and lower tolerances count as no cheaper than the scene as it is.
         const double cost = run->cpu_seconds / family.scene->cpu_seconds;
         options.push_back({run->variant, run->variant.*member < 1 ? std::max(cost, 1.0) : cost});
     }
@@ -57,12 +57,12 @@ bool counts(const MeasuredQuantity& quantity) {
            r.scale > 0;
 }
 
-/// Settings with their predicted error, and the quantity that has it.
+/// Settings with their predicted largest error, and the quantity with this error.
 struct Prediction {
     CheapestSettings settings;
     std::string worst{};
     std::size_t within = 0, counted = 0;  // numbers of quantities within the wanted error, and of all with an error
-    bool may_be_nearest = true;           // false for a mesh that was not run, and for cruder elements
+    bool may_be_nearest = true;           // false for a mesh that was not run, and for less exact elements
 };
 
 Prediction predict(const StudyFamily& family, std::span<const MeasuredQuantity> quantities, const Option& mesh,

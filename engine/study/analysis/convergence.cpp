@@ -12,7 +12,8 @@ constexpr Real unknown = std::numeric_limits<Real>::quiet_NaN();
 // three times the difference of the levels (Roache 1994).
 constexpr Real safety = 1.5;
 constexpr Real assumed_order = 1;  // order of two levels
-// An observed order is near the theory between these shares of the least and the largest order of the theory.
+// An observed order agrees with the theory if it is between `near_least` times the lowest and `near_most` times the
+// highest order of the theory.
 constexpr Real near_least = 0.5, near_most = 1.5;
 // Two levels that differ by a larger share of the value are too coarse for any order to hold.
 constexpr Real coarse_share = 0.3;
@@ -44,7 +45,7 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         if (std::abs(difference) > coarse_share * size) {
             shape_ = ConvergenceShape::coarse;
             used_order_ = 0;
-            // The larger of both values. An offset, as in a position, does not count.
+            // The larger of both values, at most `size` plus the difference: a position may have a large offset.
             least_error_ =
                 std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
         }
@@ -56,10 +57,10 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
     if (coarse_difference * difference < 0 && !fast) {
         shape_ = ConvergenceShape::oscillating;
         used_order_ = 0;
-        // A second term of the other sign explains the change. The error of a h^2 + b h^3 is then below that of
-        // order 1.
+        // Differences change their sign if two terms of the error have opposite signs, for example a h^2 + b h^3. Such
+        // an error is below the estimate of order 1.
     } else if (order_ < near_least * theory.least) {
-        // Low orders would predict errors without bounds.
+        // An order near 0 would predict an unbounded error, so the error is at most the sum of both differences.
         shape_ = ConvergenceShape::slow;
         used_order_ = 0;
         remainder_ = std::abs(coarse_difference + difference);
@@ -67,7 +68,8 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
     } else {
         shape_ = fast ? ConvergenceShape::fast : ConvergenceShape::regular;
         used_order_ = std::min(order_, theory.most);
-        // Half the error that the coarser difference predicts: equal values of two levels may be an accident.
+        // The fine levels may agree by accident. The error is therefore at least half of the error that the difference
+        // of the coarse levels predicts.
         const Real power = std::pow(ratio, theory.most);
         remainder_ = std::max(remainder(used_order_), std::abs(coarse_difference) / (2 * power * (power - 1)));
     }

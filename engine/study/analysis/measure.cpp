@@ -12,7 +12,7 @@ namespace skerry {
 namespace {
 
 constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
-constexpr Real matters = 0.2;  // share of the error bar from which an irregular part matters
+constexpr Real matters = 0.2;  // an irregular part below this share of the error bar is ignored
 
 const char* ending_of(StudyFigure figure) {
     switch (figure) {
@@ -98,7 +98,7 @@ std::string singular_text(const StudyFamily& family, std::size_t column, StudyFi
         const Real growth = figure_value(fine, column, figure, 0) / figure_value(coarse, column, figure, 0);
         rate[i] = growth > 0 ? std::log2(growth) / (fine.variant.refine - coarse.variant.refine) : 0;
     }
-    // An exponent falls to a half per level if the error has order 1, to 0.7 if it has order 1/2.
+    // If the stress converges, the exponent falls from level to level: to a half with order 1, to 0.7 with order 1/2.
     constexpr Real least_rate = 0.1, least_steadiness = 0.75, same_place = 0.25;
     const StudyColumn& fine = levels.back()->columns[column];
     const StudyColumn& before = levels[levels.size() - 2]->columns[column];
@@ -170,7 +170,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     if (figure != StudyFigure::agreed && !scene.is_statistic && quantity.noise > agreement_share * r.scale) {
         r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
         return decide(StudyVerdict::chaotic,
-                      "runs begun 1e-12 m apart end with other values, so this one value says nothing about them");
+                      "runs whose starts differ by 1e-12 m end with different values, so this value is accidental");
     }
     if (const std::string text = singular_text(family, column, figure); !text.empty()) {
         r.error = r.mesh = infinity;
@@ -205,7 +205,8 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     check("step", quantity.step, r.step);
     for (const StudyRun& run : *family.all)
         if (run.variant.draw != 0 && run.status == StudyRunStatus::failed && r.sentence.empty())
-            decide(StudyVerdict::irregular, "a run begun 1e-12 m apart failed, so this scene may fail by chance");
+            decide(StudyVerdict::irregular,
+                   "a run whose start differs by 1e-12 m failed, so this scene may fail by chance");
     for (const auto& [variant, value] : quantity.elements)
         if (variant.element == ElementKind::smoothed &&
             std::abs(value - r.value) > std::max(r.error, share_of_wanted * wanted * r.scale))

@@ -20,9 +20,10 @@ enum class StudyFigure { end, largest, smallest, mean, agreed };
 /// Runs of a study that can be compared.
 struct StudyFamily {
     const std::vector<StudyRun>* all = nullptr;
-    const StudyRun* scene = nullptr;            // the scene as it is
-    std::vector<const StudyRun*> comparable{};  // runs that ended well, with the times of `scene`; includes `scene`
-    std::vector<Real> sizes{};                  // size of the values of each column, see column_sizes()
+    const StudyRun* scene = nullptr;  // the scene as it is
+    // Runs that ended well and have the columns and the number of rows of `scene`; includes `scene`.
+    std::vector<const StudyRun*> comparable{};
+    std::vector<Real> sizes{};  // size of the values of each column, see column_sizes()
 
     explicit StudyFamily(const std::vector<StudyRun>& runs);
     PerturbedRuns perturbed() const;
@@ -32,7 +33,7 @@ struct StudyFamily {
 struct MeasuredQuantity {
     StudyQuantity result;
     Convergence mesh{}, step{}, contact{};
-    Real noise = 0;                                         // largest difference of the perturbed runs
+    Real noise = 0;  // largest difference between a perturbed run and the scene as it is
     std::vector<std::pair<StudyVariant, Real>> elements{};  // value of each run with another kind of element
     Real shape = 0;       // part of the mesh error that finer meshes keep, see StudyColumn::shape_error
     Real least_mesh = 0;  // mesh error that linear elements have at least, by comparison with smoothed ones

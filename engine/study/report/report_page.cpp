@@ -81,7 +81,7 @@ PageJson summary_table(const StudyResult& result) {
         for (const auto& [name, part] : {std::pair{"mesh ", text.mesh}, std::pair{"step ", text.step},
                                          std::pair{"contacts ", text.contact}, std::pair{"start ", text.noise}})
             if (!part.empty()) parts += (parts.empty() ? "" : ", ") + (name + part);
-        // The notes above the table have the remarks on quantities that are not known.
+        // The notes above the table contain the sentences of all quantities with another verdict than `known`.
         rows.push_back({q.name, with_bar(text.value, text.error) + " " + text.unit, text.share, name_of(q.verdict),
                         parts, with_bar(text.best, text.best_error), text.orders,
                         q.verdict == StudyVerdict::known ? q.sentence : std::string()});
@@ -122,7 +122,7 @@ std::string study_page(const StudyResult& result) {
     for (const StudyQuantity& q : result.quantities) {
         figures.push_back(heading(q));
         figures.push_back(error_heading(q));
-        // A small component of a vector is no good start.
+        // The plot opens with the first quantity that is not a small component of a vector.
         constexpr Real main_share = 0.1;
         if (first_error.empty() && q.error > 0 && std::isfinite(q.error) && std::abs(q.value) > main_share * q.scale)
             first_error = error_heading(q);

@@ -91,7 +91,7 @@ QuantityText quantity_text(const StudyQuantity& q) {
     }
     if (has_error && in_unit(q.error) > 0 && q.scale > 0) {
         text.share = share_text(q.error / q.scale);
-        // The share is that of the scale, which a reader must know if it is not about the value.
+        // The share refers to the scale, which the text names unless it is close to the value.
         constexpr Real near = 0.1;
         if (std::abs(std::abs(q.value) - q.scale) > near * q.scale) {
             const auto [scale_factor, scale_prefix] = prefix_of(q.scale, q.unit);
@@ -99,9 +99,9 @@ QuantityText quantity_text(const StudyQuantity& q) {
                 " of " + short_number(q.scale / scale_factor) + (q.unit == "1" ? "" : " " + scale_prefix + q.unit);
         }
     }
-    constexpr Real least_share = 1e-4;  // the order of a smaller error, relative to the scale, says nothing
+    constexpr Real least_share = 1e-4;  // below this share of the scale, errors are too small to show an order
     if (q.mesh > least_share * q.scale) text.orders = order_text("order", q.mesh_order, q.expected_mesh_order);
-    // The order of the steps is of interest if the steps have a good part of the error.
+    // The order of the steps is shown only if the steps cause a large part of the error.
     constexpr Real share = 0.2;
     if (q.step > std::max(share * q.error, least_share * q.scale)) {
         const std::string step = order_text("order of steps", q.step_order, q.expected_step_order);

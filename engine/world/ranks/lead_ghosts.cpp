@@ -68,7 +68,8 @@ void note_ghosts(WorldState& world) {
     const std::size_t count = ranks.on() ? model.bodies.slot.size() : 0;
     world.model.bodies.ghost.assign(count, GhostKind::none);
     ranks.leads.assign(count, 0);
-    // a body with half-held nodes is corrected on every rank, from a prediction that the rank has computed
+    // Ghosts with nodes that are held along some directions only are not led: each rank corrects such nodes from its
+    // own prediction.
     Column<std::uint8_t> half_held;
     half_held.assign(count, 0);
     for (std::size_t a = 0; a < model.attachments.held.size(); ++a)

@@ -14,18 +14,18 @@ namespace skerry {
 /// counts the crossings, elements, contacts and regions of all ranks once. Sums of energy are not included, because
 /// their last digits would depend on the order of the ranks.
 struct RankFindings {
-    // StepVerdict: the first fault
+    // First fault of the attempt (StepVerdict).
     StepFault fault = StepFault::none;
     Index fault_body = nobody;
     Index fault_node = no_index;         // number of the node within the body
     Index fault_tetrahedron = no_index;  // number of the tetrahedron within the body
     Real fault_value = 0;
-    // StepVerdict::fastest
+    // Largest deformation rate, and its body (StepVerdict::fastest).
     Real strain_rate = 0;  // [1/s]
     Index strained_body = nobody;
     Index unsolved_body = nobody;  // StrainFindings::unsolved
     Index crossings = 0;           // StepFindings::crossings
-    // Inversions
+    // Inverted elements (Inversions).
     Index inversions = 0;
     Index inverted_body = nobody;
     Index inverted_tetrahedron = no_index;  // number of the tetrahedron within the body
@@ -45,7 +45,7 @@ struct RankFindings {
     bool far = false;      // a body may be too far from the origin (check_distance)
     RunCounters counters;  // contacts, regions and solver work of the attempt (count_step)
 
-    // place of no body; greater than all other places
+    // Stands for no body. It is greater than all places, so that the least place wins.
     static constexpr Index nobody = std::numeric_limits<Index>::max();
     bool again_over_ranks() const { return labels_open || bodies_missing || ghosts_expired; }
 };

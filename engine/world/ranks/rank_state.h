@@ -26,9 +26,9 @@ struct RankChannel {
 
 /// Sums over the steps of this rank alone, since they were last added to the records of the run (join_records).
 struct RankShare {
-    Real dissipated = 0, plastic_work = 0;  // RunCounters [J]
-    Balance balance;                        // only its sums
-    // CrossingTable::tested, hits and let_through after the last join
+    Real dissipated = 0, plastic_work = 0;  // see RunCounters [J]
+    Balance balance;                        // only its sums are used
+    // Values of CrossingTable::tested, hits and let_through at the last join.
     std::uint64_t tested = 0, hits = 0, let_through = 0;
 };
 
@@ -37,9 +37,10 @@ struct PredictionMail : RankMail {
     std::vector<MailReader> reader;  // by peer: reads `in`
 };
 
-/// A set of touching bodies that one rank has found, as told to all ranks: a body of the set with several holders.
+/// Message about a set of touching bodies that one rank has found: one entry for each body of the set that has several
+/// holders.
 struct SetMember {
-    Index place;
+    Index place;         // place of the body in the undivided world
     Index set;           // row of the first body of the set on the rank that has found the set
     Index must_stay_up;  // nonzero if a body of the set must stay awake
 };
@@ -49,10 +50,10 @@ struct RankSleep {
     Column<std::uint8_t> asleep;  // by body
     Column<Real> still_time;      // by body [s]
     Column<Index> woken;          // places of the bodies with several holders that this rank wakes
-    Column<SetMember> members;    // of the sets that this rank has found
-    // for each place, and for each set of one rank: a node of `joined`, or no_index
+    Column<SetMember> members;    // entries for the sets that this rank has found
+    // A node of `joined` for each place, and for each set of the message that is being read; no_index: none yet.
     Column<Index> node_of_place, node_of_set;
-    Column<std::uint8_t> restless;  // by node of `joined`
+    Column<std::uint8_t> restless;  // for each node of `joined`: 1 if its set must stay awake
     UnionFind joined;               // sets of all ranks, joined where they share a body
 };
 
@@ -69,8 +70,8 @@ struct LabelRounds {
     int needed = least;  // greatest number of rounds that a step has needed since the last check
     int steps = 0;       // number of steps since the last check
 
-    /// Adds the number of rounds that an attempt has needed. More than `count`: the number is not known, and the next
-    /// attempt has one more round. Every 500 steps the number falls to the greatest number that was needed.
+    /// Adjusts `count` to the number of rounds that an attempt has needed. More than `count` means that the labels had
+    /// not settled: the next attempt has one more round. Every 500 steps `count` falls to the greatest number needed.
     void note(int rounds) {
         constexpr int steps_between_checks = 500;
         if (rounds > count) {
@@ -123,7 +124,7 @@ struct RankState {
     Column<std::uint64_t> enabled_pairs;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
-    Column<Index> stale;           // places of own bodies whose copies on other ranks have lost their validity
+    Column<Index> stale;           // places of bodies of this rank whose copies on other ranks are outdated
     RankFindings mine;   // findings of this rank in this attempt at a step; complete when reduce_findings runs
     RankFindings all;    // combined findings of all ranks in this attempt at a step
     bool stops = false;  // true if a callback of this rank has asked to end the present call of World::advance

@@ -63,7 +63,7 @@ void reduce_limits(WorldState& world) {
     for (Index* place : {&limits.stiffest, &limits.spinning})
         if (*place == RankFindings::nobody) *place = no_index;
     model.of_ranks = limits;
-    // Bodies without force elements have other last digits in a world with force elements.
+    // Force elements anywhere in the world change the rounding of all bodies, so all ranks must know of them.
     model.forced |= limits.forced;
     if (limits.clusters_grew) world.ranks.pieces_before.clear();
     model.clusters_grew = false;

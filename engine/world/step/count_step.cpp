@@ -41,7 +41,7 @@ void count_shortcuts(const RegionTable& regions, RunCounters& counters) {
     counters.largest_region = largest;
 }
 
-/// Takes over the error of a region if it is larger, or equal and of a larger region.
+/// Replaces the worst error by `error` if this is larger, or equal in a region with more contacts.
 void note_error(Real error, Index region, RunCounters& counters) {
     if (error < counters.worst_error || (error == counters.worst_error && region <= counters.worst_region)) return;
     counters.worst_error = error;

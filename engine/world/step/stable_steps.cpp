@@ -54,7 +54,7 @@ Real step_of_body(const Model& model, std::size_t body) {
 Real stable_step(const Model& model, Index* body) {
     Real smallest = infinity;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
-        if (model.bodies.is_ghost(b)) continue;  // its owner knows the stable step
+        if (model.bodies.is_ghost(b)) continue;  // the owner of the body counts its stable step
         const Real step = step_of_body(model, b);
         if (!(step < smallest)) continue;
         smallest = step;

@@ -131,7 +131,7 @@ void keep_frames(WorldState& world) {
         elements.spring_strain.swap(elements.spring_strain_next);
         return;
     }
-    // the elements that the stages have computed: bodies that fell asleep or woke in this step do not change them
+    // The elements that the stages of this step computed. Bodies that fall asleep or wake count from the next step on.
     keep_memory(*world.executor, world.model.awake_elements(), elements);
 }
 

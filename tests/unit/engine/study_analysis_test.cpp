@@ -387,7 +387,7 @@ TEST_CASE("a scene that fails after a tiny perturbation has no known values", "[
     runs[6].status = StudyRunStatus::failed;
     const StudyQuantity q = only_quantity(analyse(runs, {}));
     CHECK(q.verdict == StudyVerdict::irregular);
-    CHECK(q.sentence.find("a run begun 1e-12 m apart failed") != std::string::npos);
+    CHECK(q.sentence.find("a run whose start differs by 1e-12 m failed") != std::string::npos);
 }
 
 TEST_CASE("runs that failed or differ in their rows are not evaluated", "[unit][study]") {
@@ -399,7 +399,8 @@ TEST_CASE("runs that failed or differ in their rows are not evaluated", "[unit][
     CHECK(q.mesh > 0);  // the coarser mesh is left
     runs[2].time.pop_back();
     const StudyResult result = analyse(runs, {});
-    CHECK(result.sentences.back() == "Run 2 is not used: its rows differ from those of the scene as it is.");
+    CHECK(result.sentences.back() ==
+          "Run 2 is not used: its columns or its number of rows differ from those of the scene as it is.");
     CHECK(only_quantity(result).verdict == StudyVerdict::not_measured);
 }
 

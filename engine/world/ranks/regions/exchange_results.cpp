@@ -132,8 +132,8 @@ public:
 private:
     bool is_solved_here(Index body) const { return regions_.elsewhere.empty() || !regions_.elsewhere[body]; }
 
-    /// Rows that hold nodes along single directions are in no region if another rank solves the rows of the node's
-    /// unit. They have no impulse then.
+    /// Sets the impulses of held nodes to zero where another rank solves the rows of the node's unit. Such rows are in
+    /// no region of this rank.
     void zero_left_out_rows() {
         for (std::size_t row = regions_.contact_count + rows_.tie_count; row < rows_.region.size(); ++row)
             if (rows_.region[row] == no_index) out_.impulse[row].setZero();

@@ -78,7 +78,8 @@ struct RankRegions {
     // For each body: first body of its unit, which is the set of bodies that rows of joints, ties or cables join.
     // no_index: no such row acts on the unit. Empty if there are no such rows.
     Column<Index> unit;
-    // For each body: 1 if the rows of joints, ties and cables of its unit are solved by another rank. Empty as `unit`.
+    // For each body: 1 if the rows of joints, ties and cables of its unit are solved by another rank. Empty if `unit`
+    // is empty.
     Column<std::uint8_t> elsewhere;
     // True if this rank solves other contacts than those that it has found. `found` then has the contacts that it has
     // found, and the contact table has those that it solves, until take_back_rows exchanges the tables.
@@ -94,7 +95,7 @@ struct RankRegions {
     Column<Index> touched_bodies;
     bool pushed = false;  // true if another rank has pushed nodes of this rank apart in this attempt
 
-    UnionFind sets;                // sets of groups of nodes, later visited nodes
+    UnionFind sets;                // sets of groups of nodes in contact; later reused to mark visited nodes
     UnionFind body_sets;           // sets of joined bodies
     Column<std::uint8_t> in_unit;  // by body: 1 if a row of a joint, tie or cable acts on it
     Column<RegionLabel> label;     // by node; valid for groups of nodes that contacts of this rank touch

@@ -95,8 +95,8 @@ std::vector<std::uint8_t> find_exchanged(const Model& before, std::span<const In
     return exchanged;
 }
 
-/// Lets the candidates of all pairs of marked bodies be searched again. The bounds on the motion of these bodies were
-/// measured on another rank.
+/// Makes the next step search the candidates of all pairs of marked bodies again, because another rank has measured the
+/// motion bounds of these bodies.
 void forget_candidates(std::span<const std::uint8_t> marked, PairTable& pairs) {
     for (std::size_t p = 0; p < pairs.size(); ++p)
         if (marked[static_cast<std::size_t>(pairs.first[p])] ||
@@ -174,7 +174,8 @@ public:
         SearchState& state = world_.cache.search;
         const std::size_t count = model_.bodies.slot.size();
         Column<Real> valid_until;
-        // Finite, so that the next step searches all pairs without forgetting those that are known.
+        // The lowest finite number makes the next step search all pairs. Unlike SearchState::forgotten, it keeps the
+        // known ones.
         valid_until.resize(count, std::numeric_limits<Real>::lowest());
         Column<Vec3> origin;
         if (!world_.cache.pairs.self.origin.empty()) origin.resize(model_.nodes.position.size(), Vec3::Zero());

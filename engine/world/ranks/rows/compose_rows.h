@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// A model of which a new model gets rows.
+/// A model that gives rows to a new model.
 struct RowSource {
     Model* model;
     std::span<const Index> place;

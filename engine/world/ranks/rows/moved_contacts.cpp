@@ -84,7 +84,7 @@ void copy_warm_start(WarmStartTable& from, const WantsPair& wants, WarmStartTabl
     if (!from.step.empty() && !to.key.empty()) to.step = from.step;
 }
 
-/// Order in which the rows of a key column ascend.
+/// Row numbers of a column of keys, in ascending order of the keys.
 template <class Key>
 std::vector<std::size_t> ascending(const Column<Key>& key) {
     std::vector<std::size_t> order(key.size());
@@ -93,7 +93,7 @@ std::vector<std::size_t> ascending(const Column<Key>& key) {
     return order;
 }
 
-/// Brings the rows of a table into an order. Columns of another length stay unchanged.
+/// Reorders the rows of a table: new row k is old row order[k]. Columns of another length stay unchanged.
 void reorder(std::span<const std::size_t> order, AnyTable table) {
     for (const ColumnInfo& info : table.columns()) {
         const AnyColumn column = table.column(info);
@@ -108,7 +108,7 @@ void reorder(std::span<const std::size_t> order, AnyTable table) {
     }
 }
 
-/// Brings lists by row into an order. Rows without a list get an empty one.
+/// Reorders the lists of rows like reorder(). Rows without a list get an empty one.
 void reorder_lists(std::span<const std::size_t> order, auto& lists) {
     auto old = std::move(lists);
     lists.clear();
@@ -117,7 +117,7 @@ void reorder_lists(std::span<const std::size_t> order, auto& lists) {
         if (order[row] < old.size()) std::swap(lists[row], old[order[row]]);
 }
 
-/// Rows of a table that are not wanted any more, as ascending ranges.
+/// Rows of a table for which wants(row) is false, as ascending ranges.
 std::vector<Range> unwanted(std::size_t count, auto&& wants) {
     std::vector<Range> gone;
     for (std::size_t row = 0; row < count; ++row)
