@@ -3,19 +3,13 @@
 
 #include <string>
 
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
 /// Throws SceneError that names the call. `option` is the CMake option that disabled this part of the library.
 [[noreturn]] inline void refuse_absent(const char* call, const char* option) {
-    Complaint{.file = {},
-              .object = call,
-              .field = {},
-              .found = "a Skerry built with " + std::string(option) + "=OFF",
-              .expected = "one with " + std::string(option) + "=ON",
-              .hint = {}}
-        .raise();
+    refuse(call, {}, "a Skerry built with " + std::string(option) + "=OFF", "one with " + std::string(option) + "=ON");
 }
 
 }  // namespace skerry

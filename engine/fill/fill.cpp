@@ -85,8 +85,7 @@ private:
 
     [[noreturn]] void refuse(std::string found, std::string expected, std::string hint = {},
                              std::string object = "surface") const {
-        Complaint{given_.names.front(), std::move(object), {}, std::move(found), std::move(expected), std::move(hint)}
-            .raise();
+        refuse_in(given_.names.front(), object, {}, found, expected, hint);
     }
 
     void check_settings() const {
@@ -275,7 +274,7 @@ FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillS
 
 FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSettings& settings,
                 const FillProgress& progress) {
-    if (files.empty()) Complaint{{}, "surface", {}, "no files", "at least one file of a surface", {}}.raise();
+    if (files.empty()) refuse("surface", {}, "no files", "at least one file of a surface");
     GivenSurface given;
     std::vector<std::string> notes;
     for (const std::filesystem::path& file : files)

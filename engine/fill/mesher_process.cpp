@@ -31,13 +31,13 @@ constexpr int output = 3;                    // file descriptor to which the mes
 /// Temporary file without a name. The system removes it when this program ends, even after a crash.
 using NamelessFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void refuse_mesher(const std::string& what) {
     throw std::system_error(errno, std::generic_category(), what);
 }
 
 NamelessFile nameless_file() {
     NamelessFile file(std::tmpfile(), std::fclose);
-    if (!file) refuse("cannot create a temporary file");
+    if (!file) refuse_mesher("cannot create a temporary file");
     return file;
 }
 
@@ -57,7 +57,7 @@ void write_surface(std::FILE* out, const SurfaceMesh& surface, Real largest_edge
     for (const auto& t : surface.triangles)
         for (std::size_t a = 0; a < 3; ++a) append_number(t[a], a < 2 ? ' ' : '\n', text);
     if (std::fwrite(text.data(), 1, text.size(), out) < text.size() || std::fflush(out) != 0)
-        refuse("cannot write to a temporary file");
+        refuse_mesher("cannot write to a temporary file");
     std::rewind(out);
 }
 
@@ -129,7 +129,7 @@ public:
         arguments.push_back(nullptr);
         const pid_t parent = getpid();
         id_ = fork();
-        if (id_ < 0) refuse("cannot create a process for " + command.front());
+        if (id_ < 0) refuse_mesher("cannot create a process for " + command.front());
         if (id_ == 0) start(arguments.data(), parent, in, out, messages);
     }
     ~Child() {

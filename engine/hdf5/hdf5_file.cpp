@@ -11,8 +11,7 @@ namespace {
 
 hid_t open_file(const std::filesystem::path& path, const std::string& expected) {
     const auto refuse = [&](const std::string& found, const std::string& hint) {
-        Complaint{.file = path.string(), .object = {}, .field = {}, .found = found, .expected = expected, .hint = hint}
-            .raise();
+        refuse_in(path.string(), {}, {}, found, expected, hint);
     };
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) refuse("no such file", "check the path");
@@ -41,13 +40,7 @@ void Hdf5File::complain(const std::string& path, const std::string& found, const
                         const std::string& hint) const {
     const std::size_t slash = path.rfind('/');
     const std::string object = slash == 0 ? "" : path.substr(0, slash);
-    Complaint{.file = name_,
-              .object = object,
-              .field = path.substr(slash + 1),
-              .found = found,
-              .expected = expected,
-              .hint = hint}
-        .raise();
+    refuse_in(name_, object, path.substr(slash + 1), found, expected, hint);
 }
 
 bool Hdf5File::has(const std::string& path) const {

@@ -1,5 +1,7 @@
 #include "engine/hdf5/hdf5_image.h"
 
+#include "engine/world/complaint.h"
+
 namespace skerry {
 namespace {
 
@@ -21,13 +23,8 @@ Hdf5Image::Hdf5Image(std::string name) : name_(std::move(name)), file_(make_file
 
 void Hdf5Image::expect(bool good, const std::string& path) const {
     if (!good)
-        Complaint{.file = name_,
-                  .object = {},
-                  .field = path,
-                  .found = "not enough memory",
-                  .expected = "enough memory for the file",
-                  .hint = "close other programs, then try again"}
-            .raise();
+        refuse_in(name_, {}, path, "not enough memory", "enough memory for the file",
+                  "close other programs, then try again");
 }
 
 void Hdf5Image::put(const std::string& path, hid_t type, const Hdf5Handle& space, const void* values) {

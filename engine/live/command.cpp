@@ -16,19 +16,13 @@ namespace {
 
 using CommandJson = nlohmann::json;
 
-[[noreturn]] void refuse_command(const std::string& field, const std::string& found, const std::string& expected,
-                                 const std::string& hint = {}) {
-    Complaint{.file = {}, .object = "command", .field = field, .found = found, .expected = expected, .hint = hint}
-        .raise();
-}
-
 /// The beginning of a value as JSON, for messages.
 std::string short_dump(const CommandJson& value) {
     return value.dump(-1, ' ', false, CommandJson::error_handler_t::replace).substr(0, 60);
 }
 
 [[noreturn]] void refuse_value(const std::string& field, const CommandJson& found, const std::string& expected) {
-    refuse_command(field, short_dump(found), expected);
+    refuse("command", field, short_dump(found), expected);
 }
 
 Real number_from(const std::string& field, const CommandJson& value) {
@@ -112,8 +106,8 @@ std::vector<CommandMember> members_of(LiveAction action) {
 LiveCommand read_command(std::string_view text) {
     const CommandJson json = CommandJson::parse(text, nullptr, false);
     if (!json.is_object())
-        refuse_command("", text.empty() ? "nothing" : std::string(text.substr(0, 60)),
-                       "a JSON object such as {\"do\":\"play\"}");
+        refuse("command", "", text.empty() ? "nothing" : std::string(text.substr(0, 60)),
+               "a JSON object such as {\"do\":\"play\"}");
     const CommandJson& name = json.contains("do") ? json["do"] : CommandJson();
     const auto action = name.is_string() ? from_name<LiveAction>(name.get<std::string>()) : std::nullopt;
     if (!action) {
@@ -123,19 +117,19 @@ LiveCommand read_command(std::string_view text) {
             known.emplace_back(row.second);
             list += (list.empty() ? "" : ", ") + known.back();
         }
-        refuse_command("do", short_dump(name), "one of " + list,
-                       name.is_string() ? nearest_hint(name.get<std::string>(), known) : "");
+        refuse("command", "do", short_dump(name), "one of " + list,
+               name.is_string() ? nearest_hint(name.get<std::string>(), known) : "");
     }
     LiveCommand command{.action = *action};
     const std::vector<CommandMember> members = members_of(*action);
     for (const CommandMember& member : members) {
-        if (!json.contains(member.name)) refuse_command(member.name, "nothing", "a value");
+        if (!json.contains(member.name)) refuse("command", member.name, "nothing", "a value");
         member.read(member.name, json[member.name], command);
     }
     if (json.size() != members.size() + 1)
         for (const auto& [key, unused] : json.items())
             if (key != "do" && std::ranges::find(members, key, &CommandMember::name) == members.end())
-                refuse_command(key, "an unknown member", "only the members of \"" + name.get<std::string>() + "\"");
+                refuse("command", key, "an unknown member", "only the members of \"" + name.get<std::string>() + "\"");
     return command;
 }
 

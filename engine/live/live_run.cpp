@@ -31,13 +31,8 @@ Real seconds_from(std::chrono::steady_clock::duration duration) {
 
 void require_rate(Real rate) {
     if (rate >= 0 && rate <= fastest_rate) return;
-    Complaint{.file = {},
-              .object = "live view",
-              .field = "rate",
-              .found = short_text(rate),
-              .expected = "a number from 0 to " + short_text(fastest_rate),
-              .hint = "0: as fast as possible"}
-        .raise();
+    refuse("live view", "rate", short_text(rate), "a number from 0 to " + short_text(fastest_rate),
+           "0: as fast as possible");
 }
 
 /// Value of a slider; NaN if its object was removed.
@@ -163,13 +158,8 @@ void LiveRun::apply(const LiveCommand& command, World& world) {
             break;
         case LiveAction::slider:
             if (command.number >= settings_.sliders.size())
-                Complaint{.file = {},
-                          .object = "command",
-                          .field = "number",
-                          .found = std::to_string(command.number),
-                          .expected = "the number of one of " + std::to_string(settings_.sliders.size()) + " sliders",
-                          .hint = {}}
-                    .raise();
+                refuse("command", "number", std::to_string(command.number),
+                       "the number of one of " + std::to_string(settings_.sliders.size()) + " sliders");
             set_slider(world, settings_.sliders[command.number], command.value);
             break;
         case LiveAction::pull:

@@ -7,7 +7,7 @@
 
 #include "engine/live/live_run.h"
 #include "engine/live/server/live_server.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "skerry/live.h"
 
 namespace skerry {
@@ -32,13 +32,8 @@ struct LiveView::Impl {
 LiveView::LiveView(World& world, const LiveSettings& settings) {
     constexpr int last_port = 65535;
     if (settings.port < 0 || settings.port > last_port)
-        Complaint{.file = {},
-                  .object = "live view",
-                  .field = "port",
-                  .found = std::to_string(settings.port),
-                  .expected = "a port from 0 to " + std::to_string(last_port),
-                  .hint = "0: a free port"}
-            .raise();
+        refuse("live view", "port", std::to_string(settings.port), "a port from 0 to " + std::to_string(last_port),
+               "0: a free port");
     impl_ = std::make_unique<Impl>(world, settings);
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "engine/output/page/stream/pack.h"
 
@@ -10,21 +9,19 @@ namespace skerry {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json json_of_state(const LiveState& state) {
-    return {{"playing", state.playing}, {"rate", state.rate}, {"gravity", state.gravity}};
+    return object_of({{"playing", state.playing}, {"rate", state.rate}, {"gravity", state.gravity}});
 }
 
 Json json_of_sliders(const LiveRunInfo& info) {
     Json list = Json::array();
     for (std::size_t s = 0; s < info.sliders.size(); ++s) {
         const Slider& slider = info.sliders[s];
-        list.push_back({{"name", slider.name},
-                        {"unit", slider.unit},
-                        {"low", slider.low},
-                        {"high", slider.high},
-                        {"value", info.slider_values[s]}});
+        list.push_back(object_of({{"name", slider.name},
+                                  {"unit", slider.unit},
+                                  {"low", slider.low},
+                                  {"high", slider.high},
+                                  {"value", info.slider_values[s]}}));
     }
     return list;
 }
@@ -34,8 +31,8 @@ Json json_of_plots(const std::vector<LivePlot>& plots) {
     for (const LivePlot& plot : plots) {
         Json columns = Json::array();
         for (const SeriesColumn& column : plot.columns)
-            columns.push_back({{"name", column.quantity}, {"unit", column.unit}});
-        list.push_back({{"name", plot.name}, {"columns", columns}});
+            columns.push_back(object_of({{"name", column.quantity}, {"unit", column.unit}}));
+        list.push_back(object_of({{"name", plot.name}, {"columns", columns}}));
     }
     return list;
 }
@@ -43,30 +40,30 @@ Json json_of_plots(const std::vector<LivePlot>& plots) {
 }  // namespace
 
 std::string begin_text(const LiveRunInfo& info, const LiveState& state) {
-    Json run = {{"title", info.title}, {"gravity", {info.gravity.x(), info.gravity.y(), info.gravity.z()}}};
+    Json run = object_of({{"title", info.title}, {"gravity", {info.gravity.x(), info.gravity.y(), info.gravity.z()}}});
     run.update(json_of_objects(PageStream{}, {}));
-    return text_of({{"type", "begin"},
-                    {"run", run},
-                    {"state", json_of_state(state)},
-                    {"sliders", json_of_sliders(info)},
-                    {"plots", json_of_plots(info.plots)}});
+    return text_of(object_of({{"type", "begin"},
+                              {"run", run},
+                              {"state", json_of_state(state)},
+                              {"sliders", json_of_sliders(info)},
+                              {"plots", json_of_plots(info.plots)}}));
 }
 
 std::string state_text(const LiveState& state) {
-    Json json = {{"type", "state"}};
+    Json json = object_of({{"type", "state"}});
     json.update(json_of_state(state));
     return text_of(json);
 }
 
 std::string problem_text(const std::string& problem) {
-    return text_of({{"type", "problem"}, {"text", problem}});
+    return text_of(object_of({{"type", "problem"}, {"text", problem}}));
 }
 
 LiveEncoder::Messages LiveEncoder::pack(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client) {
     Messages messages;
     messages.changes = stream_.pack(snapshot.frame);
     if (const PageCounts now = counts_of(stream_); now != known_) {
-        Json added = {{"type", "add"}};
+        Json added = object_of({{"type", "add"}});
         added.update(json_of_objects(stream_, known_));
         added["visual_stream"] =
             now.visuals > known_.visuals ? base64(stream_.visuals().packed(known_.visuals)) : std::string();
@@ -105,10 +102,10 @@ Real LiveEncoder::usual(std::size_t field) {
 }
 
 std::string LiveEncoder::row_text(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client) {
-    Json top = {{"speed", usual(0)},
-                {"stress", usual(stress_field)},
-                {"strain", usual(strain_field)},
-                {"error", usual(error_field)}};
+    Json top = object_of({{"speed", usual(0)},
+                          {"stress", usual(stress_field)},
+                          {"strain", usual(strain_field)},
+                          {"error", usual(error_field)}});
     values_.clear();
     for (const Contact& contact : snapshot.frame.contacts) values_.push_back(contact.force().norm());
     top["force"] = usual();
@@ -118,14 +115,14 @@ std::string LiveEncoder::row_text(const Snapshot& snapshot, std::uint64_t frame,
     top["line_force"] = usual();
     Json pull;
     const auto own = std::ranges::find(snapshot.pulls, client, &std::pair<std::uint64_t, PullState>::first);
-    if (own != snapshot.pulls.end()) pull = {{"force", own->second.force}, {"length", own->second.length}};
-    Json row = {{"type", "row"}, {"number", frame}};
+    if (own != snapshot.pulls.end()) pull = object_of({{"force", own->second.force}, {"length", own->second.length}});
+    Json row = object_of({{"type", "row"}, {"number", frame}});
     row.update(json_of_row(row_of(snapshot.frame)));
-    row.update({{"top", top},
-                {"probes", snapshot.probes},
-                {"sliders", snapshot.sliders},
-                {"pull", pull},
-                {"speed", snapshot.speed}});
+    row.update(object_of({{"top", top},
+                          {"probes", snapshot.probes},
+                          {"sliders", snapshot.sliders},
+                          {"pull", pull},
+                          {"speed", snapshot.speed}}));
     return text_of(row);
 }
 

@@ -175,13 +175,7 @@ MaterialSettings named_material(std::string_view name) {
     if (found == materials.end()) {
         std::string names;
         for (const NamedMaterial& material : materials) names.append(names.empty() ? "" : ", ").append(material.name);
-        Complaint{.file = {},
-                  .object = "material",
-                  .field = {},
-                  .found = "the name \"" + std::string(name) + "\"",
-                  .expected = "one of the names " + names,
-                  .hint = {}}
-            .raise();
+        refuse("material", {}, "the name \"" + std::string(name) + "\"", "one of the names " + names);
     }
     constexpr Real negligible_loss = 0.01;
     MaterialSettings settings;
@@ -196,26 +190,19 @@ MaterialSettings named_material(std::string_view name) {
 }
 
 MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, MaterialSettings base) {
-    const auto refuse = [](const char* field, std::string found, std::string expected) {
-        Complaint{.file = {},
-                  .object = "material",
-                  .field = field,
-                  .found = std::move(found),
-                  .expected = std::move(expected),
-                  .hint = {}}
-            .raise();
-    };
     if (terms.empty() || terms.size() > base.terms.size())
-        refuse("ogden", std::to_string(terms.size()) + " terms", "one to three terms");
+        refuse("material", "ogden", std::to_string(terms.size()) + " terms", "one to three terms");
     Real twice_shear = 0;
     for (const auto& [modulus, exponent] : terms) {
         if (!(modulus * exponent > 0))
-            refuse("ogden", "the term (" + std::to_string(modulus) + " Pa, " + std::to_string(exponent) + ")",
+            refuse("material", "ogden",
+                   "the term (" + std::to_string(modulus) + " Pa, " + std::to_string(exponent) + ")",
                    "modulus and exponent of the same sign, not zero");
         twice_shear += modulus * exponent;
     }
     // Poisson's ratio must be above -1, which any positive bulk modulus satisfies.
-    if (!(bulk_modulus > 0)) refuse("bulk_modulus", std::to_string(bulk_modulus) + " Pa", "a modulus > 0 (Pa)");
+    if (!(bulk_modulus > 0))
+        refuse("material", "bulk_modulus", std::to_string(bulk_modulus) + " Pa", "a modulus > 0 (Pa)");
     const Real shear = twice_shear / 2;
     base.model = MaterialModel::ogden;
     base.young_modulus = 9 * bulk_modulus * shear / (3 * bulk_modulus + shear);

@@ -9,7 +9,7 @@
 #include "engine/mesh/sets.h"
 #include "engine/mesh/tetrahedron.h"
 #include "engine/mesh/used_nodes.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "skerry/mesh.h"
 #include "systems/collision/build_surface.h"
 
@@ -40,17 +40,13 @@ RawMesh read_file(const std::string& path, bool surface) {
         std::string expected = "the extension ";
         for (const Format& other : formats)
             if (surface || !other.surface_only) expected += std::string(other.extension) + ", ";
-        Complaint{
-            path,
-            {},
-            "file name",
-            extension.empty() ? "no extension" : "the extension " + extension,
+        refuse_in(
+            path, {}, "file name", extension.empty() ? "no extension" : "the extension " + extension,
             expected + ".node or .ele",
             known
                 ? "a body that deforms needs tetrahedra: write \"surface\" instead of \"file\" in a scene, or fill the "
                   "surface with `skerry fill`; a rigid body or a collider needs only a surface"
-                : "export the mesh in one of these formats"}
-            .raise();
+                : "export the mesh in one of these formats");
     }
     FileReader reader(path);
     return format->read(reader);
@@ -183,13 +179,8 @@ void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>
 Mesh read(const std::string& path, std::vector<std::string>* notes) {
     RawMesh raw = read_raw(path, false, notes);
     if (raw.tetrahedra.empty())
-        Complaint{path,
-                  {},
-                  {},
-                  "no tetrahedra",
-                  "at least one tetrahedron",
-                  "the file has " + elements_text(raw) + "; export the mesh with tetrahedra"}
-            .raise();
+        refuse_in(path, {}, {}, "no tetrahedra", "at least one tetrahedron",
+                  "the file has " + elements_text(raw) + "; export the mesh with tetrahedra");
     return take_tetrahedra(path, raw, notes);
 }
 
@@ -197,21 +188,11 @@ namespace {
 
 SurfaceMesh take_triangles(const std::string& path, RawMesh& raw) {
     if (raw.curved_triangles > 0)
-        Complaint{path,
-                  {},
-                  {},
-                  std::to_string(raw.curved_triangles) + " triangles of third or higher order",
-                  "triangles of first or second order",
-                  "export the surface with linear elements"}
-            .raise();
+        refuse_in(path, {}, {}, std::to_string(raw.curved_triangles) + " triangles of third or higher order",
+                  "triangles of first or second order", "export the surface with linear elements");
     if (raw.triangles.empty())
-        Complaint{path,
-                  {},
-                  {},
-                  "no triangles",
-                  "at least one triangle",
-                  "the file has " + elements_text(raw) + "; export the surface as triangles"}
-            .raise();
+        refuse_in(path, {}, {}, "no triangles", "at least one triangle",
+                  "the file has " + elements_text(raw) + "; export the surface as triangles");
     SurfaceMesh surface;
     surface.nodes = drop_unused(raw.nodes, raw.triangles).nodes;
     surface.triangles = std::move(raw.triangles);

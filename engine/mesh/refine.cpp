@@ -10,6 +10,7 @@
 #include "engine/mesh/shapes/add_tetrahedron.h"
 #include "engine/mesh/subdivision.h"
 #include "engine/mesh/tetrahedron.h"
+#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 namespace {
@@ -58,7 +59,7 @@ void require_refinable(const Mesh& mesh) {
     require_valid(mesh, "mesh");
     const auto require_one_each = [&](const std::string& field, std::size_t count) {
         if (count != mesh.tetrahedra.size())
-            refuse("mesh", field.c_str(), std::to_string(count) + " values",
+            refuse("mesh", field, std::to_string(count) + " values",
                    std::to_string(mesh.tetrahedra.size()) + " values, one for each tetrahedron");
     };
     for (const std::array<Index, 3>& triangle : mesh.triangles)

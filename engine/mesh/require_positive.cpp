@@ -1,14 +1,12 @@
 #include "engine/mesh/require_positive.h"
 
-#include <sstream>
-
 #include "engine/mesh/tetrahedron.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 
 void require_positive(const Mesh& mesh, const std::string& what) {
-    if (mesh.tetrahedra.empty()) Complaint{what, "mesh", {}, "no tetrahedra", "at least one tetrahedron", {}}.raise();
+    if (mesh.tetrahedra.empty()) refuse_in(what, "mesh", {}, "no tetrahedra", "at least one tetrahedron");
     require_valid(mesh, what);
     std::size_t inverted = 0, flat = 0, first = mesh.tetrahedra.size();
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
@@ -20,12 +18,13 @@ void require_positive(const Mesh& mesh, const std::string& what) {
     if (inverted + flat == 0) return;
 
     const std::array<Index, 4>& t = mesh.tetrahedra[first];
-    std::ostringstream object, found, hint;
-    object << "tetrahedron " << first << " (nodes " << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << t[3] << ')';
-    found << six_volumes(mesh, t) / 6 << " m^3";
-    hint << "inverted: " << inverted << ", flat: " << flat << " of " << mesh.tetrahedra.size()
-         << " tetrahedra, numbered from 0; repair the mesh with skerry inspect MESH --repair OUT.msh";
-    Complaint{what, object.str(), "rest volume", found.str(), "a positive volume", hint.str()}.raise();
+    std::string nodes;
+    for (const Index node : t) nodes += " " + std::to_string(node);
+    refuse_in(what, "tetrahedron " + std::to_string(first) + " (nodes" + nodes + ")", "rest volume",
+              short_text(six_volumes(mesh, t) / 6, 6) + " m^3", "a positive volume",
+              "inverted: " + std::to_string(inverted) + ", flat: " + std::to_string(flat) + " of " +
+                  std::to_string(mesh.tetrahedra.size()) +
+                  " tetrahedra, numbered from 0; repair the mesh with skerry inspect MESH --repair OUT.msh");
 }
 
 }  // namespace skerry::mesh

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "systems/collision/build_surface.h"
 
 namespace skerry::mesh {
@@ -24,7 +24,7 @@ bool has_all(const std::vector<Index>& in, const std::array<Index, N>& nodes) {
 
 [[noreturn]] void refuse_set(const std::string& object, const std::string& name, const std::string& found,
                              const std::string& expected) {
-    Complaint{object, {}, "sets[\"" + name + "\"]", found, expected, {}}.raise();
+    refuse_in(object, {}, "sets[\"" + name + "\"]", found, expected);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "engine/mesh/tetrahedron.h"
 #include "engine/output/write_file.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "skerry/mesh.h"
 
 namespace skerry::mesh {
@@ -61,13 +61,9 @@ void write_tetrahedra(std::ostream& out, const std::map<std::string, MeshSet>& s
 void write(const std::string& path, const Mesh& mesh) {
     const std::filesystem::path file(path);
     if (file.extension() != ".msh")
-        Complaint{path,
-                  {},
-                  "file name",
+        refuse_in(path, {}, "file name",
                   file.has_extension() ? "the extension " + file.extension().string() : "no extension",
-                  "the extension .msh",
-                  {}}
-            .raise();
+                  "the extension .msh");
     require_valid(mesh, path);
     write_file(file, [&](std::ostream& out) {
         out.precision(std::numeric_limits<Real>::max_digits10);

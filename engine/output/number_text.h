@@ -6,17 +6,12 @@
 #include <cstdio>
 #include <string>
 
+#include "engine/world/complaint.h"
+
 namespace skerry {
 
-/// Formats a number with `digits` significant digits, like %.*g of printf.
-inline std::string short_number(double value, int digits = 3) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    return text;
-}
-
 inline std::string percent(double share) {
-    return short_number(100 * share) + " %";
+    return short_text(100 * share) + " %";
 }
 
 /// Formats a count with its digits in groups of three, for example 1,234,567.
@@ -30,7 +25,7 @@ inline std::string grouped(std::uint64_t value) {
 /// Formats an estimated count that is given as a double.
 inline std::string count_text(double count) {
     constexpr double most_written_out = 1e15;  // counts of at least this size are written with a power of ten
-    return count < most_written_out ? grouped(static_cast<std::uint64_t>(count)) : short_number(count);
+    return count < most_written_out ? grouped(static_cast<std::uint64_t>(count)) : short_text(count);
 }
 
 /// Formats a value with an SI prefix, so that one to three digits stand before the decimal point: (0.00031, "s") gives
@@ -44,8 +39,8 @@ inline std::string with_unit(double value, const char* unit) {
     constexpr double rounds_up = 0.9995;  // with three digits this share of a unit is printed as 1
     const double size = value < 0 ? -value : value;
     for (const Prefix& prefix : prefixes)
-        if (size >= rounds_up * prefix.factor) return short_number(value / prefix.factor) + " " + prefix.name + unit;
-    return short_number(value) + " " + unit;
+        if (size >= rounds_up * prefix.factor) return short_text(value / prefix.factor) + " " + prefix.name + unit;
+    return short_text(value) + " " + unit;
 }
 
 /// Formats a duration, for example "40 s", "12 min", "3.5 h" or "20 days".
@@ -58,8 +53,8 @@ inline std::string duration_text(double seconds) {
     // Smallest number of units in a duration. A larger unit is not used if the duration contains fewer of it.
     constexpr double enough = 2;
     for (const Unit& unit : units)
-        if (seconds >= enough * unit.seconds) return short_number(seconds / unit.seconds) + unit.name;
-    return seconds >= 1 ? short_number(seconds) + " s" : with_unit(seconds, "s");
+        if (seconds >= enough * unit.seconds) return short_text(seconds / unit.seconds) + unit.name;
+    return seconds >= 1 ? short_text(seconds) + " s" : with_unit(seconds, "s");
 }
 
 /// Formats a hash as 0x and 16 digits.

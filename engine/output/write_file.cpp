@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 namespace {
@@ -17,9 +17,7 @@ std::string what(int error) {
 
 [[noreturn]] void complain(const std::filesystem::path& place, const std::string& found, const std::string& expected,
                            const std::string& hint) {
-    Complaint{
-        .file = place.string(), .object = "output", .field = {}, .found = found, .expected = expected, .hint = hint}
-        .raise();
+    refuse_in(place.string(), "output", {}, found, expected, hint);
 }
 
 std::string failure(const std::string& message) {

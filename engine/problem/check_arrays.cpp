@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -40,14 +40,7 @@ std::string title_of(const ContactProblem& problem) {
 
 void check_arrays(const ContactProblem& problem) {
     const auto expect = [&](bool good, const char* field, const std::string& found, const std::string& expected) {
-        if (!good)
-            Complaint{.file = {},
-                      .object = title_of(problem),
-                      .field = field,
-                      .found = found,
-                      .expected = expected,
-                      .hint = {}}
-                .raise();
+        if (!good) refuse(title_of(problem), field, found, expected);
     };
     const auto values = [](const auto& column) { return std::to_string(column.size()) + " values"; };
     const std::size_t count = problem.q.size(), blocks = problem.block.size();

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/problem/check_arrays.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "systems/solver/operators/block_operator.h"
 
 namespace skerry {
@@ -38,13 +38,8 @@ ProblemError measure_problem(const ContactProblem& problem, std::span<const Vec3
 
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction) {
     if (reaction.size() != problem.q.size())
-        Complaint{.file = {},
-                  .object = title_of(problem),
-                  .field = "reaction",
-                  .found = std::to_string(reaction.size()) + " values",
-                  .expected = std::to_string(problem.q.size()) + ", one per contact",
-                  .hint = {}}
-            .raise();
+        refuse(title_of(problem), "reaction", std::to_string(reaction.size()) + " values",
+               std::to_string(problem.q.size()) + ", one per contact");
     return measure_problem(problem, reaction, Friction::cone);
 }
 

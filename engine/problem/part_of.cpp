@@ -2,7 +2,7 @@
 
 #include "components/types.h"
 #include "engine/problem/check_arrays.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "skerry/problem.h"
 
 namespace skerry {
@@ -13,14 +13,8 @@ ContactProblem part_of(const ContactProblem& problem, std::span<const Index> con
     Index previous = -1;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         if (contacts[i] <= previous || contacts[i] >= problem.contacts())
-            Complaint{.file = {},
-                      .object = title_of(problem),
-                      .field = "contacts",
-                      .found = std::to_string(contacts[i]),
-                      .expected =
-                          "contact indices from 0 to " + std::to_string(problem.contacts() - 1) + " in ascending order",
-                      .hint = {}}
-                .raise();
+            refuse(title_of(problem), "contacts", std::to_string(contacts[i]),
+                   "contact indices from 0 to " + std::to_string(problem.contacts() - 1) + " in ascending order");
         previous = contacts[i];
         place[contacts[i]] = static_cast<Index>(i);
     }

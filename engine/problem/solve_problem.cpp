@@ -8,7 +8,7 @@
 #include "engine/problem/check_arrays.h"
 #include "engine/problem/measure_problem.h"
 #include "engine/problem/solve_by_region.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "skerry/problem.h"
 #include "systems/solver/methods/run_method.h"
 
@@ -105,16 +105,12 @@ double seconds_of(const ContactProblem& problem, const ProblemSettings& settings
 }
 
 void check(const ContactProblem& problem, const ProblemSettings& settings) {
-    const auto refuse = [&](const char* field, const std::string& found, const std::string& expected) {
-        Complaint{
-            .file = {}, .object = title_of(problem), .field = field, .found = found, .expected = expected, .hint = {}}
-            .raise();
-    };
-    if (!(settings.tolerance >= 0)) refuse("tolerance", std::to_string(settings.tolerance), "a number >= 0");
+    const std::string title = title_of(problem);
+    if (!(settings.tolerance >= 0)) refuse(title, "tolerance", std::to_string(settings.tolerance), "a number >= 0");
     if (settings.max_iterations < 1)
-        refuse("max_iterations", std::to_string(settings.max_iterations), "an integer >= 1");
+        refuse(title, "max_iterations", std::to_string(settings.max_iterations), "an integer >= 1");
     if (!(settings.relaxation > 0 && settings.relaxation < 2))
-        refuse("relaxation", std::to_string(settings.relaxation), "a number > 0 and < 2");
+        refuse(title, "relaxation", std::to_string(settings.relaxation), "a number > 0 and < 2");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "engine/hdf5/hdf5_image.h"
 #include "engine/output/write_file.h"
 #include "engine/problem/check_arrays.h"
+#include "engine/world/complaint.h"
 #include "skerry/problem.h"
 
 namespace skerry {
@@ -74,20 +75,12 @@ void put_solution(const ContactProblem& problem, std::span<const Vec3> reaction,
 
 void write_problem(const ContactProblem& problem, const std::filesystem::path& file, std::span<const Vec3> reaction) {
     check_arrays(problem);
-    const auto refuse = [&](const char* field, const std::string& found, const std::string& expected) {
-        Complaint{.file = file.string(),
-                  .object = title_of(problem),
-                  .field = field,
-                  .found = found,
-                  .expected = expected,
-                  .hint = {}}
-            .raise();
-    };
-    if (problem.q.empty()) refuse("q", "no contacts", "at least one contact");
+    const std::string name = file.string(), title = title_of(problem);
+    if (problem.q.empty()) refuse_in(name, title, "q", "no contacts", "at least one contact");
     if (!reaction.empty() && reaction.size() != problem.q.size())
-        refuse("reaction", std::to_string(reaction.size()) + " values",
-               std::to_string(problem.q.size()) + ", one per contact");
-    Hdf5Image image(file.string());
+        refuse_in(name, title, "reaction", std::to_string(reaction.size()) + " values",
+                  std::to_string(problem.q.size()) + ", one per contact");
+    Hdf5Image image(name);
     image.put("/fclib_local/spacedim", 3);
     put_matrix(problem, image);
     image.put("/fclib_local/vectors/q", flat(problem.q));

@@ -7,39 +7,38 @@
 #include <utility>
 
 #include "engine/output/number_text.h"
+#include "engine/world/complaint.h"
 #include "engine/world/save/world_file.h"
-#include "skerry/error.h"
 
 namespace skerry {
 
 namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found, const std::string& expected,
-                         const std::string& hint = {}) {
-    Complaint{
-        .file = file.string(), .object = "--restart", .field = {}, .found = found, .expected = expected, .hint = hint}
-        .raise();
+[[noreturn]] void refuse_restart(const std::filesystem::path& file, const std::string& found,
+                                 const std::string& expected, const std::string& hint = {}) {
+    refuse_in(file.string(), "--restart", {}, found, expected, hint);
 }
 
 Json to_json(const RunMemory& memory) {
-    return {{"scene", memory.scene.string()},
-            {"assignments", memory.assignments},
-            {"seconds", memory.seconds},
-            {"frame_step", memory.frame_step},
-            {"samples", memory.samples},
-            {"probe_step", memory.probe_step},
-            {"frame", memory.frame},
-            {"sample", memory.sample},
-            {"seconds_wall", memory.seconds_wall},
-            {"peak_kinetic_energy", memory.peak_kinetic_energy},
-            {"probes", memory.probes}};
+    return object_of({{"scene", memory.scene.string()},
+                      {"assignments", memory.assignments},
+                      {"seconds", memory.seconds},
+                      {"frame_step", memory.frame_step},
+                      {"samples", memory.samples},
+                      {"probe_step", memory.probe_step},
+                      {"frame", memory.frame},
+                      {"sample", memory.sample},
+                      {"seconds_wall", memory.seconds_wall},
+                      {"peak_kinetic_energy", memory.peak_kinetic_energy},
+                      {"probes", memory.probes}});
 }
 
 const char* const damaged = "the file is damaged or was edited; start the run again without --restart";
 
 RunMemory memory_of(const std::filesystem::path& file, const std::string& text) {
     if (text.empty())
-        refuse(file, "a saved world that contains no state of a run", "a file written by `skerry run --checkpoint`");
+        refuse_restart(file, "a saved world that contains no state of a run",
+                       "a file written by `skerry run --checkpoint`");
     RunMemory memory;
     try {
         const Json json = Json::parse(text);
@@ -55,19 +54,20 @@ RunMemory memory_of(const std::filesystem::path& file, const std::string& text) 
         json.at("peak_kinetic_energy").get_to(memory.peak_kinetic_energy);
         memory.probes = json.at("probes");
     } catch (const std::exception& error) {
-        refuse(file, std::string("an unreadable state of a run (") + error.what() + ")",
-               "a file written by `skerry run --checkpoint`", damaged);
+        refuse_restart(file, std::string("an unreadable state of a run (") + error.what() + ")",
+                       "a file written by `skerry run --checkpoint`", damaged);
     }
     const bool good = memory.frame_step > 0 && std::isfinite(memory.frame_step) && memory.samples > 0 &&
                       memory.probe_step >= 0 && memory.frame >= 0 && memory.sample >= 0 &&
                       memory.sample < memory.samples;
     if (!good)
-        refuse(file,
-               "frame " + std::to_string(memory.frame) + ", sample " + std::to_string(memory.sample) + " of " +
-                   std::to_string(memory.samples) + " and a frame step of " + Json(memory.frame_step).dump() + " s",
-               "frame and sample numbers of at least 0, a sample number below the number of samples, and a positive "
-               "frame step",
-               damaged);
+        refuse_restart(
+            file,
+            "frame " + std::to_string(memory.frame) + ", sample " + std::to_string(memory.sample) + " of " +
+                std::to_string(memory.samples) + " and a frame step of " + Json(memory.frame_step).dump() + " s",
+            "frame and sample numbers of at least 0, a sample number below the number of samples, and a positive "
+            "frame step",
+            damaged);
     return memory;
 }
 
@@ -125,24 +125,24 @@ void put_in_place(const std::filesystem::path& file, World world, Scene& scene) 
         "the scene has changed since the checkpoint was written; restore the scene, or start without --restart";
     const auto bodies = world.bodies(), of_scene = scene.world.bodies();
     if (!same_slots(bodies, of_scene))
-        refuse(file, counted(bodies.size(), "bodies in the checkpoint"),
-               "the " + counted(of_scene.size(), "bodies of the scene"), hint);
+        refuse_restart(file, counted(bodies.size(), "bodies in the checkpoint"),
+                       "the " + counted(of_scene.size(), "bodies of the scene"), hint);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const std::string &name = world.name(bodies[b]), &name_in_scene = scene.world.name(of_scene[b]);
         const std::size_t found = world.positions(bodies[b]).size(),
                           expected = scene.world.positions(of_scene[b]).size();
         if (name != name_in_scene || found != expected)
-            refuse(file, "body \"" + name + "\" with " + counted(found, "nodes"),
-                   "body \"" + name_in_scene + "\" with " + counted(expected, "nodes"), hint);
+            refuse_restart(file, "body \"" + name + "\" with " + counted(found, "nodes"),
+                           "body \"" + name_in_scene + "\" with " + counted(expected, "nodes"), hint);
     }
     const auto colliders = world.colliders(), colliders_of_scene = scene.world.colliders();
     if (!same_slots(colliders, colliders_of_scene))
-        refuse(file, counted(colliders.size(), "colliders in the checkpoint"),
-               "the " + counted(colliders_of_scene.size(), "colliders of the scene"), hint);
+        refuse_restart(file, counted(colliders.size(), "colliders in the checkpoint"),
+                       "the " + counted(colliders_of_scene.size(), "colliders of the scene"), hint);
     for (std::size_t c = 0; c < colliders.size(); ++c)
         if (world.name(colliders[c]) != scene.world.name(colliders_of_scene[c]))
-            refuse(file, "collider \"" + world.name(colliders[c]) + "\"",
-                   "collider \"" + scene.world.name(colliders_of_scene[c]) + "\"", hint);
+            refuse_restart(file, "collider \"" + world.name(colliders[c]) + "\"",
+                           "collider \"" + scene.world.name(colliders_of_scene[c]) + "\"", hint);
     // Handles of the replaced world are not valid in the new world.
     for (Probe& probe : scene.probes)
         probe.body = bodies[static_cast<std::size_t>(std::ranges::find(of_scene, probe.body) - of_scene.begin())];

@@ -39,13 +39,13 @@ std::string text_of(const ErrorEstimate& estimate, const Probed& probed) {
     if (!stress && !force) return {};
     std::string effect;
     if (force)
-        effect = "impacts take about " + short_number(impact_duration * std::sqrt(cells), 2) +
+        effect = "impacts take about " + short_text(impact_duration * std::sqrt(cells), 2) +
                  " times as long as they should, and their forces are too large accordingly";
     if (stress) effect += force ? ", and the stress there is wrong" : "the stress there is wrong";
     const Real finer = (stress ? 2 * resolves_stress : resolves_impacts) / cells;
     return "the contact areas of body '" + estimate.name + "' have a radius of up to " +
            with_unit(estimate.contact_radius, "m") + " by the theory of Hertz, less than the edges there, " +
-           with_unit(estimate.contact_edge, "m") + ": " + effect + ": make the cells there " + short_number(finer, 2) +
+           with_unit(estimate.contact_edge, "m") + ": " + effect + ": make the cells there " + short_text(finer, 2) +
            " times smaller";
 }
 

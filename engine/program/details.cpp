@@ -19,11 +19,11 @@ std::string solver_lines(const RunResult& result) {
                                std::string(name_of(result.settings.contact_regions)) + " contact regions";
     if (r.solved == 0) return summary_line("solver", method + ": no contacts to solve");
     std::string text =
-        summary_line("regions", short_number(r.mean_regions, 4) + " per step on average, at most " +
+        summary_line("regions", short_text(r.mean_regions, 4) + " per step on average, at most " +
                                     grouped(static_cast<std::uint64_t>(r.max_regions)) + ", the largest with " +
                                     grouped(static_cast<std::uint64_t>(r.largest_region)) + " contacts");
-    text += summary_line("solver", method + ": " + short_number(r.mean_iterations) +
-                                       " sweeps per region on average, largest error " + short_number(r.worst_error) +
+    text += summary_line("solver", method + ": " + short_text(r.mean_iterations) +
+                                       " sweeps per region on average, largest error " + short_text(r.worst_error) +
                                        " (in a region of " + grouped(static_cast<std::uint64_t>(r.worst_region)) +
                                        " contacts), " + grouped(r.unconverged) + " regions not converged");
     text += summary_line("", grouped(r.solved) + " regions solved, " +
@@ -128,9 +128,9 @@ std::string details_of(const RunResult& result) {
     text += solver_lines(result) + energy_line(result);
     text += summary_line("contact shell", "surfaces came closer than the contact distance by at most " +
                                               with_unit(r.max_gap_violation, "m"));
-    text += summary_line("volume ratio", "current over rest volume of the most compressed element: " +
-                                             short_number(r.worst_volume_ratio) +
-                                             (r.worst_volume_body.empty() ? "" : " (" + r.worst_volume_body + ")"));
+    text += summary_line(
+        "volume ratio", "current over rest volume of the most compressed element: " + short_text(r.worst_volume_ratio) +
+                            (r.worst_volume_body.empty() ? "" : " (" + r.worst_volume_body + ")"));
     text += summary_line("stages", "") + stage_table(result);
     return text + summary_line("state hash", hash_text(result.state_hash));
 }

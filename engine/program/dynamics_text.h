@@ -52,7 +52,7 @@ inline std::string choices_text(const WorldReport& report) {
     const auto why = [](BodyDynamics dynamics, DynamicsReason reason, const Kind& kind) -> std::string {
         constexpr Real written_out = 100;  // larger ratios are written without a decimal point or exponent
         const auto times = [](Real a, Real b) {
-            return (a < written_out * b ? short_number(a / b, 2) : count_text(a / b)) + " times as much";
+            return (a < written_out * b ? short_text(a / b, 2) : count_text(a / b)) + " times as much";
         };
         if (reason == DynamicsReason::self_contact) return "self-contact";
         if (reason == DynamicsReason::losses) return "loss_factor";
@@ -74,17 +74,17 @@ inline Json choices_json(const WorldReport& report) {
     Json choices = Json::array();
     for (const DynamicsChoice& choice : report.dynamics_choices) {
         const DynamicsEstimate& e = choice.estimate;
-        Json json = {{"body", choice.name},
-                     {"dynamics", name_of(choice.dynamics)},
-                     {"reason", name_of(e.reason)},
-                     {"strain", e.strain}};
+        Json json = object_of({{"body", choice.name},
+                               {"dynamics", name_of(choice.dynamics)},
+                               {"reason", name_of(e.reason)},
+                               {"strain", e.strain}});
         if (e.reason == DynamicsReason::cost)
-            json.update({{"explicit", {{"dt", e.explicit_step}, {"cpu_seconds_per_second", e.explicit_cost}}},
-                         {"implicit",
-                          {{"dt", e.implicit_step},
-                           {"deforming_dt", e.deforming_step},
-                           {"cpu_seconds_per_second", e.implicit_cost}}},
-                         {"damped_above_hz", e.damped_above}});
+            json.update(object_of(
+                {{"explicit", object_of({{"dt", e.explicit_step}, {"cpu_seconds_per_second", e.explicit_cost}})},
+                 {"implicit", object_of({{"dt", e.implicit_step},
+                                         {"deforming_dt", e.deforming_step},
+                                         {"cpu_seconds_per_second", e.implicit_cost}})},
+                 {"damped_above_hz", e.damped_above}}));
         choices.push_back(json);
     }
     return choices;

@@ -12,7 +12,7 @@
 #include "engine/program/progress.h"
 #include "engine/program/require_writable.h"
 #include "engine/scene/write_scene.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "skerry/materials.h"
 
 namespace skerry {
@@ -21,13 +21,9 @@ namespace {
 
 void check_outputs(const FillOptions& options) {
     if (options.mesh.extension() != ".msh")
-        Complaint{options.mesh.string(),
-                  {},
-                  "file name",
+        refuse_in(options.mesh.string(), {}, "file name",
                   options.mesh.has_extension() ? "the extension " + options.mesh.extension().string() : "no extension",
-                  "the extension .msh",
-                  "the last file is the mesh to write: skerry fill SURFACE OUT.msh"}
-            .raise();
+                  "the extension .msh", "the last file is the mesh to write: skerry fill SURFACE OUT.msh");
     std::vector<NamedFile> files{{"the mesh", options.mesh}, {"--scene", options.scene}};
     for (const std::filesystem::path& surface : options.surfaces) files.push_back({"SURFACE", surface});
     require_distinct(files);
@@ -41,45 +37,46 @@ Json starter_scene(const FillOptions& options, const MaterialSettings& given, co
     const Real rounding = std::pow(10, std::ceil(std::log10(height)) - 3);
     // Time of six falls, enough for the body to come to rest.
     const Real seconds = std::ceil(60 * std::sqrt(2 * fall / gravity)) / 10;
-    Json material{
-        {"young_modulus", given.young_modulus}, {"poisson_ratio", given.poisson_ratio}, {"density", given.density}};
-    if (!options.material.empty()) material = {{"like", options.material}};
+    Json material = object_of(
+        {{"young_modulus", given.young_modulus}, {"poisson_ratio", given.poisson_ratio}, {"density", given.density}});
+    if (!options.material.empty()) material = object_of({{"like", options.material}});
     const std::string name = options.surfaces.front().stem().string();
-    Json body{{"name", name},
-              {"mesh", {{"file", path_in_scene(options.mesh, options.scene)}}},
-              {"material", "body"},
-              {"position", {0, 0, std::ceil((fall - report.lower.z()) / rounding) * rounding}}};
+    Json body = object_of({{"name", name},
+                           {"mesh", object_of({{"file", path_in_scene(options.mesh, options.scene)}})},
+                           {"material", "body"},
+                           {"position", {0, 0, std::ceil((fall - report.lower.z()) / rounding) * rounding}}});
     if (options.surfaces.size() == 1) {
-        body["visual"] = {{"file", path_in_scene(options.surfaces.front(), options.scene)}};
+        body["visual"] = object_of({{"file", path_in_scene(options.surfaces.front(), options.scene)}});
         if (options.settings.scale != 1) body["visual"]["scale"] = options.settings.scale;
     }
-    return {{"description", name + " falls on a floor."},
-            {"seconds", seconds},
-            {"materials", {{"body", material}}},
-            {"bodies", {body}},
-            {"colliders", {{{"name", "floor"}, {"shape", {{"plane", Json::object()}}}}}}};
+    return object_of(
+        {{"description", name + " falls on a floor."},
+         {"seconds", seconds},
+         {"materials", object_of({{"body", material}})},
+         {"bodies", Json::array({body})},
+         {"colliders",
+          Json::array({object_of({{"name", "floor"}, {"shape", object_of({{"plane", Json::object()}})}})})}});
 }
 
 Json fill_json(const FillOptions& options, const mesh::FilledMesh& filled, const MeshReport& report,
                const Problems& problems, double seconds) {
     const mesh::SurfaceDistance& distance = filled.distance;
-    return {{"schema", "skerry.fill/1"},
-            {"output", options.mesh.string()},
-            {"mesher", filled.mesher},
-            {"exact", filled.exact},
-            {"seconds", seconds},
-            {"surface_triangles", filled.surface.triangles},
-            {"surface_volume", filled.surface_volume ? Json(*filled.surface_volume) : Json()},
-            {"tolerance", filled.tolerance},
-            {"distance",
-             {{"surface_to_mesh", distance.from_first},
-              {"mesh_to_surface", distance.from_second},
-              {"mean_surface_to_mesh", distance.mean_from_first},
-              {"mean_mesh_to_surface", distance.mean_from_second}}},
-            {"stable_dt", filled.stable_step},
-            {"mesh", mesh_json(report)},
-            {"notes", filled.notes},
-            {"problems", problems}};
+    return object_of({{"schema", "skerry.fill/1"},
+                      {"output", options.mesh.string()},
+                      {"mesher", filled.mesher},
+                      {"exact", filled.exact},
+                      {"seconds", seconds},
+                      {"surface_triangles", filled.surface.triangles},
+                      {"surface_volume", filled.surface_volume ? Json(*filled.surface_volume) : Json()},
+                      {"tolerance", filled.tolerance},
+                      {"distance", object_of({{"surface_to_mesh", distance.from_first},
+                                              {"mesh_to_surface", distance.from_second},
+                                              {"mean_surface_to_mesh", distance.mean_from_first},
+                                              {"mean_mesh_to_surface", distance.mean_from_second}})},
+                      {"stable_dt", filled.stable_step},
+                      {"mesh", mesh_json(report)},
+                      {"notes", filled.notes},
+                      {"problems", problems}});
 }
 
 void print_text(const FillOptions& options, const mesh::FilledMesh& filled, const MeshReport& report,
@@ -90,7 +87,7 @@ void print_text(const FillOptions& options, const mesh::FilledMesh& filled, cons
               << summary_line("surface", grouped(filled.surface.triangles) + " triangles, mean edge " +
                                              with_unit(filled.surface.mean_edge, "m"))
               << summary_line("filled by", filled.mesher + " in " + duration_text(seconds));
-    std::string volume = short_number(report.volume, 6) + " m^3";
+    std::string volume = short_text(report.volume, 6) + " m^3";
     if (filled.surface_volume && *filled.surface_volume > 0)
         volume += ", " + percent(std::abs(report.volume / *filled.surface_volume - 1)) + " from that of the surface";
     std::cout << summary_line("volume", volume);
@@ -105,8 +102,8 @@ void print_text(const FillOptions& options, const mesh::FilledMesh& filled, cons
                   << summary_line("", "from the mesh to the surface up to " + with_unit(distance.from_second, "m") +
                                           ", mean " + with_unit(distance.mean_from_second, "m") + "; tolerance " +
                                           with_unit(filled.tolerance, "m"));
-    std::cout << summary_line("quality", "mean " + short_number(report.mean_quality) + ", worst " +
-                                             short_number(report.min_quality) + " (1: regular tetrahedron)")
+    std::cout << summary_line("quality", "mean " + short_text(report.mean_quality) + ", worst " +
+                                             short_text(report.min_quality) + " (1: regular tetrahedron)")
               << summary_line("step", with_unit(filled.stable_step, "s") + " is stable with " +
                                           (options.material.empty() ? "the default material, 1e5 Pa and 1000 kg/m^3"
                                                                     : "the material " + in_quotes(options.material)));

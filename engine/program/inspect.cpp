@@ -18,6 +18,7 @@
 #include "engine/program/start_text.h"
 #include "engine/program/trial.h"
 #include "engine/scene/scene_plan.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -165,7 +166,7 @@ Problems problems_of(const ScenePlan& plan, const std::vector<BodyKindReport>& k
     std::sort(by_step.begin(), by_step.end(), [](const auto& a, const auto& b) { return a.bound.step < b.bound.step; });
     if (by_step.size() > 1 && by_step[1].bound.step > expensive_step_ratio * by_step[0].bound.step)
         problems.push_back("body \"" + by_step[0].first_name + "\" makes all steps " +
-                           short_number(by_step[1].bound.step / by_step[0].bound.step) +
+                           short_text(by_step[1].bound.step / by_step[0].bound.step) +
                            " times shorter than the other bodies require");
     constexpr std::size_t most_named = 20;
     const std::vector<StartOverlap>& overlaps = start.as_written.start_overlaps;
@@ -191,7 +192,7 @@ Problems problems_of(const ScenePlan& plan, const std::vector<BodyKindReport>& k
 /// step.
 const BodyPlan& body_to_mend(const ScenePlan& plan, const InspectOptions& options) {
     const auto refuse = [&](const std::string& object, const std::string& found, const std::string& expected) {
-        Complaint{options.file.string(), object, {}, found, expected, {}}.raise();
+        refuse_in(options.file.string(), object, {}, found, expected);
     };
     if (plan.bodies.empty()) refuse("bodies", "no bodies", "at least one body, whose mesh --repair can improve");
     if (options.body.empty()) {
@@ -240,11 +241,11 @@ int inspect_scene(const InspectOptions& options) {
     for (const StartOverlap& found : start.as_written.start_overlaps) overlap = std::max(overlap, found.depth);
     Json sliders = Json::array();
     for (const Slider& slider : scene.sliders)
-        sliders.push_back({{"name", slider.name},
-                           {"unit", slider.unit},
-                           {"value", slider_value(scene.world, slider)},
-                           {"low", slider.low},
-                           {"high", slider.high}});
+        sliders.push_back(object_of({{"name", slider.name},
+                                     {"unit", slider.unit},
+                                     {"value", slider_value(scene.world, slider)},
+                                     {"low", slider.low},
+                                     {"high", slider.high}}));
     progress.begin("timing the first steps");
     const SceneCost cost =
         try_run(scene.world, plan_run(scene, run.scene, run.seconds, run.frames_per_second), overlap);
@@ -256,59 +257,59 @@ int inspect_scene(const InspectOptions& options) {
         for (const BodyKindReport& kind : kinds) {
             Json materials = Json::object();
             for (const auto& [material, tetrahedra] : kind.materials) materials[material] = tetrahedra;
-            Json body = {{"name", kind.first_name},
-                         {"count", kind.count},
-                         {"dynamics", name_of(kind.dynamics)},
-                         {"materials", materials},
-                         {"mesh", mesh_json(kind.mesh)}};
+            Json body = object_of({{"name", kind.first_name},
+                                   {"count", kind.count},
+                                   {"dynamics", name_of(kind.dynamics)},
+                                   {"materials", materials},
+                                   {"mesh", mesh_json(kind.mesh)}});
             const BodyShapeEntry& shape = plan.bodies[kind.body].shape;
             if (shape.sphere) body["sphere_radius"] = shape.sphere->radius;
-            if (shape.capsule) body["capsule"] = {{"radius", shape.capsule->radius}, {"length", shape.capsule->length}};
+            if (shape.capsule)
+                body["capsule"] = object_of({{"radius", shape.capsule->radius}, {"length", shape.capsule->length}});
             if (shape.cylinder)
-                body["cylinder"] = {{"radius", shape.cylinder->radius}, {"height", shape.cylinder->height}};
+                body["cylinder"] = object_of({{"radius", shape.cylinder->radius}, {"height", shape.cylinder->height}});
             if (kind.sets_step())
-                body.update({{"stable_dt", kind.bound.step},
-                             {"element", name_of(kind.bound.element)},
-                             {"step_bound", bound_json(kind.bound)}});
+                body.update(object_of({{"stable_dt", kind.bound.step},
+                                       {"element", name_of(kind.bound.element)},
+                                       {"step_bound", bound_json(kind.bound)}}));
             bodies.push_back(body);
         }
-        const Json json = {{"schema", "skerry.scene_facts/1"},
-                           {"scene", scene.name},
-                           {"description", scene.description},
-                           {"seconds", scene.seconds},
-                           {"bodies", report.bodies},
-                           {"colliders", report.colliders},
-                           {"joints", plan.joints.size()},
-                           {"ties", plan.ties.size()},
-                           {"cables", plan.cables.size()},
-                           {"cavities", plan.cavities.size()},
-                           {"pipes", plan.pipes.size()},
-                           {"loads", plan.loads.size()},
-                           {"fibres", plan.fibres.size()},
-                           {"springs", plan.springs.size()},
-                           {"pairs", plan.pairs.size()},
-                           {"surfaces", surfaces},
-                           {"sliders", sliders},
-                           {"nodes", report.nodes},
-                           {"elements", report.elements},
-                           {"stable_dt", stable_step},
-                           {"stable_dt_body", report.stable_step_body},
-                           {"steps", cost.steps},
-                           {"dynamics_choices", choices_json(report)},
-                           {"clusters",
-                            {{"count", report.clusters},
-                             {"nodes", report.cluster_nodes},
-                             {"implicit_elements", report.implicit_elements},
-                             {"guards", report.guards}}},
-                           {"contacts_at_start", cost.contacts},
-                           {"overlap_at_start", cost.overlap},
-                           {"start_overlaps", overlaps_json(start.as_written)},
-                           {"trial_seconds", cost.simulated},
-                           {"wall_seconds_per_second", cost.seconds / scene.seconds},
-                           {"wall_seconds", cost.seconds},
-                           {"body_kinds", bodies},
-                           {"notes", plan.notes},
-                           {"problems", problems}};
+        const Json json = object_of({{"schema", "skerry.scene_facts/1"},
+                                     {"scene", scene.name},
+                                     {"description", scene.description},
+                                     {"seconds", scene.seconds},
+                                     {"bodies", report.bodies},
+                                     {"colliders", report.colliders},
+                                     {"joints", plan.joints.size()},
+                                     {"ties", plan.ties.size()},
+                                     {"cables", plan.cables.size()},
+                                     {"cavities", plan.cavities.size()},
+                                     {"pipes", plan.pipes.size()},
+                                     {"loads", plan.loads.size()},
+                                     {"fibres", plan.fibres.size()},
+                                     {"springs", plan.springs.size()},
+                                     {"pairs", plan.pairs.size()},
+                                     {"surfaces", surfaces},
+                                     {"sliders", sliders},
+                                     {"nodes", report.nodes},
+                                     {"elements", report.elements},
+                                     {"stable_dt", stable_step},
+                                     {"stable_dt_body", report.stable_step_body},
+                                     {"steps", cost.steps},
+                                     {"dynamics_choices", choices_json(report)},
+                                     {"clusters", object_of({{"count", report.clusters},
+                                                             {"nodes", report.cluster_nodes},
+                                                             {"implicit_elements", report.implicit_elements},
+                                                             {"guards", report.guards}})},
+                                     {"contacts_at_start", cost.contacts},
+                                     {"overlap_at_start", cost.overlap},
+                                     {"start_overlaps", overlaps_json(start.as_written)},
+                                     {"trial_seconds", cost.simulated},
+                                     {"wall_seconds_per_second", cost.seconds / scene.seconds},
+                                     {"wall_seconds", cost.seconds},
+                                     {"body_kinds", bodies},
+                                     {"notes", plan.notes},
+                                     {"problems", problems}});
         std::cout << json.dump(1) << std::endl;
         return exit_ok;
     }
@@ -332,17 +333,17 @@ int inspect_scene(const InspectOptions& options) {
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
               << (report.stable_step_body.empty() ? "no body limits the step" : "limited by " + report.stable_step_body)
-              << "), " << count_text(cost.steps) << " steps for " << short_number(scene.seconds) << " s\n"
+              << "), " << count_text(cost.steps) << " steps for " << short_text(scene.seconds) << " s\n"
               << "  cost          about " << duration_text(cost.seconds) << " of wall time for the whole run, "
               << duration_text(cost.seconds / scene.seconds) << " per simulated second, "
               << (cost.whole ? "measured in a trial of the whole run"
-                             : "estimated from a trial of the first " + short_number(cost.simulated) + " s")
+                             : "estimated from a trial of the first " + short_text(cost.simulated) + " s")
               << "\n"
               << "  contacts      " << cost.contacts << " at the start\n";
     for (const std::string& choice : choice_texts(report)) std::cout << "  dynamics      " << choice << "\n";
     for (const Slider& slider : scene.sliders)
-        std::cout << "  slider        " << slider.name << ": from " << short_number(slider.low) << " to "
-                  << short_number(slider.high) << (slider.unit == "1" ? "" : " " + slider.unit) << "\n";
+        std::cout << "  slider        " << slider.name << ": from " << short_text(slider.low) << " to "
+                  << short_text(slider.high) << (slider.unit == "1" ? "" : " " + slider.unit) << "\n";
     for (const BodyKindReport& kind : kinds) {
         std::cout << "  body          " << kind.first_name
                   << (kind.count > 1
@@ -364,13 +365,8 @@ int inspect(const InspectOptions& options) {
     if (!options.repair.empty()) check_repair(options);
     if (options.file.extension() == ".json") return inspect_scene(options);
     if (!options.assignments.empty())
-        Complaint{.file = options.file.string(),
-                  .object = "--set",
-                  .field = {},
-                  .found = "a mesh file, which has no bodies or settings",
-                  .expected = "a scene file (.json)",
-                  .hint = "omit the option, or give the scene"}
-            .raise();
+        refuse_in(options.file.string(), "--set", {}, "a mesh file, which has no bodies or settings",
+                  "a scene file (.json)", "omit the option, or give the scene");
     return inspect_mesh(options);
 }
 

@@ -12,7 +12,7 @@
 #include "engine/program/inspect_repair.h"
 #include "engine/program/start_text.h"
 #include "engine/program/thin_part_text.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "skerry/surface_check.h"
 #include "systems/collision/build_surface.h"
 
@@ -26,9 +26,9 @@ constexpr Real hardly_longer = 1.03;  // a ratio of step lengths between 1 and t
 /// The ratio may be below 1, because removing tetrahedra reduces the mass of their nodes. This shortens the steps of
 /// the neighbouring tetrahedra.
 std::string compared(Real ratio) {
-    if (ratio < 1 / hardly_longer) return short_number(ratio) + " times as long: shorter, because neighbours lose mass";
+    if (ratio < 1 / hardly_longer) return short_text(ratio) + " times as long: shorter, because neighbours lose mass";
     if (ratio < 1) return "slightly shorter";
-    return ratio < hardly_longer ? "slightly longer" : short_number(ratio) + " times as long";
+    return ratio < hardly_longer ? "slightly longer" : short_text(ratio) + " times as long";
 }
 
 }  // namespace
@@ -50,30 +50,31 @@ void print_problems(const Problems& problems) {
 Json bound_json(const StepBound& bound) {
     Json worst = Json::array(), without = Json::array();
     for (const CostlyTetrahedron& t : bound.worst)
-        worst.push_back({{"tetrahedron", t.tetrahedron},
-                         {"place", vector_json(t.place)},
-                         {"altitude", t.altitude},
-                         {"mean_edge", t.mean_edge},
-                         {"dt", t.step}});
+        worst.push_back(object_of({{"tetrahedron", t.tetrahedron},
+                                   {"place", vector_json(t.place)},
+                                   {"altitude", t.altitude},
+                                   {"mean_edge", t.mean_edge},
+                                   {"dt", t.step}}));
     for (const StepWithout& w : bound.without)
-        without.push_back({{"share", w.share}, {"tetrahedra", w.count}, {"stable_dt", w.step}});
-    return {{"stable_dt", bound.step}, {"element", name_of(bound.element)}, {"worst", worst}, {"without", without}};
+        without.push_back(object_of({{"share", w.share}, {"tetrahedra", w.count}, {"stable_dt", w.step}}));
+    return object_of(
+        {{"stable_dt", bound.step}, {"element", name_of(bound.element)}, {"worst", worst}, {"without", without}});
 }
 
 void print_bound(const StepBound& bound, const char* indent) {
     for (const CostlyTetrahedron& t : bound.worst)
-        std::cout << indent << "tetrahedron " << t.tetrahedron << " at (" << short_number(t.place.x()) << ", "
-                  << short_number(t.place.y()) << ", " << short_number(t.place.z()) << ") m allows a step of "
+        std::cout << indent << "tetrahedron " << t.tetrahedron << " at (" << short_text(t.place.x()) << ", "
+                  << short_text(t.place.y()) << ", " << short_text(t.place.z()) << ") m allows a step of "
                   << with_unit(t.step, "s") << ": smallest altitude " << with_unit(t.altitude, "m") << ", mean edge "
                   << with_unit(t.mean_edge, "m") << "\n";
     for (const StepWithout& w : bound.without)
         std::cout << indent << "without the worst " << (w.count == 1 ? "one" : grouped(w.count)) << " ("
-                  << short_number(100 * w.share) << " % of the tetrahedra): a step of " << with_unit(w.step, "s")
-                  << ", " << compared(w.step / bound.step) << "\n";
+                  << short_text(100 * w.share) << " % of the tetrahedra): a step of " << with_unit(w.step, "s") << ", "
+                  << compared(w.step / bound.step) << "\n";
     if (bound.alike_share > 0)
-        std::cout << indent << "removal of the worst " << short_number(100 * bound.alike_share)
-                  << " % of the tetrahedra was not tried: their longest step is only "
-                  << short_number(bound.alike_ratio) << " times their shortest\n";
+        std::cout << indent << "removal of the worst " << short_text(100 * bound.alike_share)
+                  << " % of the tetrahedra was not tried: their longest step is only " << short_text(bound.alike_ratio)
+                  << " times their shortest\n";
 }
 
 namespace {
@@ -99,7 +100,7 @@ int report_mesh(const InspectOptions& options, const Mesh& mesh, const std::vect
         add_thin_part(mesh, boundary, {}, problems);
     }
     if (options.json) {
-        Json json = {{"schema", "skerry.mesh/1"}, {"file", options.file.string()}};
+        Json json = object_of({{"schema", "skerry.mesh/1"}, {"file", options.file.string()}});
         json.update(mesh_json(report));
         if (is_body) json["step_bound"] = bound_json(bound);
         json["notes"] = notes;
@@ -110,13 +111,13 @@ int report_mesh(const InspectOptions& options, const Mesh& mesh, const std::vect
     const Vec3 size = report.upper - report.lower;
     std::cout << options.file.string() << ": " << grouped(report.tetrahedra) << " tetrahedra, " << grouped(report.nodes)
               << " nodes, " << grouped(report.boundary_triangles) << " boundary triangles\n"
-              << "  size          " << short_number(size.x()) << " x " << short_number(size.y()) << " x "
-              << short_number(size.z()) << " m, volume " << short_number(report.volume) << " m^3\n"
+              << "  size          " << short_text(size.x()) << " x " << short_text(size.y()) << " x "
+              << short_text(size.z()) << " m, volume " << short_text(report.volume) << " m^3\n"
               << "  edges         mean " << with_unit(report.mean_edge, "m") << ", " << with_unit(report.min_edge, "m")
               << " to " << with_unit(report.max_edge, "m") << "; smallest altitude "
               << with_unit(report.min_altitude, "m") << "\n"
-              << "  quality       mean " << short_number(report.mean_quality) << ", worst "
-              << short_number(report.min_quality) << " (1: regular tetrahedron)\n"
+              << "  quality       mean " << short_text(report.mean_quality) << ", worst "
+              << short_text(report.min_quality) << " (1: regular tetrahedron)\n"
               << "  boundary      " << (report.closed_manifold ? "a closed manifold" : "not a closed manifold") << ", "
               << grouped(report.components) << (report.components == 1 ? " part\n" : " parts\n");
     if (is_body) {
@@ -174,7 +175,7 @@ const char* advice_on(SurfaceFaultKind kind) {
 std::string shell_text(const SurfaceReport& report, const SurfaceShell& shell) {
     std::string text = grouped(shell.triangles) + (shell.triangles == 1 ? " triangle" : " triangles") +
                        " from triangle " + std::to_string(shell.triangle) +
-                       (shell.closed ? ", closed, " + short_number(std::abs(shell.volume)) + " m^3" : ", open");
+                       (shell.closed ? ", closed, " + short_text(std::abs(shell.volume)) + " m^3" : ", open");
     if (shell.around != no_index)
         text +=
             std::string(shell.volume < 0 ? ", a void in shell " : ", inside shell ") + std::to_string(shell.around + 1);
@@ -184,37 +185,38 @@ std::string shell_text(const SurfaceReport& report, const SurfaceShell& shell) {
 Json surface_json(const InspectOptions& options, const SurfaceReport& report, const Problems& problems) {
     Json shells = Json::array(), faults = Json::array();
     for (const SurfaceShell& shell : report.shells)
-        shells.push_back({{"triangles", shell.triangles},
-                          {"triangle", shell.triangle},
-                          {"closed", shell.closed},
-                          {"volume", shell.volume},
-                          {"around", shell.around == no_index ? Json() : Json(shell.around)}});
+        shells.push_back(object_of({{"triangles", shell.triangles},
+                                    {"triangle", shell.triangle},
+                                    {"closed", shell.closed},
+                                    {"volume", shell.volume},
+                                    {"around", shell.around == no_index ? Json() : Json(shell.around)}}));
     for (const SurfaceFault& fault : report.faults)
-        faults.push_back({{"kind", name_of(fault.kind)},
-                          {"count", fault.count},
-                          {"triangle", fault.triangle},
-                          {"other", fault.other == no_index ? Json() : Json(fault.other)},
-                          {"place", vector_json(fault.place)},
-                          {"length", fault.length}});
+        faults.push_back(object_of({{"kind", name_of(fault.kind)},
+                                    {"count", fault.count},
+                                    {"triangle", fault.triangle},
+                                    {"other", fault.other == no_index ? Json() : Json(fault.other)},
+                                    {"place", vector_json(fault.place)},
+                                    {"length", fault.length}}));
     const std::size_t closed = static_cast<std::size_t>(std::ranges::count(report.shells, true, &SurfaceShell::closed));
-    return {{"schema", "skerry.surface/1"},
-            {"file", options.file.string()},
-            {"nodes", report.nodes},
-            {"triangles", report.triangles},
-            {"lower", vector_json(report.lower)},
-            {"upper", vector_json(report.upper)},
-            {"area", report.area},
-            {"volume", closed > 0 ? Json(report.volume) : Json()},
-            {"edge", {{"min", report.min_edge}, {"mean", report.mean_edge}, {"max", report.max_edge}}},
-            {"merged", report.merged},
-            {"tolerance", report.tolerance},
-            {"closed_manifold", closed == report.shells.size() && !report.find(SurfaceFaultKind::branching_edges) &&
-                                    !report.find(SurfaceFaultKind::pinched_nodes)},
-            {"can_be_filled", report.can_be_filled()},
-            {"components", report.shells.size()},
-            {"shells", shells},
-            {"faults", faults},
-            {"problems", problems}};
+    return object_of(
+        {{"schema", "skerry.surface/1"},
+         {"file", options.file.string()},
+         {"nodes", report.nodes},
+         {"triangles", report.triangles},
+         {"lower", vector_json(report.lower)},
+         {"upper", vector_json(report.upper)},
+         {"area", report.area},
+         {"volume", closed > 0 ? Json(report.volume) : Json()},
+         {"edge", object_of({{"min", report.min_edge}, {"mean", report.mean_edge}, {"max", report.max_edge}})},
+         {"merged", report.merged},
+         {"tolerance", report.tolerance},
+         {"closed_manifold", closed == report.shells.size() && !report.find(SurfaceFaultKind::branching_edges) &&
+                                 !report.find(SurfaceFaultKind::pinched_nodes)},
+         {"can_be_filled", report.can_be_filled()},
+         {"components", report.shells.size()},
+         {"shells", shells},
+         {"faults", faults},
+         {"problems", problems}});
 }
 
 /// Reports a surface of triangles, from which a collider or a rigid body can be made.
@@ -231,9 +233,9 @@ int report_surface(const InspectOptions& options, const SurfaceMesh& surface) {
     const Vec3 size = report.upper - report.lower;
     std::cout << options.file.string() << ": a surface of " << grouped(report.triangles) << " triangles, "
               << grouped(report.nodes) << " nodes\n"
-              << "  size          " << short_number(size.x()) << " x " << short_number(size.y()) << " x "
-              << short_number(size.z()) << " m, area " << short_number(report.area) << " m^2"
-              << (report.volume > 0 ? ", volume " + short_number(report.volume) + " m^3" : "") << "\n"
+              << "  size          " << short_text(size.x()) << " x " << short_text(size.y()) << " x "
+              << short_text(size.z()) << " m, area " << short_text(report.area) << " m^2"
+              << (report.volume > 0 ? ", volume " + short_text(report.volume) + " m^3" : "") << "\n"
               << "  edges         mean " << with_unit(report.mean_edge, "m") << ", " << with_unit(report.min_edge, "m")
               << " to " << with_unit(report.max_edge, "m") << "\n"
               << "  welded        "
@@ -266,13 +268,8 @@ std::optional<SurfaceMesh> surface_instead(const InspectOptions& options) {
 
 int inspect_mesh(const InspectOptions& options) {
     if (!options.body.empty())
-        Complaint{.file = options.file.string(),
-                  .object = "--body",
-                  .field = {},
-                  .found = "a mesh file, which has no bodies or settings",
-                  .expected = "a scene file (.json)",
-                  .hint = "omit the option, or give the scene"}
-            .raise();
+        refuse_in(options.file.string(), "--body", {}, "a mesh file, which has no bodies or settings",
+                  "a scene file (.json)", "omit the option, or give the scene");
     const bool repairs = !options.repair.empty();  // only a mesh of tetrahedra can be repaired
     if (!repairs && mesh::is_surface_format(options.file.string()))
         return report_surface(options, mesh::read_surface(options.file.string()));

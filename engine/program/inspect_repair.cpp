@@ -15,23 +15,23 @@ namespace skerry {
 namespace {
 
 Json figures_json(const MeshFigures& figures) {
-    return {{"nodes", figures.mesh.nodes},
-            {"tetrahedra", figures.mesh.tetrahedra},
-            {"volume", figures.mesh.volume},
-            {"surface_area", figures.surface_area},
-            {"min_altitude", figures.mesh.min_altitude},
-            {"min_quality", figures.mesh.min_quality},
-            {"mean_quality", figures.mesh.mean_quality},
-            {"stable_dt", figures.step}};
+    return object_of({{"nodes", figures.mesh.nodes},
+                      {"tetrahedra", figures.mesh.tetrahedra},
+                      {"volume", figures.mesh.volume},
+                      {"surface_area", figures.surface_area},
+                      {"min_altitude", figures.mesh.min_altitude},
+                      {"min_quality", figures.mesh.min_quality},
+                      {"mean_quality", figures.mesh.mean_quality},
+                      {"stable_dt", figures.step}});
 }
 
 std::string change(Real before, Real after) {
     if (!(before > 0)) return "";
     const Real ratio = after / before;
-    if (ratio > 2) return short_number(ratio) + " times";
+    if (ratio > 2) return short_text(ratio) + " times";
     const Real percent = 100 * (ratio - 1);
     if (percent > -1e-6 && percent < 1e-6) return "same";
-    return (percent > 0 ? "+" : "") + short_number(percent) + " %";
+    return (percent > 0 ? "+" : "") + short_text(percent) + " %";
 }
 
 void print_row(const char* name, const std::string& before, const std::string& after, const std::string& remark = {}) {
@@ -50,14 +50,14 @@ void print_table(const RepairedMesh& repaired, const RepairTask& task) {
     print_row("", "before", "after");
     count_row("nodes", a.mesh.nodes, b.mesh.nodes);
     count_row("tetrahedra", a.mesh.tetrahedra, b.mesh.tetrahedra);
-    print_row("volume [m^3]", short_number(a.mesh.volume, 6), short_number(b.mesh.volume, 6),
+    print_row("volume [m^3]", short_text(a.mesh.volume, 6), short_text(b.mesh.volume, 6),
               change(a.mesh.volume, b.mesh.volume));
-    print_row("surface [m^2]", short_number(a.surface_area, 6), short_number(b.surface_area, 6),
+    print_row("surface [m^2]", short_text(a.surface_area, 6), short_text(b.surface_area, 6),
               change(a.surface_area, b.surface_area));
     real_row("worst altitude", a.mesh.min_altitude, b.mesh.min_altitude, "m");
-    print_row("worst quality", short_number(a.mesh.min_quality), short_number(b.mesh.min_quality),
+    print_row("worst quality", short_text(a.mesh.min_quality), short_text(b.mesh.min_quality),
               "1: regular tetrahedron");
-    print_row("mean quality", short_number(a.mesh.mean_quality), short_number(b.mesh.mean_quality));
+    print_row("mean quality", short_text(a.mesh.mean_quality), short_text(b.mesh.mean_quality));
     real_row("stable step", a.step, b.step, "s");
     std::printf("  stable steps with %s; %s edges of the surface were collapsed, %s were flipped\n",
                 task.step_of.c_str(), grouped(repaired.collapsed).c_str(), grouped(repaired.flipped).c_str());
@@ -79,21 +79,20 @@ void print_table(const RepairedMesh& repaired, const RepairTask& task) {
 }
 
 void print_json(const RepairedMesh& repaired, const RepairTask& task, const InspectOptions& options) {
-    const Json json = {
-        {"schema", "skerry.mesh_repair/1"},
-        {"mesh", task.what},
-        {"output", options.repair.string()},
-        {"written", repaired.refusal.empty()},
-        {"refusal", repaired.refusal},
-        {"before", figures_json(repaired.before)},
-        {"after", figures_json(repaired.after)},
-        {"edges_collapsed", repaired.collapsed},
-        {"edges_flipped", repaired.flipped},
-        {"nodes_parted", repaired.parted},
-        {"kept", repaired.kept},
-        {"tolerance", repaired.tolerance},
-        {"distance",
-         {{"old_from_new", repaired.distance.from_first}, {"new_from_old", repaired.distance.from_second}}}};
+    const Json json = object_of({{"schema", "skerry.mesh_repair/1"},
+                                 {"mesh", task.what},
+                                 {"output", options.repair.string()},
+                                 {"written", repaired.refusal.empty()},
+                                 {"refusal", repaired.refusal},
+                                 {"before", figures_json(repaired.before)},
+                                 {"after", figures_json(repaired.after)},
+                                 {"edges_collapsed", repaired.collapsed},
+                                 {"edges_flipped", repaired.flipped},
+                                 {"nodes_parted", repaired.parted},
+                                 {"kept", repaired.kept},
+                                 {"tolerance", repaired.tolerance},
+                                 {"distance", object_of({{"old_from_new", repaired.distance.from_first},
+                                                         {"new_from_old", repaired.distance.from_second}})}});
     std::cout << json.dump(1) << std::endl;
 }
 
@@ -101,13 +100,7 @@ void print_json(const RepairedMesh& repaired, const RepairTask& task, const Insp
 
 void check_repair(const InspectOptions& options) {
     const auto refuse = [&](const std::string& field, const std::string& found, const std::string& expected) {
-        Complaint{.file = options.repair.string(),
-                  .object = "--repair",
-                  .field = field,
-                  .found = found,
-                  .expected = expected,
-                  .hint = {}}
-            .raise();
+        refuse_in(options.repair.string(), "--repair", field, found, expected);
     };
     if (options.repair.extension() != ".msh")
         refuse("file name",
@@ -119,13 +112,9 @@ void check_repair(const InspectOptions& options) {
     if (!options.overwrite && std::filesystem::equivalent(options.repair, options.file, none))
         refuse("file name", "the input file", "a different file, or the option --overwrite");
     if (mesh::netgen_program().empty())
-        Complaint{.file = {},
-                  .object = "--repair",
-                  .field = {},
-                  .found = "no program skerry-fill in the folder of skerry or in PATH",
-                  .expected = "the program skerry-fill, which is built if Netgen's library is installed",
-                  .hint = mesh::install_netgen}
-            .raise();
+        skerry::refuse("--repair", {}, "no program skerry-fill in the folder of skerry or in PATH",
+                       "the program skerry-fill, which is built if Netgen's library is installed",
+                       mesh::install_netgen);
 }
 
 int inspect_repair(const RepairTask& task, const InspectOptions& options) {

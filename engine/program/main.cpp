@@ -49,7 +49,7 @@ const CLI::Validator share(
 template <class Number>
 CLI::Validator within(Number least, Number most) {
     constexpr int digits = 10;
-    const std::string from = short_number(least, digits), to = short_number(most, digits);
+    const std::string from = short_text(least, digits), to = short_text(most, digits);
     return {[=](std::string& text) {
                 Number value{};
                 return CLI::detail::lexical_cast(text, value) && least <= value && value <= most
@@ -406,13 +406,8 @@ void require_known_command(const CLI::App& app, int argc, char** argv) {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
     if (std::ranges::find(names, found) != names.end()) return;
-    Complaint{.file = {},
-              .object = "command line",
-              .field = {},
-              .found = "the command " + in_quotes(found),
-              .expected = "one of the commands " + listed(names),
-              .hint = nearest_hint(found, names)}
-        .raise();
+    refuse("command line", {}, "the command " + in_quotes(found), "one of the commands " + listed(names),
+           nearest_hint(found, names));
 }
 
 /// Returns the version, the instruction set that the kernels use, and the instruction sets of this machine.

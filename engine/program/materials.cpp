@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/output/json_object.h"
 #include "engine/output/number_text.h"
 #include "engine/program/commands.h"
 
@@ -49,10 +49,10 @@ void print_materials() {
     print_row("material", "E", "nu", "density", "loss factor", "yield stress", "");
     for (const NamedMaterial& m : named_materials()) {
         const std::string modulus = sourced_text(m.young_modulus, with_unit(m.young_modulus.value, "Pa"), number);
-        const std::string poisson = sourced_text(m.poisson_ratio, short_number(m.poisson_ratio.value), number);
-        const std::string density = sourced_text(m.density, short_number(m.density.value, 4) + " kg/m^3", number);
+        const std::string poisson = sourced_text(m.poisson_ratio, short_text(m.poisson_ratio.value), number);
+        const std::string density = sourced_text(m.density, short_text(m.density.value, 4) + " kg/m^3", number);
         const std::string loss =
-            m.loss_factor ? sourced_text(*m.loss_factor, short_number(m.loss_factor->value), number) : "";
+            m.loss_factor ? sourced_text(*m.loss_factor, short_text(m.loss_factor->value), number) : "";
         const std::string yield =
             m.yield_stress ? sourced_text(*m.yield_stress, with_unit(m.yield_stress->value, "Pa"), number) : "";
         print_row(m.name, modulus, poisson, density, loss, yield, m.title);
@@ -60,15 +60,15 @@ void print_materials() {
     std::cout << "\n";
     print_row("friction of", "and", "", "static", "dynamic", "", "");
     for (const KnownFriction& pair : known_frictions())
-        print_row(pair.first, pair.second, "", short_number(pair.static_friction),
-                  short_number(pair.dynamic_friction) + " [" + std::to_string(number(pair.source)) + "]", "", "");
+        print_row(pair.first, pair.second, "", short_text(pair.static_friction),
+                  short_text(pair.dynamic_friction) + " [" + std::to_string(number(pair.source)) + "]", "", "");
     std::cout << "\nsources\n";
     std::size_t count = 0;
     for (const std::string_view source : number.list()) std::cout << "  [" << ++count << "] " << source << "\n";
 }
 
-nlohmann::ordered_json value_json(const SourcedValue& value) {
-    return {{"value", value.value}, {"source", value.source}};
+Json value_json(const SourcedValue& value) {
+    return object_of({{"value", value.value}, {"source", value.source}});
 }
 
 }  // namespace
@@ -78,24 +78,24 @@ int materials(bool as_json) {
         print_materials();
         return exit_ok;
     }
-    nlohmann::ordered_json list = nlohmann::ordered_json::array(), frictions = nlohmann::ordered_json::array();
+    Json list = Json::array(), frictions = Json::array();
     for (const NamedMaterial& m : named_materials()) {
-        nlohmann::ordered_json row{{"name", m.name},
-                                   {"title", m.title},
-                                   {"young_modulus", value_json(m.young_modulus)},
-                                   {"poisson_ratio", value_json(m.poisson_ratio)},
-                                   {"density", value_json(m.density)}};
+        Json row = object_of({{"name", m.name},
+                              {"title", m.title},
+                              {"young_modulus", value_json(m.young_modulus)},
+                              {"poisson_ratio", value_json(m.poisson_ratio)},
+                              {"density", value_json(m.density)}});
         if (m.loss_factor) row["loss_factor"] = value_json(*m.loss_factor);
         if (m.yield_stress) row["yield_stress"] = value_json(*m.yield_stress);
         list.push_back(std::move(row));
     }
     for (const KnownFriction& pair : known_frictions())
-        frictions.push_back({{"first", pair.first},
-                             {"second", pair.second},
-                             {"static_friction", pair.static_friction},
-                             {"dynamic_friction", pair.dynamic_friction},
-                             {"source", pair.source}});
-    std::cout << nlohmann::ordered_json{{"materials", list}, {"frictions", frictions}}.dump(2) << "\n";
+        frictions.push_back(object_of({{"first", pair.first},
+                                       {"second", pair.second},
+                                       {"static_friction", pair.static_friction},
+                                       {"dynamic_friction", pair.dynamic_friction},
+                                       {"source", pair.source}}));
+    std::cout << object_of({{"materials", list}, {"frictions", frictions}}).dump(2) << "\n";
     return exit_ok;
 }
 

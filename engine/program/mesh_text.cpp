@@ -18,7 +18,7 @@ Problems problems_of(const MeshReport& r) {
     if (r.slivers > 0)
         problems.push_back(grouped(r.slivers) + " of " + grouped(r.tetrahedra) +
                            (r.slivers == 1 ? " tetrahedra is a sliver" : " tetrahedra are slivers") +
-                           ", the worst of quality " + short_number(r.min_quality) +
+                           ", the worst of quality " + short_text(r.min_quality) +
                            " (1: regular tetrahedron), which shortens the stable step");
     if (!r.closed_manifold)
         problems.push_back("the boundary is not a closed manifold (" + r.boundary_fault + "): contacts may fail there");
@@ -30,23 +30,23 @@ Json mesh_json(const MeshReport& r) {
     for (const auto& [label, tetrahedra] : r.labels) labels[std::to_string(label)] = tetrahedra;
     Json sets = Json::object();
     for (const auto& [name, count] : r.sets)
-        sets[name] = {{"nodes", count[0]}, {"faces", count[1]}, {"tetrahedra", count[2]}};
-    return {{"nodes", r.nodes},
-            {"tetrahedra", r.tetrahedra},
-            {"boundary_triangles", r.boundary_triangles},
-            {"components", r.components},
-            {"lower", vector_json(r.lower)},
-            {"upper", vector_json(r.upper)},
-            {"volume", r.volume},
-            {"edge", {{"mean", r.mean_edge}, {"min", r.min_edge}, {"max", r.max_edge}}},
-            {"min_altitude", r.min_altitude},
-            {"quality", {{"min", r.min_quality}, {"mean", r.mean_quality}}},
-            {"inverted", r.inverted},
-            {"flat", r.flat},
-            {"slivers", r.slivers},
-            {"closed_manifold", r.closed_manifold},
-            {"labels", labels},
-            {"sets", sets}};
+        sets[name] = object_of({{"nodes", count[0]}, {"faces", count[1]}, {"tetrahedra", count[2]}});
+    return object_of({{"nodes", r.nodes},
+                      {"tetrahedra", r.tetrahedra},
+                      {"boundary_triangles", r.boundary_triangles},
+                      {"components", r.components},
+                      {"lower", vector_json(r.lower)},
+                      {"upper", vector_json(r.upper)},
+                      {"volume", r.volume},
+                      {"edge", object_of({{"mean", r.mean_edge}, {"min", r.min_edge}, {"max", r.max_edge}})},
+                      {"min_altitude", r.min_altitude},
+                      {"quality", object_of({{"min", r.min_quality}, {"mean", r.mean_quality}})},
+                      {"inverted", r.inverted},
+                      {"flat", r.flat},
+                      {"slivers", r.slivers},
+                      {"closed_manifold", r.closed_manifold},
+                      {"labels", labels},
+                      {"sets", sets}});
 }
 
 std::string labels_text(const MeshReport& report) {

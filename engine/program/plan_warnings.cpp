@@ -50,7 +50,7 @@ Extent extent_of(const Mesh& mesh, const BodySettings& body, const Vec3& gravity
 
 /// Formats an estimate with two digits, for example "20,000" or "3.9".
 std::string rough(Real value) {
-    if (value < 100) return short_number(value, 2);
+    if (value < 100) return short_text(value, 2);
     const Real unit = std::pow(10, std::floor(std::log10(value)) - 1);
     return count_text(std::round(value / unit) * unit);
 }
@@ -76,7 +76,7 @@ void warn_of_sag(const ScenePlan& plan, const BodyPlan& body, Real height, std::
     if (sagging == nullptr || !(sag > most_sag)) return;
     warnings.push_back("body \"" + body.settings.name + "\" sags by about " + rough(sag) +
                        " times its height under its own weight (height " + with_unit(height, "m") + ", E " +
-                       short_number(sagging->young_modulus) + " Pa, density " + short_number(sagging->density, 4) +
+                       short_text(sagging->young_modulus) + " Pa, density " + short_text(sagging->density, 4) +
                        " kg/m^3): is E in Pa, the density in kg/m^3, and the mesh in m (mesh.scale)?");
 }
 
@@ -106,8 +106,8 @@ void warn_of_rigid(const BodySettings& body, const Mesh& mesh, const Extent& ext
     if (!body.mass) return;
     const Real density = *body.mass / volume_of(mesh), diagonal = extent.edges.norm();
     if (density > most_density || density < least_given_density)
-        warnings.push_back(who + " has a mass of " + short_number(*body.mass) + " kg and a mean density of " +
-                           short_number(density, 2) + " kg/m^3: is \"mass\" in kg, and the mesh in m?");
+        warnings.push_back(who + " has a mass of " + short_text(*body.mass) + " kg and a mean density of " +
+                           short_text(density, 2) + " kg/m^3: is \"mass\" in kg, and the mesh in m?");
     if (!body.inertia || !body.center_of_mass) return;
     const Real radius = std::sqrt(body.inertia->diagonal().maxCoeff() / *body.mass);
     if (radius > diagonal)
@@ -134,18 +134,18 @@ void warn_of_sizes(const ScenePlan& plan, const std::vector<Extent>& extents, st
 
 void warn_of_material(const std::string& name, const MaterialSettings& material, std::vector<std::string>& warnings) {
     const std::string whose =
-        "material \"" + name + "\" has a density of " + short_number(material.density, 4) + " kg/m^3, ";
+        "material \"" + name + "\" has a density of " + short_text(material.density, 4) + " kg/m^3, ";
     if (material.density < least_density)
         warnings.push_back(whose + "about that of air: is it in g/cm^3? 1 g/cm^3 is 1000 kg/m^3");
     if (material.density > most_density)
         warnings.push_back(whose + "more than any material: is it in kg/m^3? Water has 1000 kg/m^3");
     if (material.young_modulus > most_modulus)
-        warnings.push_back("material \"" + name + "\" has a Young's modulus of " +
-                           short_number(material.young_modulus) + " Pa, more than diamond: is it in Pa?");
+        warnings.push_back("material \"" + name + "\" has a Young's modulus of " + short_text(material.young_modulus) +
+                           " Pa, more than diamond: is it in Pa?");
     if (material.plasticity && material.plasticity->yield_stress < least_yield_ratio * material.young_modulus)
         warnings.push_back("material \"" + name + "\" has a yield stress of " +
-                           short_number(material.plasticity->yield_stress) + " Pa, far below its Young's modulus of " +
-                           short_number(material.young_modulus) + " Pa: are both in Pa?");
+                           short_text(material.plasticity->yield_stress) + " Pa, far below its Young's modulus of " +
+                           short_text(material.young_modulus) + " Pa: are both in Pa?");
 }
 
 /// Warns if a collider has another pose than its keys. The run uses the keys.
@@ -181,7 +181,7 @@ std::vector<std::string> plan_warnings(const ScenePlan& plan) {
     std::vector<std::string> warnings;
     const Vec3& gravity = plan.settings.gravity;
     if (gravity.norm() > most_gravity)
-        warnings.push_back("settings.gravity is " + short_number(gravity.norm()) +
+        warnings.push_back("settings.gravity is " + short_text(gravity.norm()) +
                            " m/s^2: is it in m/s^2? The Earth has 9.81 m/s^2");
     std::vector<Extent> extents;
     std::vector<bool> used(plan.materials.size(), false);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/program/progress.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "skerry/problem.h"
 
 namespace skerry {
@@ -118,13 +118,8 @@ void ExportedProblems::write(ContactProblem problem, const StepProblem& step, co
 std::unique_ptr<Writer> exported_problems(const std::filesystem::path& folder, const Scene& scene,
                                           const RunOptions& options) {
     if (scene.name.empty() || scene.name.find_first_of("/\\") != std::string::npos)
-        Complaint{.file = options.scene.string(),
-                  .object = {},
-                  .field = "name",
-                  .found = "\"" + scene.name + "\"",
-                  .expected = "a file name without / and \\",
-                  .hint = "change \"name\" of the scene; the names of exported files begin with the name of the scene"}
-            .raise();
+        refuse_in(options.scene.string(), {}, "name", "\"" + scene.name + "\"", "a file name without / and \\",
+                  "change \"name\" of the scene; the names of exported files begin with the name of the scene");
     return std::make_unique<ExportedProblems>(folder, scene.name, options);
 }
 

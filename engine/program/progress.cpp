@@ -58,7 +58,7 @@ Progress::Progress(bool wanted, double seconds, double steps, double step, doubl
 
 void Progress::begin() {
     begun_ = true;
-    std::fprintf(stderr, "skerry: %s s to simulate, about %s steps of %s\n", short_number(seconds_).c_str(),
+    std::fprintf(stderr, "skerry: %s s to simulate, about %s steps of %s\n", short_text(seconds_).c_str(),
                  count_text(steps_).c_str(), with_unit(step_, "s").c_str());
 }
 
@@ -82,16 +82,16 @@ void Progress::show(double time, std::uint64_t steps) {
 
 void Progress::show_bar(double wall, double time) {
     const double share = share_of(time, seconds_);
-    std::fprintf(stderr, "\r\033[K%s %s %%  %s of %s s", bar_text(share).c_str(), short_number(100 * share).c_str(),
-                 short_number(time).c_str(), short_number(seconds_).c_str());
+    std::fprintf(stderr, "\r\033[K%s %s %%  %s of %s s", bar_text(share).c_str(), short_text(100 * share).c_str(),
+                 short_text(time).c_str(), short_text(seconds_).c_str());
     if (const std::string left = left_text(); !left.empty())
-        std::fprintf(stderr, "  %s x real time  %s left", short_number(time / wall).c_str(), left.c_str());
+        std::fprintf(stderr, "  %s x real time  %s left", short_text(time / wall).c_str(), left.c_str());
 }
 
 void Progress::show_line(double wall, double time, std::uint64_t steps) {
     const double share = share_of(time, seconds_);
     std::fprintf(stderr, "skerry: after %s: %s of %s s (%s %%), %s steps", duration_text(wall).c_str(),
-                 short_number(time).c_str(), short_number(seconds_).c_str(), short_number(100 * share).c_str(),
+                 short_text(time).c_str(), short_text(seconds_).c_str(), short_text(100 * share).c_str(),
                  grouped(steps).c_str());
     if (const std::string left = left_text(); !left.empty()) std::fprintf(stderr, "; about %s left", left.c_str());
     std::fputc('\n', stderr);

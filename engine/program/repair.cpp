@@ -9,7 +9,7 @@
 #include "engine/mesh/repair/surface_distance.h"
 #include "engine/mesh/repair/surface_measures.h"
 #include "engine/output/number_text.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "systems/collision/build_surface.h"
 
 namespace skerry {
@@ -37,36 +37,23 @@ public:
         : parted_(mesh::part_fans(mesh)), mesh_(parted_.mesh), of_(of), progress_(progress) {
         const std::string fault = mesh::manifold_fault(boundary_triangles(mesh_.tetrahedra));
         if (!fault.empty())
-            Complaint{what,
-                      "boundary",
-                      {},
-                      fault,
-                      "a closed manifold: two triangles at each edge",
+            refuse_in(what, "boundary", {}, fault, "a closed manifold: two triangles at each edge",
                       parted_.parted > 0 || fault.find("triangles") != std::string::npos
                           ? "separate tetrahedra that share only an edge: delete the tetrahedra on one side of the "
                             "edge, or give them their own copies of its two nodes"
-                          : ""}
-                .raise();
+                          : "");
         if (parted_.parts > 1)
-            Complaint{what,
-                      "tetrahedra",
-                      {},
-                      std::to_string(parted_.parts) + " parts without common faces",
+            refuse_in(what, "tetrahedra", {}, std::to_string(parted_.parts) + " parts without common faces",
                       "one part, in which common faces connect all tetrahedra",
-                      "save each part as a separate mesh and repair the meshes one by one"}
-                .raise();
+                      "save each part as a separate mesh and repair the meshes one by one");
         surface_ = mesh::boundary(mesh_);
         result_.before = figures_of(mesh, surface_, of);
         result_.parted = parted_.parted;
         const MeshReport& report = result_.before.mesh;
         if (report.labels.size() > 1)
-            Complaint{what,
-                      "tetrahedra",
-                      "label",
-                      std::to_string(report.labels.size()) + " different labels",
+            refuse_in(what, "tetrahedra", "label", std::to_string(report.labels.size()) + " different labels",
                       "one label, because all tetrahedra are replaced and the boundary between materials would be lost",
-                      "save the tetrahedra of each label as a separate mesh and repair the meshes one by one"}
-                .raise();
+                      "save the tetrahedra of each label as a separate mesh and repair the meshes one by one");
         result_.tolerance = tolerance * (report.upper - report.lower).norm();
     }
 

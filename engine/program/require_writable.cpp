@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "engine/output/write_file.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -14,8 +14,7 @@ namespace {
 
 [[noreturn]] void refuse_output(const std::filesystem::path& place, const std::string& found,
                                 const std::string& expected) {
-    Complaint{.file = place.string(), .object = "output", .field = {}, .found = found, .expected = expected, .hint = {}}
-        .raise();
+    refuse_in(place.string(), "output", {}, found, expected);
 }
 
 }  // namespace
@@ -56,13 +55,8 @@ void require_distinct(std::span<const NamedFile> files) {
             std::error_code error;
             const std::filesystem::file_status found = std::filesystem::status(files[i].file, error);
             if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found)) continue;  // /dev/null
-            Complaint{.file = files[i].file.string(),
-                      .object = files[i].name,
-                      .field = {},
-                      .found = "the same file as " + std::string(files[k].name),
-                      .expected = "a different file",
-                      .hint = "choose another file name"}
-                .raise();
+            refuse_in(files[i].file.string(), files[i].name, {}, "the same file as " + std::string(files[k].name),
+                      "a different file", "choose another file name");
         }
 }
 

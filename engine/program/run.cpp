@@ -116,7 +116,7 @@ private:
         }
         if (ranks_.any(result_.status == "ok" && outputs_ != nullptr && outputs_->all_failed()))
             result_.status =
-                "stopped at " + short_number(world_.time(), 6) + " s, because none of the outputs can be written";
+                "stopped at " + short_text(world_.time(), 6) + " s, because none of the outputs can be written";
     }
     void advance(double duration) {
         const auto go_on = [&](const StepReport& so_far) {
@@ -132,7 +132,7 @@ private:
         waiting_ += ranks_.seconds() - waited;
         steps_ += static_cast<std::uint64_t>(step.steps);
         if (step.status == StepStatus::stopped)
-            result_.status = "stopped by a signal at " + short_number(world_.time(), 6) + " s";
+            result_.status = "stopped by a signal at " + short_text(world_.time(), 6) + " s";
         else if (!step.ok())
             result_.status = step.message() + " (" + advice + ")";
         const Real sampled = step.ok() ? duration : world_.time() - start;
@@ -187,8 +187,8 @@ void start_from_rest(World& world, RunResult& result) {
         result.status = "--from-rest: found no equilibrium: " + report.message;
     else
         result.status = "--from-rest: found no equilibrium: after " + steps + " the out-of-balance force on body '" +
-                        report.worst_name + "' is " + short_number(report.residual, 2) +
-                        " of the forces on it, expected at most " + short_number(settings.tolerance);
+                        report.worst_name + "' is " + short_text(report.residual, 2) +
+                        " of the forces on it, expected at most " + short_text(settings.tolerance);
 }
 
 void count_bodies(const World& world, RunResult& result) {

@@ -8,7 +8,7 @@
 #include "engine/program/output_formats.h"
 #include "engine/program/progress.h"
 #include "engine/program/require_writable.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -46,13 +46,8 @@ std::vector<NamedFile> check_places(const RunOptions& options) {
         return found != options.outputs.end() && !found->second.empty();
     };
     if ((options.film_color != FilmColor::none || options.film_max) && !has("--film") && !has("--gltf"))
-        Complaint{.file = {},
-                  .object = options.film_max ? "--film-max" : "--film-color",
-                  .field = {},
-                  .found = "neither --film nor --gltf",
-                  .expected = "at least one of them, because this option sets their colours",
-                  .hint = {}}
-            .raise();
+        refuse(options.film_max ? "--film-max" : "--film-color", {}, "neither --film nor --gltf",
+               "at least one of them, because this option sets their colours");
     return files;
 }
 
@@ -67,13 +62,9 @@ RunOutputs::RunOutputs(const RunOptions& options, Scene& scene, const RunStart& 
     for (const Output& output : outputs_)
         for (const NamedFile& file : files)
             if (!file.file.empty() && output.writer->may_write(file.file))
-                Complaint{.file = file.file.string(),
-                          .object = file.name,
-                          .field = {},
-                          .found = std::string("a file that ") + output.option + " also writes",
-                          .expected = "a different file",
-                          .hint = "choose another file name"}
-                    .raise();
+                refuse_in(file.file.string(), file.name, {},
+                          std::string("a file that ") + output.option + " also writes", "a different file",
+                          "choose another file name");
     for (const Output& output : outputs_) output.writer->open(scene.world, start);
     result_.frames = static_cast<int>(start.frames);
 }

@@ -1,8 +1,6 @@
 #include "engine/program/run_plan.h"
 
-#include <cstdio>
-
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -18,17 +16,9 @@ RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time
     const RunPlan plan{options.seconds.value_or(memory.seconds), memory.frame_step, memory.samples, memory.probe_step};
     plan.require_countable(options.scene);
     if (plan.seconds > time + RunPlan::slack * plan.frame_step) return plan;
-    char found[128], expected[128];
-    std::snprintf(found, sizeof found, "a checkpoint at %g s", time);
-    std::snprintf(expected, sizeof expected, "a checkpoint from before the end of the run, which is at %g s",
-                  plan.seconds);
-    Complaint{.file = options.restart.string(),
-              .object = "--restart",
-              .field = {},
-              .found = found,
-              .expected = expected,
-              .hint = "choose a larger --seconds"}
-        .raise();
+    refuse_in(options.restart.string(), "--restart", {}, "a checkpoint at " + short_text(time, 6) + " s",
+              "a checkpoint from before the end of the run, which is at " + short_text(plan.seconds, 6) + " s",
+              "choose a larger --seconds");
 }
 
 }  // namespace skerry

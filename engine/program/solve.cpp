@@ -26,22 +26,22 @@ void write_reactions(const std::filesystem::path& file, const ProblemSolution& s
 }
 
 Json to_json(const SolveOptions& options, const ContactProblem& problem, const ProblemSolution& solution) {
-    return {{"problem", problem.name},
-            {"contacts", problem.contacts()},
-            {"condensed_freedoms", problem.freedoms},
-            {"regions", solution.regions},
-            {"largest_region", solution.largest_region},
-            {"unconverged", solution.unconverged},
-            {"method", name_of(options.settings.method)},
-            {"friction", name_of(options.settings.friction)},
-            {"tolerance", options.settings.tolerance},
-            {"iterations", solution.iterations},
-            {"seconds", solution.seconds},
-            {"error", solution.error},
-            {"error_absolute", solution.error_absolute},
-            {"error_over_q", solution.error_over_q},
-            {"energy_gap", solution.energy_gap},
-            {"converged", solution.converged}};
+    return object_of({{"problem", problem.name},
+                      {"contacts", problem.contacts()},
+                      {"condensed_freedoms", problem.freedoms},
+                      {"regions", solution.regions},
+                      {"largest_region", solution.largest_region},
+                      {"unconverged", solution.unconverged},
+                      {"method", name_of(options.settings.method)},
+                      {"friction", name_of(options.settings.friction)},
+                      {"tolerance", options.settings.tolerance},
+                      {"iterations", solution.iterations},
+                      {"seconds", solution.seconds},
+                      {"error", solution.error},
+                      {"error_absolute", solution.error_absolute},
+                      {"error_over_q", solution.error_over_q},
+                      {"energy_gap", solution.energy_gap},
+                      {"converged", solution.converged}});
 }
 
 std::string count(std::int64_t number) {
@@ -57,9 +57,9 @@ void print(const SolveOptions& options, const ContactProblem& problem, const Pro
     std::cout << "  method        " << name_of(options.settings.method) << ", " << name_of(options.settings.friction)
               << "\n"
               << "  iterations    " << count(solution.iterations) << " in " << with_unit(solution.seconds, "s") << "\n"
-              << "  error         " << short_number(solution.error) << ", tolerance "
-              << short_number(options.settings.tolerance) << " (absolute " << short_number(solution.error_absolute)
-              << ", relative to |q| " << short_number(solution.error_over_q) << ")\n"
+              << "  error         " << short_text(solution.error) << ", tolerance "
+              << short_text(options.settings.tolerance) << " (absolute " << short_text(solution.error_absolute)
+              << ", relative to |q| " << short_text(solution.error_over_q) << ")\n"
               << "  energy gap    " << with_unit(solution.energy_gap, "J") << "\n";
     if (!solution.converged) std::cout << "  not converged in " << count(solution.unconverged) << " contact regions\n";
 }

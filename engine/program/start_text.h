@@ -12,8 +12,12 @@ inline Json vector_json(const Vec3& v) {
 }
 
 inline Json overlap_json(const StartOverlap& overlap) {
-    return {{"first", overlap.first_name}, {"second", overlap.second_name},       {"kind", name_of(overlap.kind)},
-            {"depth", overlap.depth},      {"place", vector_json(overlap.place)}, {"resolved", overlap.resolved}};
+    return object_of({{"first", overlap.first_name},
+                      {"second", overlap.second_name},
+                      {"kind", name_of(overlap.kind)},
+                      {"depth", overlap.depth},
+                      {"place", vector_json(overlap.place)},
+                      {"resolved", overlap.resolved}});
 }
 
 inline Json overlaps_json(const WorldReport& report) {
@@ -36,7 +40,7 @@ inline std::string into_shell_text(Real depth) {
 inline constexpr Real visible_turn = 0.25;
 
 inline std::string turning_text(const WorldReport& report) {
-    return "collider \"" + report.turning_collider + "\" turns by " + short_number(report.collider_turn) +
+    return "collider \"" + report.turning_collider + "\" turns by " + short_text(report.collider_turn) +
            " rad in a step, but contacts assume that surfaces move along straight lines within a step: shorten the "
            "step (--step) " +
            "to " + percent(visible_turn / report.collider_turn) + " of the present length";

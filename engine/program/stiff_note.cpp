@@ -69,7 +69,7 @@ std::string note_of_forces(const World& world, double steps) {
     if (!(others > much_longer * step)) return {};
     return "body \"" + model.body_records[static_cast<std::size_t>(body)].name +
            "\": the springs, cables, cavities, fibres or loads that act on it need steps of " + with_unit(step, "s") +
-           ": about " + count_text(steps) + " steps, " + short_number(others / step) +
+           ": about " + count_text(steps) + " steps, " + short_text(others / step) +
            " times as many as otherwise; reduce their stiffness, tension, pressure or drag";
 }
 
@@ -86,8 +86,8 @@ std::string stiff_note(const ScenePlan& plan, const World& world, double steps, 
     if (stiff.count > 1) text += " and " + grouped(stiff.count - 1) + " more bodies like it";
     text += std::string(stiff.count > 1 ? " are" : " is") + " explicit, of material \"" +
             plan.materials[body.material].first + "\", and " + (stiff.count > 1 ? "need" : "needs") + " steps of " +
-            with_unit(stiff.step, "s") + ": about " + count_text(steps) + " steps, " +
-            short_number(others / stiff.step) + " times as many as otherwise; ";
+            with_unit(stiff.step, "s") + ": about " + count_text(steps) + " steps, " + short_text(others / stiff.step) +
+            " times as many as otherwise; ";
     const std::vector<Real> each = world.tetrahedron_steps(bodies_in_order(world)[stiff.first]);
     if (const std::size_t bad = count_bad(each); bad > 0)
         return text + "the cause: " + grouped(bad) + " of " + grouped(each.size()) +

@@ -67,7 +67,7 @@ std::string penetration_text(const RunResult& result) {
 std::string contacts_text(const RunResult& result) {
     const WorldReport& r = result.report;
     if (r.max_contacts > 0 || r.bodies + r.colliders < 2)
-        return short_number(r.mean_contacts, 4) + " in a step on average, at most " +
+        return short_text(r.mean_contacts, 4) + " in a step on average, at most " +
                grouped(static_cast<std::uint64_t>(r.max_contacts));
     return "no contact in the whole run" +
            (result.nearest.empty() ? "" : ": the shortest distance at the end is " + result.nearest);
@@ -157,10 +157,10 @@ std::string ranks_line(const RanksReport& ranks) {
     if (ranks.count == 1) return {};
     return summary_line("ranks", count_of(static_cast<std::size_t>(ranks.count), "rank", "ranks") + " on " +
                                      count_of(static_cast<std::size_t>(ranks.hosts), "host", "hosts") + "; " +
-                                     short_number(ranks.messages) + " messages with " + short_number(ranks.bytes) +
-                                     " bytes and " + short_number(ranks.reductions) +
+                                     short_text(ranks.messages) + " messages with " + short_text(ranks.bytes) +
+                                     " bytes and " + short_text(ranks.reductions) +
                                      " reductions in a step on average; waiting takes " + percent(ranks.waiting) +
-                                     " of the time, and the busiest rank computes " + short_number(ranks.imbalance) +
+                                     " of the time, and the busiest rank computes " + short_text(ranks.imbalance) +
                                      " times as long as the mean");
 }
 
@@ -190,10 +190,10 @@ std::string file_lines(const RunResult& result) {
 std::string summary_of(const RunResult& result) {
     const WorldReport& r = result.report;
     const double simulated = result.seconds_simulated, wall = result.seconds_wall;
-    std::string text = result.scene + ": " + short_number(simulated, 4) + " s simulated in " + with_unit(wall, "s");
+    std::string text = result.scene + ": " + short_text(simulated, 4) + " s simulated in " + with_unit(wall, "s");
     if (const double start = result.seconds_load + result.seconds_setup; start > wall)
         text += ", after " + with_unit(start, "s") + " of loading and set-up";
-    if (wall > 0) text += ", " + short_number(simulated / wall) + " times real time";
+    if (wall > 0) text += ", " + short_text(simulated / wall) + " times real time";
     text += "\n" + summary_line("scene", result.scene_file);
     if (result.status != "ok") text += summary_line(result.distrusted ? "NOT TRUSTED" : "ENDED EARLY", result.status);
     if (result.restarted_at) text += summary_line("restarted", "at " + with_unit(*result.restarted_at, "s"));

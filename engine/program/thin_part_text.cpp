@@ -32,7 +32,7 @@ struct ElementsOfThinBody {
 /// A coordinate of the place of a part. Rounding errors are printed as 0.
 std::string coordinate(Real value, const mesh::ThinPart& part) {
     constexpr Real rounding = 1e-6;  // coordinates below this fraction of the length of the part are rounding errors
-    return short_number(std::abs(value) < rounding * part.length ? 0 : value);
+    return short_text(std::abs(value) < rounding * part.length ? 0 : value);
 }
 
 /// Least Poisson ratio at which elements of a kind are more than twice as stiff in bending as their material
@@ -46,7 +46,7 @@ std::string locking_text(const ElementsOfThinBody& elements) {
         const Real poisson_ratio = elements.materials[static_cast<std::size_t>(zone.material)].poisson_ratio;
         if (!zone.tetrahedra.empty() && poisson_ratio >= locks_from(zone.kind))
             return "elements of the kind \"" + std::string(name_of(zone.kind)) + "\" lock at a Poisson ratio of " +
-                   short_number(poisson_ratio) +
+                   short_text(poisson_ratio) +
                    ": in bending they are more than twice as stiff as the material: set \"element\" of the body to "
                    "\"smoothed\"";
     }
@@ -81,13 +81,13 @@ std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3
     const Real finer = std::sqrt((part.stiffness - 1) / accepted_excess);
     return "a part " + with_unit(part.thickness, "m") + " thick and " + with_unit(part.length, "m") + " long around (" +
            coordinate(part.place.x(), part) + ", " + coordinate(part.place.y(), part) + ", " +
-           coordinate(part.place.z(), part) + ") m has " + short_number(layers) + (layers > 1 ? " layers" : " layer") +
-           " of cells and is about " + short_number(part.stiffness, 2) + " times as stiff in bending as its material" +
+           coordinate(part.place.z(), part) + ") m has " + short_text(layers) + (layers > 1 ? " layers" : " layer") +
+           " of cells and is about " + short_text(part.stiffness, 2) + " times as stiff in bending as its material" +
            (parts.size() == 2  ? ", and 1 more part is too stiff"
             : parts.size() > 2 ? ", and " + grouped(parts.size() - 1) + " more parts are too stiff"
                                : "") +
            ": to reduce the excess to about " + percent(accepted_excess) + ", make the cells there " +
-           short_number(finer, 2) + " times smaller in all directions" +
+           short_text(finer, 2) + " times smaller in all directions" +
            (of.body.element == ElementKind::linear ? ", or first set \"element\" of the body to \"smoothed\"" : "");
 }
 

@@ -104,8 +104,8 @@ int view(const ViewOptions& options) {
     };
     live.run(scene.world, go_on, [](const std::string& problem) { std::cerr << "skerry: " << problem << std::endl; });
     const double wall = watch.seconds();
-    std::cout << scene.name << ": " << short_number(simulated, 4) << " s simulated in " << with_unit(wall, "s") << ", "
-              << short_number(simulated / wall) << " times real time; frames: " << live.frames_sent() << " sent, "
+    std::cout << scene.name << ": " << short_text(simulated, 4) << " s simulated in " << with_unit(wall, "s") << ", "
+              << short_text(simulated / wall) << " times real time; frames: " << live.frames_sent() << " sent, "
               << live.frames_dropped() << " dropped" << std::endl;
     return exit_ok;
 }

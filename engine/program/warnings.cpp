@@ -94,8 +94,8 @@ std::vector<std::string> warnings_of(const RunResult& result) {
     if (r.unconverged > 0)
         warnings.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) +
                            " contact regions were solved with an error above the tolerance " +
-                           short_number(result.settings.tolerance) + ", the largest error being " +
-                           short_number(r.worst_error) + ": increase settings.max_iterations (--max-iterations), now " +
+                           short_text(result.settings.tolerance) + ", the largest error being " +
+                           short_text(r.worst_error) + ": increase settings.max_iterations (--max-iterations), now " +
                            std::to_string(result.settings.max_iterations) + ", or the tolerance (--tolerance)");
     warn_of_balance(r, shorter, warnings);
     if (r.crossed > 0)

@@ -88,11 +88,6 @@ std::string title_of(const World& world, const RolloutControl& control) {
            std::visit([&](auto handle) { return name_of_object(world, handle); }, object_of(control));
 }
 
-[[noreturn]] void refuse_control(const std::string& control, const std::string& field, const std::string& found,
-                                 const std::string& expected) {
-    Complaint{.file = {}, .object = control, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
-}
-
 std::string numbered(const char* what, std::size_t number) {
     return what + ("[" + std::to_string(number) + "]");
 }
@@ -195,8 +190,8 @@ std::size_t number_count(const World& world, const RolloutControl& control) {
     std::visit(require_live, object);
     if (const auto* const joint = std::get_if<JointHandle>(&object))
         if (model_of(world).joints.drive[row_of(world, *joint)] == JointDrive::none)
-            refuse_control(name_of_object(world, *joint), "motor", "no motor",
-                           "a hinge or slider with a motor (Joints::set_motor)");
+            refuse(name_of_object(world, *joint), "motor", "no motor",
+                   "a hinge or slider with a motor (Joints::set_motor)");
     const std::size_t count = control_kinds[control.what.index()].count;
     const auto* const nodes = std::get_if<NodeForceControl>(&control.what);
     return nodes ? count * world.positions(nodes->body).size() : count;
@@ -215,8 +210,8 @@ std::size_t agreed_count(std::span<const World* const> worlds, const std::string
         }
         if (w == 0) count = in_world;
         if (in_world != count)
-            refuse_control(title, "world " + std::to_string(w), std::to_string(in_world),
-                           std::to_string(count) + " as in world 0, of which all worlds must be copies");
+            refuse(title, "world " + std::to_string(w), std::to_string(in_world),
+                   std::to_string(count) + " as in world 0, of which all worlds must be copies");
     }
     return count;
 }
@@ -230,20 +225,20 @@ void check_controls(std::span<const World* const> worlds, const RolloutSettings&
         const std::string title = place + " (" + title_of(*worlds[0], control) + ")";
         for (std::size_t earlier = 0; earlier < c; ++earlier)
             if (object_of(settings.controls[earlier]) == object_of(control))
-                refuse_control(title, {}, "an object that " + numbered("controls", earlier) + " also controls",
-                               "one control for each object");
+                refuse(title, {}, "an object that " + numbered("controls", earlier) + " also controls",
+                       "one control for each object");
         const std::size_t of_one = settings.intervals * count, of_all = worlds.size() * of_one;
         if (control.values.size() != of_one && control.values.size() != of_all)
-            refuse_control(title, "values", std::to_string(control.values.size()) + " values",
-                           std::to_string(of_all) + " (worlds " + std::to_string(worlds.size()) + ", intervals " +
-                               std::to_string(settings.intervals) + ", numbers " + std::to_string(count) + ") or " +
-                               std::to_string(of_one) + " for all worlds");
+            refuse(title, "values", std::to_string(control.values.size()) + " values",
+                   std::to_string(of_all) + " (worlds " + std::to_string(worlds.size()) + ", intervals " +
+                       std::to_string(settings.intervals) + ", numbers " + std::to_string(count) + ") or " +
+                       std::to_string(of_one) + " for all worlds");
         for (std::size_t i = 0; i < control.values.size(); ++i)
             if (!std::isfinite(control.values[i]))
-                refuse_control(title,
-                               "world " + std::to_string(i / of_one) + ", interval " +
-                                   std::to_string(i % of_one / count) + ", number " + std::to_string(i % count),
-                               short_text(control.values[i]), "a finite number");
+                refuse(title,
+                       "world " + std::to_string(i / of_one) + ", interval " + std::to_string(i % of_one / count) +
+                           ", number " + std::to_string(i % count),
+                       short_text(control.values[i]), "a finite number");
     }
 }
 

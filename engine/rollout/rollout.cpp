@@ -22,36 +22,31 @@ namespace {
 // Time between two calls of RolloutSettings::go_on. A program must react to Ctrl-C within 50 ms.
 constexpr std::chrono::milliseconds watch_period{20};
 
-[[noreturn]] void refuse_setting(const char* field, const std::string& found, const std::string& expected) {
-    Complaint{.file = {}, .object = "rollout", .field = field, .found = found, .expected = expected, .hint = {}}
-        .raise();
-}
-
 void check_settings(std::size_t world_count, const RolloutSettings& settings) {
     constexpr auto most = static_cast<std::size_t>(std::numeric_limits<Index>::max());
-    if (world_count == 0) refuse_setting("worlds", "no world", "at least one world");
-    if (settings.intervals == 0) refuse_setting("intervals", "0", "at least one interval");
+    if (world_count == 0) refuse("rollout", "worlds", "no world", "at least one world");
+    if (settings.intervals == 0) refuse("rollout", "intervals", "0", "at least one interval");
     if (world_count > most || settings.intervals > most / world_count)
-        refuse_setting("intervals",
-                       std::to_string(settings.intervals) + " for each of " + std::to_string(world_count) + " worlds",
-                       "at most " + std::to_string(most) + " intervals of all worlds together");
+        refuse("rollout", "intervals",
+               std::to_string(settings.intervals) + " for each of " + std::to_string(world_count) + " worlds",
+               "at most " + std::to_string(most) + " intervals of all worlds together");
     if (!(settings.dt > 0) || !std::isfinite(settings.dt))
-        refuse_setting("dt", short_text(settings.dt), "a time > 0 (s)");
+        refuse("rollout", "dt", short_text(settings.dt), "a time > 0 (s)");
     if (settings.threads < 0)
-        refuse_setting("threads", std::to_string(settings.threads),
-                       "a number of threads >= 0 (0: the number of cores)");
+        refuse("rollout", "threads", std::to_string(settings.threads),
+               "a number of threads >= 0 (0: the number of cores)");
 }
 
 /// Returns the state of a world, after a check that a rollout can start from it.
 WorldState& source_of(const World* world, std::size_t number, Real dt) {
-    if (!world) refuse_setting("worlds", "a null pointer", "a world");
+    if (!world) refuse("rollout", "worlds", "a null pointer", "a world");
     // The state is not constant, even if the world is.
     auto& state = const_cast<WorldState&>(WorldAccess::state_of(*world));
     state.require_between_steps("rollout");
     if (!(state.clock.time + dt > state.clock.time))
-        refuse_setting("dt", short_text(dt),
-                       "a time that is not lost when it is added to " + short_text(state.clock.time) +
-                           " s, the time of world " + std::to_string(number));
+        refuse("rollout", "dt", short_text(dt),
+               "a time that is not lost when it is added to " + short_text(state.clock.time) +
+                   " s, the time of world " + std::to_string(number));
     // A later look at the contacts then writes nothing.
     view_contacts(state);
     return state;

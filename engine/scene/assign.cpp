@@ -38,13 +38,7 @@ public:
 private:
     [[noreturn]] void refuse(const std::string& found, const std::string& expected,
                              const std::string& hint = "write PLACE=VALUE, such as bodies[0].position=[0,0,1]") const {
-        Complaint{.file = file_.string(),
-                  .object = in_quotes(text_),
-                  .field = {},
-                  .found = found,
-                  .expected = expected,
-                  .hint = hint}
-            .raise();
+        refuse_in(file_.string(), in_quotes(text_), {}, found, expected, hint);
     }
 
     /// Refuses a place inside a material that the scene lacks, because no body would use this new material.

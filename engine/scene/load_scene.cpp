@@ -170,7 +170,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
     for (std::size_t j = 0; j < joints.size(); ++j) {
         const JointPlan& joint = plan.joints[j];
         if (!joint.mimic) continue;
-        const std::size_t leader = find_joint(plan, joint.mimic->joint, joint.place.key("mimic").key("joint"));
+        const std::size_t leader = leader_of(joint, plan);
         called_at(joint.place.key("mimic"), [&] {
             Joints(world).set_mimic(joints[j], JointMimic{joints[leader], joint.mimic->ratio, joint.mimic->offset});
         });

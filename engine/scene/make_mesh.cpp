@@ -63,13 +63,9 @@ Mesh make_from_file(const MeshEntry& entry, bool rigid, std::vector<std::string>
     const Real wanted = std::ldexp(*edge, -entry.refine), mean = inspect(mesh).mean_edge;
     constexpr Real least_ratio = 0.7;
     if (mean < least_ratio * wanted)
-        Complaint{file.string(),
-                  "mesh",
-                  "refine",
+        refuse_in(file.string(), "mesh", "refine",
                   "a mesh with a mean edge of " + short_text(mean) + " for the value " + std::to_string(entry.refine),
-                  "a mean edge of about " + short_text(wanted),
-                  "larger triangles would be too far from the surface"}
-            .raise();
+                  "a mean edge of about " + short_text(wanted), "larger triangles would be too far from the surface");
     return mesh;
 }
 

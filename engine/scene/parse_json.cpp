@@ -59,13 +59,8 @@ public:
         else if (token.find("N") == token.size() - 1 || token.find("nan") != std::string::npos ||
                  token.find("I") == token.size() - 1)
             hint = "JSON has no NaN and no Infinity; write a finite number";
-        Complaint{.file = file_.string(),
-                  .object = line_and_column(position),
-                  .field = {},
-                  .found = "text that is not valid JSON: " + printable(reason(what)),
-                  .expected = {},
-                  .hint = hint}
-            .raise();
+        refuse_in(file_.string(), line_and_column(position), {},
+                  "text that is not valid JSON: " + printable(reason(what)), {}, hint);
     }
 
 private:
@@ -141,7 +136,7 @@ private:
 
 Json parse_json(const std::string& text, const std::filesystem::path& file, const std::string& expected) {
     if (std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c); }))
-        Complaint{file.string(), {}, {}, "an empty file", expected, {}}.raise();
+        refuse_in(file.string(), {}, {}, "an empty file", expected);
     StrictBuilder builder(text, file);
     Json::sax_parse(text, &builder);
     return builder.take();
@@ -150,23 +145,18 @@ Json parse_json(const std::string& text, const std::filesystem::path& file, cons
 Json read_json(const std::filesystem::path& file, const std::string& expected) {
     std::error_code error;
     if (!std::filesystem::exists(file, error))
-        Complaint{file.string(), {}, {}, "no such file", expected, "check the path"}.raise();
+        refuse_in(file.string(), {}, {}, "no such file", expected, "check the path");
     if (std::filesystem::is_directory(file, error))
-        Complaint{file.string(), {}, {}, "a folder", expected, "give the path of a file"}.raise();
+        refuse_in(file.string(), {}, {}, "a folder", expected, "give the path of a file");
     // Refuses devices such as /dev/zero, which are endless. Pipes are allowed, because they end.
     if (std::filesystem::is_character_file(file, error))
-        Complaint{file.string(), {}, {}, "a device", expected, "give the path of a file"}.raise();
+        refuse_in(file.string(), {}, {}, "a device", expected, "give the path of a file");
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();
     if (!stream)
-        Complaint{file.string(),
-                  {},
-                  {},
-                  "a file that cannot be opened or read",
-                  expected,
-                  "check the permissions of the file"}
-            .raise();
+        refuse_in(file.string(), {}, {}, "a file that cannot be opened or read", expected,
+                  "check the permissions of the file");
     return parse_json(text.str(), file, expected);
 }
 

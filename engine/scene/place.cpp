@@ -37,7 +37,7 @@ Place Place::of(std::string object) const {
 }
 
 void Place::refuse(std::string found, std::string expected, std::string hint) const {
-    Complaint{file_.string(), object_, path_, std::move(found), std::move(expected), std::move(hint)}.raise();
+    refuse_in(file_.string(), object_, path_, found, expected, hint);
 }
 
 void Place::refuse_inner(const SceneError& inner) const {

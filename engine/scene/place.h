@@ -2,21 +2,17 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/output/json_object.h"
 #include "engine/world/complaint.h"
 #include "skerry/error.h"
 
 namespace skerry {
-
-/// JSON document that keeps the order of its keys. A document that was read has the order of the file, a schema has the
-/// order of the key tables.
-using Json = nlohmann::ordered_json;
 
 /// A location in a scene file, written like bodies[3].mesh.ball, and the name of the object to which it belongs.
 class Place {

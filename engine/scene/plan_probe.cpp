@@ -7,76 +7,26 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
-
-/// Returns the index of a name in a list of plans, or `nowhere`.
-std::size_t find_name(const auto& plans, const std::string& name) {
-    const auto found = std::ranges::find(plans, name, [](const auto& plan) { return plan.settings.name; });
-    return found == plans.end() ? nowhere : static_cast<std::size_t>(found - plans.begin());
-}
-
-std::vector<std::string> names_of(const auto& plans) {
-    std::vector<std::string> names;
-    for (const auto& plan : plans) names.push_back(plan.settings.name);
-    return names;
-}
-
-}  // namespace
-
-std::size_t find_body(const ScenePlan& plan, const std::string& name, const Place& place) {
-    const std::size_t body = find_name(plan.bodies, name);
-    if (body == nowhere) place.refuse(in_quotes(name), "the name of a body", nearest_hint(name, names_of(plan.bodies)));
-    return body;
-}
-
-std::size_t find_collider(const ScenePlan& plan, const std::string& name, const Place& place) {
-    const std::size_t collider = find_name(plan.colliders, name);
-    if (collider == nowhere)
-        place.refuse(in_quotes(name), "the name of a collider", nearest_hint(name, names_of(plan.colliders)));
-    return collider;
-}
-
-namespace {
-
-std::size_t find_cable(const ScenePlan& plan, const std::string& name, const Place& place) {
-    const auto found = std::ranges::find(plan.cables, name, &CablePlan::name);
-    if (found != plan.cables.end()) return static_cast<std::size_t>(found - plan.cables.begin());
-    std::vector<std::string> names;
-    for (const CablePlan& cable : plan.cables) names.push_back(cable.name);
-    place.refuse(in_quotes(name),
-                 names.empty() ? "the name of a cable, but the scene has no cables" : "the name of a cable",
-                 nearest_hint(name, names));
-}
-
-}  // namespace
-
-std::size_t find_joint(const ScenePlan& plan, const std::string& name, const Place& place) {
-    const auto found = std::ranges::find(plan.joints, name, &JointPlan::name);
-    if (found != plan.joints.end()) return static_cast<std::size_t>(found - plan.joints.begin());
-    std::vector<std::string> names;
-    for (const JointPlan& joint : plan.joints) names.push_back(joint.name);
-    place.refuse(in_quotes(name),
-                 names.empty() ? "the name of a joint, but the scene has no joints" : "the name of a joint",
-                 nearest_hint(name, names));
-}
-
-namespace {
-
 /// Finds the body or collider that exerts a force. Throws SceneError if a body and a collider both have the name.
 void find_partner(const ProbeEntry& entry, const ScenePlan& plan, SeriesPlan& series) {
     const Place place = entry.place.key("by");
-    const std::size_t body = find_name(plan.bodies, *entry.by), collider = find_name(plan.colliders, *entry.by);
-    if (body != nowhere) series.by_body = body;
-    if (collider != nowhere && !series.collider) {
-        if (body != nowhere)
+    const auto index_in = [&](const std::vector<std::string_view>& names) -> std::optional<std::size_t> {
+        const auto found = std::ranges::find(names, *entry.by);
+        if (found == names.end()) return {};
+        return static_cast<std::size_t>(found - names.begin());
+    };
+    series.by_body = index_in(names_of(plan.bodies));
+    if (const auto collider = index_in(names_of(plan.colliders)); collider && !series.collider) {
+        if (series.by_body)
             place.refuse(in_quotes(*entry.by) + ", which is the name of both a body and a collider",
                          "the name of only one body or collider");
         series.by_collider = collider;
     }
     if (series.by_body || series.by_collider) return;
-    std::vector<std::string> names = names_of(plan.bodies);
+    std::vector<std::string> names;
+    for (const std::string_view name : names_of(plan.bodies)) names.emplace_back(name);
     if (!series.collider)
-        for (const std::string& name : names_of(plan.colliders)) names.push_back(name);
+        for (const std::string_view name : names_of(plan.colliders)) names.emplace_back(name);
     place.refuse(in_quotes(*entry.by), series.collider ? "the name of a body" : "the name of a body or a collider",
                  nearest_hint(*entry.by, names));
 }
@@ -109,11 +59,15 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
     series.place = entry.place;
     if (entry.body) series.body = find_body(plan, *entry.body, entry.place.key("body"));
     if (entry.collider) series.collider = find_collider(plan, *entry.collider, entry.place.key("collider"));
-    if (entry.joint) series.joint = find_joint(plan, *entry.joint, entry.place.key("joint"));
-    if (entry.tie) series.tie = find_tie(plan, *entry.tie, entry.place.key("tie"));
-    if (entry.cable) series.cable = find_cable(plan, *entry.cable, entry.place.key("cable"));
-    if (entry.cavity) series.cavity = find_cavity(plan, *entry.cavity, entry.place.key("cavity"));
-    if (entry.spring) series.spring = find_spring(plan, *entry.spring, entry.place.key("spring"));
+    const auto find = [&](const char* kind, const std::optional<std::string>& name,
+                          const std::vector<std::string_view>& names, std::size_t& index) {
+        if (name) index = find_name(names, *name, kind, entry.place.key(kind));
+    };
+    find("joint", entry.joint, names_of(plan.joints), series.joint);
+    find("tie", entry.tie, names_of(plan.ties), series.tie);
+    find("cable", entry.cable, names_of(plan.cables), series.cable);
+    find("cavity", entry.cavity, names_of(plan.cavities), series.cavity);
+    find("spring", entry.spring, names_of(plan.springs), series.spring);
     if (entry.by) find_partner(entry, plan, series);
     if (series.body) {
         const BodyPlan& body = plan.bodies[*series.body];

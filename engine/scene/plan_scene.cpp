@@ -288,12 +288,9 @@ NoCollisionPlan plan_no_collision(const NoCollisionEntry& entry, const ScenePlan
     return pair;
 }
 
-JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePlan& plan) {
+JointPlan plan_joint(const JointEntry& entry, const ScenePlan& plan) {
     JointPlan joint;
-    joint.name = entry.name.empty() ? "joint_" + std::to_string(number) : entry.name;
-    if (std::ranges::find(plan.joints, joint.name, &JointPlan::name) != plan.joints.end())
-        entry.place.key("name").refuse(in_quotes(joint.name) + ", which is already the name of a joint",
-                                       "a different name for every joint");
+    joint.name = choose_name(entry.name, names_of(plan.joints), "joint", entry.place);
     joint.first = find_body(plan, entry.first, entry.place.key("first"));
     if (entry.second) joint.second = find_body(plan, *entry.second, entry.place.key("second"));
     joint.settings.kind = entry.kind;
@@ -316,9 +313,17 @@ JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePla
     return joint;
 }
 
+}  // namespace
+
+std::size_t leader_of(const JointPlan& joint, const ScenePlan& plan) {
+    return find_name(names_of(plan.joints), joint.mimic->joint, "joint", joint.place.key("mimic").key("joint"));
+}
+
+namespace {
+
 /// Adds a note if a joint does not start where its mimic wants it.
 void note_start_of_mimic(const JointPlan& joint, ScenePlan& plan) {
-    const JointPlan& leader = plan.joints[find_joint(plan, joint.mimic->joint, joint.place.key("mimic").key("joint"))];
+    const JointPlan& leader = plan.joints[leader_of(joint, plan)];
     const Real found = joint.settings.coordinate,
                wanted = joint.mimic->ratio * leader.settings.coordinate + joint.mimic->offset;
     constexpr Real rounding = 1e-6;
@@ -369,15 +374,15 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
         plan.colliders.push_back(plan_collider(scene.colliders[i], i, filling, plan));
     for (const NoCollisionEntry& pair : scene.no_collision) plan.no_collision.push_back(plan_no_collision(pair, plan));
-    for (std::size_t i = 0; i < scene.joints.size(); ++i) plan.joints.push_back(plan_joint(scene.joints[i], i, plan));
+    for (const JointEntry& joint : scene.joints) plan.joints.push_back(plan_joint(joint, plan));
     for (const JointPlan& joint : plan.joints)
         if (joint.mimic) note_start_of_mimic(joint, plan);
-    for (std::size_t i = 0; i < scene.ties.size(); ++i) plan.ties.push_back(plan_tie(scene.ties[i], i, plan));
-    for (std::size_t i = 0; i < scene.cables.size(); ++i) plan.cables.push_back(plan_cable(scene.cables[i], i, plan));
+    for (const TieEntry& tie : scene.ties) plan.ties.push_back(plan_tie(tie, plan));
+    for (const CableEntry& cable : scene.cables) plan.cables.push_back(plan_cable(cable, plan));
     plan_cavities(scene, plan);
     for (const LoadEntry& load : scene.loads) plan.loads.push_back(plan_load(load, plan));
     for (const FibreEntry& fibres : scene.fibres) plan.fibres.push_back(plan_fibres(fibres, plan));
-    for (std::size_t i = 0; i < scene.springs.size(); ++i) plan_spring(scene.springs[i], i, plan);
+    for (const SpringEntry& spring : scene.springs) plan.springs.push_back(plan_spring(spring, plan));
     for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);
     plan.sliders = scene.sliders;
     return plan;

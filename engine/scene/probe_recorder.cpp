@@ -136,20 +136,19 @@ void from_json(const Json& json, ProbeRecord& record) {
 }
 
 Json to_json(const ProbeRecord& record) {
-    return {{"stick_time", record.stick_time},
-            {"slide_time", record.slide_time},
-            {"open_time", record.open_time},
-            {"slide_alone_time", record.slide_alone_time},
-            {"changes", record.changes},
-            {"max_slip", record.max_slip},
-            {"slip_distance", record.slip_distance},
-            {"max_von_mises", record.max_von_mises},
-            {"series",
-             {{"time", record.time},
-              {"sticking", record.sticking},
-              {"sliding", record.sliding},
-              {"slip", record.slip},
-              {"von_mises", record.von_mises}}}};
+    return object_of({{"stick_time", record.stick_time},
+                      {"slide_time", record.slide_time},
+                      {"open_time", record.open_time},
+                      {"slide_alone_time", record.slide_alone_time},
+                      {"changes", record.changes},
+                      {"max_slip", record.max_slip},
+                      {"slip_distance", record.slip_distance},
+                      {"max_von_mises", record.max_von_mises},
+                      {"series", object_of({{"time", record.time},
+                                            {"sticking", record.sticking},
+                                            {"sliding", record.sliding},
+                                            {"slip", record.slip},
+                                            {"von_mises", record.von_mises}})}});
 }
 
 }  // namespace skerry

@@ -28,28 +28,28 @@ void check_group(const KeyGroup& group, const Json& json, const Place& place) {
 Json group_schema(const KeyGroup& group) {
     Json one_each = Json::array(), pairs = Json::array(), needs = Json::object();
     for (const std::string& key : group.keys) {
-        one_each.push_back({{"required", Json::array({key})}});
+        one_each.push_back(object_of({{"required", Json::array({key})}}));
         Json others = Json::array();
         for (const std::string& other : group.keys)
             if (other != key) others.push_back(other);
         needs[key] = others;
         for (const std::string& other : group.keys)
-            if (key < other) pairs.push_back({{"required", Json::array({key, other})}});
+            if (key < other) pairs.push_back(object_of({{"required", Json::array({key, other})}}));
     }
     switch (group.kind) {
         case KeyGroup::Kind::exactly_one:
-            return {{"oneOf", one_each}};
+            return object_of({{"oneOf", one_each}});
         case KeyGroup::Kind::at_most_one:
-            return {{"not", {{"anyOf", pairs}}}};
+            return object_of({{"not", object_of({{"anyOf", pairs}})}});
         case KeyGroup::Kind::together:
-            return {{"dependentRequired", needs}};
+            return object_of({{"dependentRequired", needs}});
     }
     return {};
 }
 
 }  // namespace
 
-RuleTable::RuleTable(std::string name, std::string meaning) : name_(std::move(name)), meaning_(std::move(meaning)) {}
+RuleTable::RuleTable(const char* name, const char* meaning) : name_(name), meaning_(meaning) {}
 RuleTable::RuleTable(const RuleTable& other) = default;
 RuleTable::~RuleTable() = default;
 
@@ -57,8 +57,8 @@ void RuleTable::add_key(std::string_view name, const KeyDoc& doc, std::size_t of
     keys_.push_back({std::string(name), doc, offset, value});
 }
 
-void RuleTable::add_group(KeyGroup::Kind kind, std::vector<std::string> keys) {
-    groups_.push_back({kind, std::move(keys)});
+void RuleTable::add_group(KeyGroup::Kind kind, KeyNames keys) {
+    groups_.push_back({kind, std::vector<std::string>(keys.begin(), keys.end())});
 }
 
 const RuleTable::Key* RuleTable::find(const std::string& name) const {
@@ -90,6 +90,13 @@ Place RuleTable::place_of(const Json& json, const Place& outer) const {
     return outer;
 }
 
+void RuleTable::read_object(const Json& json, const Place& outer, void* object) const {
+    const Place place = place_of(json, outer);
+    read_keys(json, place, object);
+    for (const auto& check : checks_) check(place, object);
+    if (place_offset_) *reinterpret_cast<Place*>(static_cast<std::byte*>(object) + *place_offset_) = place;
+}
+
 void RuleTable::read_keys(const Json& json, const Place& place, void* object) const {
     std::vector<std::string> seen;
     for (const auto& [name, value] : json.items()) {
@@ -118,7 +125,7 @@ void RuleTable::read_keys(const Json& json, const Place& place, void* object) co
 }
 
 Json RuleTable::schema(SchemaBook& book) const {
-    Json schema = {{"type", "object"}, {"description", meaning_}, {"additionalProperties", false}};
+    Json schema = object_of({{"type", "object"}, {"description", meaning_}, {"additionalProperties", false}});
     Json properties = Json::object(), required = Json::array(), all = Json::array();
     for (const Key& key : keys_) {
         Json property = key.value.describe(book, key.doc);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,13 +20,13 @@ namespace skerry {
 struct Limits {
     std::optional<Real> at_least, above, at_most, below;
 };
-inline Limits at_least(Real bound) {
+constexpr Limits at_least(Real bound) {
     return {.at_least = bound, .above = {}, .at_most = {}, .below = {}};
 }
-inline Limits above(Real bound) {
+constexpr Limits above(Real bound) {
     return {.at_least = {}, .above = bound, .at_most = {}, .below = {}};
 }
-inline Limits within(Real lower, Real upper) {
+constexpr Limits within(Real lower, Real upper) {
     return {.at_least = lower, .above = {}, .at_most = upper, .below = {}};
 }
 
@@ -50,6 +51,8 @@ struct Value;
 struct Withdrawn {
     std::string_view key, instead;
 };
+
+using KeyNames = std::initializer_list<std::string_view>;
 
 /// A condition on several keys of an object: exactly one, at most one, or all or none of them may be given.
 struct KeyGroup {
@@ -76,20 +79,24 @@ protected:
         ValueFunctions value;
     };
 
-    RuleTable(std::string name, std::string meaning);
+    RuleTable(const char* name, const char* meaning);
     RuleTable(const RuleTable& other);
     ~RuleTable();
 
     void add_key(std::string_view name, const KeyDoc& doc, std::size_t offset, const ValueFunctions& value);
-    void add_group(KeyGroup::Kind kind, std::vector<std::string> keys);
+    void add_group(KeyGroup::Kind kind, KeyNames keys);
     void add_withdrawn(const Withdrawn& withdrawn) { withdrawn_.push_back(withdrawn); }
-    /// Returns the location of the object in the file, with the object's own name if it has one.
-    Place place_of(const Json& json, const Place& outer) const;
-    /// Reads the values of all keys. Throws SceneError if the JSON value is not an object, or if its keys violate the
-    /// rule.
-    void read_keys(const Json& json, const Place& place, void* object) const;
+    void add_check(std::function<void(const Place&, const void*)> check) { checks_.push_back(std::move(check)); }
+    /// Sets the offset of a member of the object that gets its location.
+    void store_place_at(std::size_t offset) { place_offset_ = offset; }
+    /// Reads the values of all keys of an object. Throws SceneError if the JSON value is not an object, or if it
+    /// violates the rule.
+    void read_object(const Json& json, const Place& outer, void* object) const;
 
 private:
+    /// Returns the location of the object in the file, with the object's own name if it has one.
+    Place place_of(const Json& json, const Place& outer) const;
+    void read_keys(const Json& json, const Place& place, void* object) const;
     const Key* find(const std::string& name) const;
     std::vector<std::string> known_names() const;
     void refuse_withdrawn(const std::string& key, const Place& place) const;
@@ -98,6 +105,8 @@ private:
     std::vector<Key> keys_;
     std::vector<KeyGroup> groups_;
     std::vector<Withdrawn> withdrawn_;
+    std::vector<std::function<void(const Place&, const void*)>> checks_;
+    std::optional<std::size_t> place_offset_;  // [bytes]
 };
 
 template <class V>
@@ -110,7 +119,10 @@ template <class T>
 class Rule : public RuleTable {
 public:
     /// `name` is the title of the definition in the schema. In error messages it precedes the object's own name.
-    Rule(std::string name, std::string meaning) : RuleTable(std::move(name), std::move(meaning)) {}
+    Rule(const char* name, const char* meaning) : RuleTable(name, meaning) {
+        if constexpr (requires(T object) { object.place; })
+            store_place_at(member_offset(static_cast<Place T::*>(&T::place)));
+    }
 
     /// `Base`: T, or a base class of T.
     template <class V, class Base>
@@ -125,38 +137,32 @@ public:
         add_key(name, doc, 0, {read_preset<Preset>, Value<Preset>::schema});
         return *this;
     }
-    Rule& exactly_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::exactly_one, std::move(keys)); }
-    Rule& at_most_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::at_most_one, std::move(keys)); }
-    Rule& together(std::vector<std::string> keys) { return group(KeyGroup::Kind::together, std::move(keys)); }
+    Rule& exactly_one(KeyNames keys) { return group(KeyGroup::Kind::exactly_one, keys); }
+    Rule& at_most_one(KeyNames keys) { return group(KeyGroup::Kind::at_most_one, keys); }
+    Rule& together(KeyNames keys) { return group(KeyGroup::Kind::together, keys); }
     /// Declares a removed key. Reading such a key throws SceneError with a hint that names the replacement.
     Rule& withdrawn(std::string_view key, std::string_view instead) {
         add_withdrawn({key, instead});
         return *this;
     }
     /// Adds a condition on the values of an object. The function throws SceneError for invalid values.
-    Rule& check(std::function<void(const Place&, const T&)> check) {
-        checks_.push_back(std::move(check));
+    Rule& check(void (*condition)(const Place&, const T&)) {
+        add_check(
+            [condition](const Place& place, const void* object) { condition(place, *static_cast<const T*>(object)); });
         return *this;
     }
 
-    void read(const Json& json, const Place& outer, T& object) const {
-        const Place place = place_of(json, outer);
-        read_keys(json, place, &object);
-        for (const auto& check : checks_) check(place, object);
-        if constexpr (requires { object.place; }) object.place = place;
-    }
+    void read(const Json& json, const Place& outer, T& object) const { read_object(json, outer, &object); }
 
 private:
     template <class Preset>
     static void read_preset(const Json& json, const Place& place, const KeyDoc& doc, void* object) {
         Value<Preset>::read(json, place, doc, *static_cast<T*>(object));
     }
-    Rule& group(KeyGroup::Kind kind, std::vector<std::string> keys) {
-        add_group(kind, std::move(keys));
+    Rule& group(KeyGroup::Kind kind, KeyNames keys) {
+        add_group(kind, keys);
         return *this;
     }
-
-    std::vector<std::function<void(const Place&, const T&)>> checks_;
 };
 
 /// Returns the complete JSON schema for files that contain one object with the given rule.

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -14,11 +13,7 @@ namespace {
 void expect_countable(const std::filesystem::path& file, const char* field, double count, const char* hint) {
     constexpr double most = 1e9;
     if (count <= most) return;
-    char found[64];
-    std::snprintf(found, sizeof found, "%g", count);
-    Complaint{
-        .file = file.string(), .object = "run", .field = field, .found = found, .expected = "at most 1e9", .hint = hint}
-        .raise();
+    refuse_in(file.string(), "run", field, short_text(count, 6), "at most 1e9", hint);
 }
 
 }  // namespace

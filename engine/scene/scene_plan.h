@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -209,9 +210,31 @@ std::string expected_set(const Mesh& mesh, const std::map<std::string, MeshSet>&
 /// Resolves the sets of a body in a scene file.
 std::map<std::string, MeshSet> plan_sets(const Named<SetEntry>& entries, const PlannedMesh& mesh, const Place& place);
 
+/// Names of objects of a plan, for example of all joints. They are valid until the list of objects changes.
+template <class Object>
+std::vector<std::string_view> names_of(const std::vector<Object>& objects) {
+    std::vector<std::string_view> names;
+    for (const Object& object : objects)
+        if constexpr (requires { object.name; })
+            names.push_back(object.name);
+        else
+            names.push_back(object.settings.name);
+    return names;
+}
+/// Returns the index of a name in a list. Throws SceneError if it is not there. `kind`: kind of the objects, such as
+/// "joint".
+std::size_t find_name(std::span<const std::string_view> names, const std::string& name, const std::string& kind,
+                      const Place& place);
+/// Returns the name of an object: `name`, or KIND_NUMBER if that is empty. Throws SceneError if an object of this kind
+/// has the name already. `place`: entry of the object.
+std::string choose_name(const std::string& name, std::span<const std::string_view> taken, const std::string& kind,
+                        const Place& place);
 /// Returns the index of a body or a collider in a plan. Throws SceneError if the plan has none of this name.
 std::size_t find_body(const ScenePlan& plan, const std::string& name, const Place& place);
 std::size_t find_collider(const ScenePlan& plan, const std::string& name, const Place& place);
+
+/// Index of the joint that a joint with a mimic follows. Throws SceneError if the plan has none of this name.
+std::size_t leader_of(const JointPlan& joint, const ScenePlan& plan);
 
 /// Resolves the names of an anchor. The plan must already contain all bodies and colliders.
 AnchorPlan plan_anchor(const AnchorEntry& entry, const ScenePlan& plan);
@@ -225,20 +248,11 @@ struct PlannedHandles {
 /// Returns a planned anchor in the form that a world takes.
 Anchor anchor_of(const AnchorPlan& anchor, const ScenePlan& plan, const World& world, const PlannedHandles& handles);
 
-/// Returns the index of a joint in a plan. Throws SceneError if the plan has none of this name.
-std::size_t find_joint(const ScenePlan& plan, const std::string& name, const Place& place);
+/// Resolve the names and nodes of ties, cables and springs. The plan must already contain all bodies and colliders.
+TiePlan plan_tie(const TieEntry& entry, const ScenePlan& plan);
+CablePlan plan_cable(const CableEntry& entry, const ScenePlan& plan);
+SpringPlan plan_spring(const SpringEntry& entry, const ScenePlan& plan);
 
-/// Resolves the names and nodes of a tie. The plan must already contain all bodies and colliders. `number`: index of
-/// the tie.
-TiePlan plan_tie(const TieEntry& entry, std::size_t number, const ScenePlan& plan);
-/// Returns the index of a tie in a plan. Throws SceneError if the plan has none of this name.
-std::size_t find_tie(const ScenePlan& plan, const std::string& name, const Place& place);
-
-/// Resolves the names of a cable. The plan must already contain all bodies and colliders. `number`: index of the cable.
-CablePlan plan_cable(const CableEntry& entry, std::size_t number, const ScenePlan& plan);
-
-/// Returns the index of a cavity of the plan. Throws SceneError if there is none of this name.
-std::size_t find_cavity(const ScenePlan& plan, const std::string& name, const Place& place);
 /// Adds the cavities and pipes of a scene to a plan that already contains all bodies.
 void plan_cavities(const SceneFile& scene, ScenePlan& plan);
 /// Adds the planned cavities and pipes to a world with the given bodies, in the order of ScenePlan::bodies. Returns the
@@ -252,11 +266,6 @@ LoadHandle add_planned(const LoadPlan& load, std::span<const BodyHandle> bodies,
 
 /// Plans the fibres of an entry. `plan` already contains all bodies.
 FibrePlan plan_fibres(const FibreEntry& entry, const ScenePlan& plan);
-
-/// Adds a spring to a plan that already contains all bodies and colliders. `number` counts the springs from 0.
-void plan_spring(const SpringEntry& entry, std::size_t number, ScenePlan& plan);
-/// Returns the index of a spring in a plan. Throws SceneError if the plan has none of this name.
-std::size_t find_spring(const ScenePlan& plan, const std::string& name, const Place& place);
 
 /// Adds a probe to a plan that already contains all bodies, colliders and joining objects.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);

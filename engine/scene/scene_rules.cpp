@@ -13,12 +13,12 @@ namespace skerry {
 namespace {
 
 constexpr Real all_groups = 4294967295;
-const KeyDoc group_doc{.meaning = "bit mask of the collision groups that contain the object; default: 1",
-                       .limits = within(0, all_groups)};
-const KeyDoc mask_doc{.meaning =
-                          "bit mask of the collision groups that the object can touch; default: all groups. Two "
-                          "objects can touch if the mask of each object includes a group of the other object",
-                      .limits = within(0, all_groups)};
+constexpr KeyDoc group_doc{.meaning = "bit mask of the collision groups that contain the object; default: 1",
+                           .limits = within(0, all_groups)};
+constexpr KeyDoc mask_doc{.meaning =
+                              "bit mask of the collision groups that the object can touch; default: all groups. Two "
+                              "objects can touch if the mask of each object includes a group of the other object",
+                          .limits = within(0, all_groups)};
 
 struct MaterialName {};
 /// Moduli of a law, as papers give them.
@@ -248,41 +248,30 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
 template <>
 const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
     using Entry = ColliderEntry;
-    static const auto rule =
-        Rule<Entry>("collider", "A rigid shape that is fixed or follows a prescribed motion.")
-            .key("name", &Entry::name, {.meaning = "name in messages and output; default: collider_NUMBER"})
+    static const auto rule = [] {
+        auto made = Rule<Entry>("collider", "A rigid shape that is fixed or follows a prescribed motion.");
+        made.key("name", &Entry::name, {.meaning = "name in messages and output; default: collider_NUMBER"})
             .key("shape", &Entry::shape, {.meaning = "shape of the collider", .required = true})
             .key("position", &Entry::position, {.meaning = "position of the shape's origin", .unit = "m"})
             .key("rotation", &Entry::rotation, {.meaning = "rotation about the shape's origin"})
             .key("motion", &Entry::motion, {.meaning = "prescribed motion; default: none"})
             .key("material", &Entry::material,
-                 {.meaning = "name of one of the materials, for friction, restitution and \"pairs\"; default: none"})
-            .key("friction", &Entry::friction,
-                 {.meaning = "friction coefficient of the collider. A contact uses the geometric mean of this value "
-                             "and the value of the touching body; default: the value of the material or of the body",
-                  .alias = "mu",
-                  .limits = at_least(0)})
-            .key("static_friction", &Entry::static_friction,
-                 {.meaning = "friction coefficient of sticking contacts", .limits = at_least(0)})
-            .key("dynamic_friction", &Entry::dynamic_friction,
-                 {.meaning = "friction coefficient of sliding contacts", .limits = at_least(0)})
-            .key("restitution", &Entry::restitution,
-                 {.meaning = "coefficient of restitution of the collider. A contact uses the larger of this value and "
-                             "the value of the touching body; default: the value of the material or of the body",
-                  .limits = within(0, 1)})
-            .key("contact_distance", &Entry::contact_distance,
+                 {.meaning = "name of one of the materials, for friction, restitution and \"pairs\"; default: none"});
+        add_surface_keys(
+            made,
+            {.meaning = "friction coefficient of the collider. A contact uses the geometric mean of this value "
+                        "and the value of the touching body; default: the value of the material or of the body",
+             .alias = "mu",
+             .limits = at_least(0)},
+            {.meaning = "coefficient of restitution of the collider. A contact uses the larger of this value and "
+                        "the value of the touching body; default: the value of the material or of the body",
+             .limits = within(0, 1)});
+        made.key("contact_distance", &Entry::contact_distance,
                  {.meaning = "thickness of the contact shell of a mesh collider", .unit = "m", .limits = at_least(0)})
             .key("collision_group", &Entry::collision_group, group_doc)
-            .key("collision_mask", &Entry::collision_mask, mask_doc)
-            .together({"static_friction", "dynamic_friction"})
-            .at_most_one({"friction", "static_friction"})
-            .at_most_one({"mu", "static_friction"})
-            .check([](const Place& place, const Entry& c) {
-                if (c.static_friction && *c.dynamic_friction > *c.static_friction)
-                    place.key("dynamic_friction")
-                        .refuse(Json(*c.dynamic_friction).dump(),
-                                "at most the value of \"static_friction\", " + Json(*c.static_friction).dump());
-            });
+            .key("collision_mask", &Entry::collision_mask, mask_doc);
+        return made;
+    }();
     return rule;
 }
 
@@ -302,9 +291,9 @@ const Rule<Plasticity>& rule_of<Plasticity>() {
 template <>
 const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
     using M = MaterialSettings;
-    static const auto rule =
-        Rule<M>("material", "An elastic material and its surface.")
-            .preset<MaterialName>("like",
+    static const auto rule = [] {
+        auto made = Rule<M>("material", "An elastic material and its surface.");
+        made.preset<MaterialName>("like",
                                   {.meaning = "name of a material from the literature, whose values the other keys "
                                               "replace; `skerry materials` lists the materials with their sources"})
             .key("young_modulus", &M::young_modulus,
@@ -313,17 +302,12 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
                  {.meaning = "Poisson's ratio",
                   .alias = "nu",
                   .limits = {.at_least = {}, .above = -1, .at_most = {}, .below = 0.5}})
-            .key("density", &M::density, {.meaning = "density", .unit = "kg/m^3", .alias = "rho", .limits = above(0)})
-            .key("friction", &M::friction,
-                 {.meaning = "Coulomb friction coefficient", .alias = "mu", .limits = at_least(0)})
-            .key("static_friction", &M::static_friction,
-                 {.meaning = "friction coefficient of sticking contacts", .limits = at_least(0)})
-            .key("dynamic_friction", &M::dynamic_friction,
-                 {.meaning = "friction coefficient of sliding contacts", .limits = at_least(0)})
-            .key("restitution", &M::restitution,
-                 {.meaning = "coefficient of restitution of a surface point at an impact, not of the whole body",
-                  .limits = within(0, 1)})
-            .key("damping", &M::damping,
+            .key("density", &M::density, {.meaning = "density", .unit = "kg/m^3", .alias = "rho", .limits = above(0)});
+        add_surface_keys(
+            made, {.meaning = "Coulomb friction coefficient", .alias = "mu", .limits = at_least(0)},
+            {.meaning = "coefficient of restitution of a surface point at an impact, not of the whole body",
+             .limits = within(0, 1)});
+        made.key("damping", &M::damping,
                  {.meaning = "decay rate of deformation velocities; momentum is conserved",
                   .unit = "1/s",
                   .limits = at_least(0)})
@@ -346,16 +330,9 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
             .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "young_modulus"})
             .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "E"})
             .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "poisson_ratio"})
-            .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "nu"})
-            .together({"static_friction", "dynamic_friction"})
-            .at_most_one({"friction", "static_friction"})
-            .at_most_one({"mu", "static_friction"})
-            .check([](const Place& place, const M& m) {
-                if (m.static_friction && *m.dynamic_friction > *m.static_friction)
-                    place.key("dynamic_friction")
-                        .refuse(Json(*m.dynamic_friction).dump(),
-                                "at most the value of \"static_friction\", " + Json(*m.static_friction).dump());
-            });
+            .at_most_one({"ogden", "mooney_rivlin", "orthotropic", "nu"});
+        return made;
+    }();
     return rule;
 }
 

@@ -127,6 +127,26 @@ struct Value<IncludeEntry> : PathOrObject<IncludeEntry, &IncludeEntry::scene> {}
 template <>
 struct Value<VisualEntry> : PathOrObject<VisualEntry, &VisualEntry::file> {};
 
+/// Adds the keys of friction and restitution. `friction` and `restitution`: documentation of these two keys.
+template <class Entry>
+void add_surface_keys(Rule<Entry>& rule, const KeyDoc& friction, const KeyDoc& restitution) {
+    rule.key("friction", &Entry::friction, friction)
+        .key("static_friction", &Entry::static_friction,
+             {.meaning = "friction coefficient of sticking contacts", .limits = at_least(0)})
+        .key("dynamic_friction", &Entry::dynamic_friction,
+             {.meaning = "friction coefficient of sliding contacts", .limits = at_least(0)})
+        .key("restitution", &Entry::restitution, restitution)
+        .together({"static_friction", "dynamic_friction"})
+        .at_most_one({"friction", "static_friction"})
+        .at_most_one({"mu", "static_friction"})
+        .check([](const Place& place, const Entry& entry) {
+            if (entry.static_friction && *entry.dynamic_friction > *entry.static_friction)
+                place.key("dynamic_friction")
+                    .refuse(Json(*entry.dynamic_friction).dump(),
+                            "at most the value of \"static_friction\", " + Json(*entry.static_friction).dump());
+        });
+}
+
 /// Documentation of the keys "set", "box" and "nodes" of an entry that derives from PartEntry.
 extern const KeyDoc part_set_doc, part_box_doc, part_nodes_doc;
 

@@ -6,7 +6,7 @@ namespace skerry {
 std::string schema_document(const std::string& title, const RuleTable& rule) {
     SchemaBook definitions = SchemaBook::object();
     const Json object = rule.schema(definitions);
-    Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", title}};
+    Json schema = object_of({{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", title}});
     for (const auto& [key, value] : object.items()) schema[key] = value;
     schema["$defs"] = definitions;
     return schema.dump(1) + "\n";

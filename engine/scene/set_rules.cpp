@@ -5,7 +5,7 @@ namespace skerry {
 
 constinit const KeyDoc part_set_doc{.meaning = "name of a set of the body, from its mesh file or from \"sets\""};
 constinit const KeyDoc part_box_doc{.meaning = "box around the nodes, in the mesh's own frame"};
-const KeyDoc part_nodes_doc{
+constinit const KeyDoc part_nodes_doc{
     .meaning =
         "numbers of nodes. All nodes of a mesh file count, from 0 in the order of the file, whatever numbers the "
         "file gives them",

@@ -7,14 +7,12 @@ namespace skerry {
 namespace {
 
 // A larger number of cells would not fit into memory and is probably a typing mistake.
-const Limits cell_count = within(1, 1000);
-const Limits positive = above(0);
+constexpr Limits cell_count = within(1, 1000);
+constexpr Limits positive = above(0);
 
-KeyDoc resolution_doc() {
-    return {.meaning = "number of elements across the smallest extent of the shape",
-            .limits = within(1, 200),
-            .required = true};
-}
+constexpr KeyDoc resolution_doc{.meaning = "number of elements across the smallest extent of the shape",
+                                .limits = within(1, 200),
+                                .required = true};
 
 }  // namespace
 
@@ -35,7 +33,7 @@ const Rule<BallMesh>& rule_of<BallMesh>() {
     static const auto rule =
         Rule<BallMesh>("ball_mesh", "A ball, centred at the origin.")
             .key("radius", &BallMesh::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
-            .key("resolution", &BallMesh::resolution, resolution_doc());
+            .key("resolution", &BallMesh::resolution, resolution_doc);
     return rule;
 }
 
@@ -46,7 +44,7 @@ const Rule<CylinderMesh>& rule_of<CylinderMesh>() {
                                       {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
                                  .key("height", &CylinderMesh::height,
                                       {.meaning = "height", .unit = "m", .limits = positive, .required = true})
-                                 .key("resolution", &CylinderMesh::resolution, resolution_doc());
+                                 .key("resolution", &CylinderMesh::resolution, resolution_doc);
     return rule;
 }
 
@@ -58,7 +56,7 @@ const Rule<LatheMesh>& rule_of<LatheMesh>() {
                                                   "straight lines; z must ascend, and radii must be positive",
                                        .unit = "m",
                                        .required = true})
-                                 .key("resolution", &LatheMesh::resolution, resolution_doc());
+                                 .key("resolution", &LatheMesh::resolution, resolution_doc);
     return rule;
 }
 
@@ -67,7 +65,7 @@ const Rule<SkittleMesh>& rule_of<SkittleMesh>() {
     static const auto rule = Rule<SkittleMesh>("skittle_mesh", "A skittle that stands on z = 0.")
                                  .key("height", &SkittleMesh::height,
                                       {.meaning = "height", .unit = "m", .limits = positive, .required = true})
-                                 .key("resolution", &SkittleMesh::resolution, resolution_doc());
+                                 .key("resolution", &SkittleMesh::resolution, resolution_doc);
     return rule;
 }
 

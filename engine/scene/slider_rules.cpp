@@ -194,9 +194,7 @@ std::vector<Slider> make_sliders(const ScenePlan& plan, const PlannedHandles& ha
     SliderMaker maker(plan, handles, world);
     std::vector<Slider> sliders;
     for (const SliderEntry& entry : plan.sliders) {
-        if (std::ranges::find(sliders, entry.name, &Slider::name) != sliders.end())
-            entry.place.key("name").refuse(in_quotes(entry.name) + ", which is already the name of a slider",
-                                           "a different name for every slider");
+        choose_name(entry.name, names_of(sliders), "slider", entry.place);
         sliders.push_back(maker.make(entry));
     }
     return sliders;

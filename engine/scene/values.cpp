@@ -74,7 +74,7 @@ Real read_number(const Json& json, const Place& place, const KeyDoc& doc) {
 }
 
 Json number_schema(const char* type, const KeyDoc& doc) {
-    Json schema = {{"type", type}};
+    Json schema = object_of({{"type", type}});
     if (doc.limits.at_least) schema["minimum"] = *doc.limits.at_least;
     if (doc.limits.above) schema["exclusiveMinimum"] = *doc.limits.above;
     if (doc.limits.at_most) schema["maximum"] = *doc.limits.at_most;
@@ -146,31 +146,31 @@ void read_named(const Json& json, const Place& place, FunctionRef<bool(const std
 }
 
 Json text_schema() {
-    return {{"type", "string"}, {"minLength", 1}};
+    return object_of({{"type", "string"}, {"minLength", 1}});
 }
 
 Json boolean_schema() {
-    return {{"type", "boolean"}};
+    return object_of({{"type", "boolean"}});
 }
 
 Json enum_schema(const std::vector<std::string>& names) {
-    return {{"enum", names}};
+    return object_of({{"enum", names}});
 }
 
 Json list_schema(Json items) {
-    return {{"type", "array"}, {"items", std::move(items)}};
+    return object_of({{"type", "array"}, {"items", std::move(items)}});
 }
 
 Json list_schema(Json items, std::size_t count) {
-    return {{"type", "array"}, {"items", std::move(items)}, {"minItems", count}, {"maxItems", count}};
+    return object_of({{"type", "array"}, {"items", std::move(items)}, {"minItems", count}, {"maxItems", count}});
 }
 
 Json named_schema(Json value) {
-    return {{"type", "object"}, {"additionalProperties", std::move(value)}};
+    return object_of({{"type", "object"}, {"additionalProperties", std::move(value)}});
 }
 
 Json either_schema(Json one, Json other) {
-    return {{"oneOf", Json::array({std::move(one), std::move(other)})}};
+    return object_of({{"oneOf", Json::array({std::move(one), std::move(other)})}});
 }
 
 Json rule_schema(SchemaBook& book, const RuleTable& rule) {
@@ -180,7 +180,7 @@ Json rule_schema(SchemaBook& book, const RuleTable& rule) {
         Json definition = rule.schema(book);
         book[name] = std::move(definition);
     }
-    return {{"$ref", "#/$defs/" + name}};
+    return object_of({{"$ref", "#/$defs/" + name}});
 }
 
 void Value<std::string>::read(const Json& json, const Place& place, const KeyDoc&, std::string& out) {
@@ -243,10 +243,11 @@ void Value<TimeTable>::read(const Json& json, const Place& place, const KeyDoc& 
 }
 
 Json Value<TimeTable>::schema(SchemaBook&, const KeyDoc& doc) {
-    const Json pair = {{"type", "array"},
-                       {"prefixItems", Json::array({number_schema("number", {}), number_schema("number", doc)})},
-                       {"minItems", 2},
-                       {"maxItems", 2}};
+    const Json pair =
+        object_of({{"type", "array"},
+                   {"prefixItems", Json::array({number_schema("number", {}), number_schema("number", doc)})},
+                   {"minItems", 2},
+                   {"maxItems", 2}});
     Json pairs = list_schema(pair);
     pairs["minItems"] = 1;
     return either_schema(number_schema("number", doc), std::move(pairs));

@@ -15,7 +15,7 @@
 
 #include "engine/output/number_text.h"
 #include "engine/output/write_file.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -30,15 +30,15 @@ std::filesystem::path run_file(const std::filesystem::path& folder, const StudyV
 Json columns_json(const StudyRun& run) {
     Json columns = Json::array();
     for (const StudyColumn& column : run.columns)
-        columns.push_back({{"probe", column.what.probe},
-                           {"quantity", column.what.quantity},
-                           {"unit", column.what.unit},
-                           {"size", column.size},
-                           {"reported", column.reported},
-                           {"statistic", column.is_statistic},
-                           {"node", column.node},
-                           {"place", {column.place.x(), column.place.y(), column.place.z()}},
-                           {"values", column.values}});  // a value that is not finite becomes null
+        columns.push_back(object_of({{"probe", column.what.probe},
+                                     {"quantity", column.what.quantity},
+                                     {"unit", column.what.unit},
+                                     {"size", column.size},
+                                     {"reported", column.reported},
+                                     {"statistic", column.is_statistic},
+                                     {"node", column.node},
+                                     {"place", {column.place.x(), column.place.y(), column.place.z()}},
+                                     {"values", column.values}}));  // a value that is not finite becomes null
     return columns;
 }
 
@@ -93,15 +93,15 @@ std::string variant_name(const StudyVariant& variant) {
         name += (name.empty() ? "" : "_") + (what + ("_" + value));
     };
     if (variant.refine != 0) add("refine", std::to_string(variant.refine));
-    if (variant.step != 1) add("step", short_number(variant.step));
-    if (variant.tolerance != 1) add("tolerance", short_number(variant.tolerance));
+    if (variant.step != 1) add("step", short_text(variant.step));
+    if (variant.tolerance != 1) add("tolerance", short_text(variant.tolerance));
     if (variant.element) add("element", std::string(name_of(*variant.element)));
     if (variant.draw != 0) add("draw", std::to_string(variant.draw));
     return name.empty() ? "scene" : name;
 }
 
 Json variant_json(const StudyVariant& variant) {
-    Json json = {{"refine", variant.refine}, {"step", variant.step}, {"tolerance", variant.tolerance}};
+    Json json = object_of({{"refine", variant.refine}, {"step", variant.step}, {"tolerance", variant.tolerance}});
     if (variant.element) json["element"] = name_of(*variant.element);
     json["draw"] = variant.draw;
     return json;
@@ -110,19 +110,19 @@ Json variant_json(const StudyVariant& variant) {
 Json run_json(const StudyRun& run) {
     Json areas = Json::object();
     for (const StudyLoad& load : run.loads) areas[load.name] = load.area;
-    return {{"name", variant_name(run.variant)},
-            {"variant", variant_json(run.variant)},
-            {"set", run.assignments},
-            {"status", name_of(run.status)},
-            {"message", run.message},
-            {"warnings", run.warnings},
-            {"cpu_seconds", run.cpu_seconds},
-            {"steps", run.steps},
-            {"integrator", name_of(run.integrator)},
-            {"state_hash", hash_text(run.state_hash)},
-            {"tetrahedra", run.tetrahedra},
-            {"max_contacts", run.max_contacts},
-            {"loaded_areas", areas}};
+    return object_of({{"name", variant_name(run.variant)},
+                      {"variant", variant_json(run.variant)},
+                      {"set", run.assignments},
+                      {"status", name_of(run.status)},
+                      {"message", run.message},
+                      {"warnings", run.warnings},
+                      {"cpu_seconds", run.cpu_seconds},
+                      {"steps", run.steps},
+                      {"integrator", name_of(run.integrator)},
+                      {"state_hash", hash_text(run.state_hash)},
+                      {"tetrahedra", run.tetrahedra},
+                      {"max_contacts", run.max_contacts},
+                      {"loaded_areas", areas}});
 }
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
@@ -132,13 +132,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
     // File systems without locks have other errors, and are used without a lock.
     if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         close(file_);
-        Complaint{.file = folder.string(),
-                  .object = "study",
-                  .field = "folder",
-                  .found = "a folder in which another study runs",
-                  .expected = "a folder of one study at a time",
-                  .hint = "wait for the other study, or choose another folder"}
-            .raise();
+        refuse_in(folder.string(), "study", "folder", "a folder in which another study runs",
+                  "a folder of one study at a time", "wait for the other study, or choose another folder");
     }
 }
 
@@ -147,7 +142,7 @@ FolderLock::~FolderLock() {
 }
 
 void write_run(const std::filesystem::path& folder, const std::string& inputs, const StudyRun& run) {
-    Json json = {{"schema", run_schema}, {"inputs", inputs}};
+    Json json = object_of({{"schema", run_schema}, {"inputs", inputs}});
     json.update(run_json(run));
     json["time"] = run.time;
     json["columns"] = columns_json(run);
@@ -178,13 +173,8 @@ void remove_run(const std::filesystem::path& folder, const StudyVariant& variant
     const auto schema = json.is_object() ? json.find("schema") : json.end();
     if (schema == json.end() || !schema->is_string() ||
         !schema->get_ref<const std::string&>().starts_with("skerry.study_run/"))
-        Complaint{.file = file.string(),
-                  .object = "study",
-                  .field = "folder",
-                  .found = "a file that is no run of a study",
-                  .expected = "runs of a study, which are replaced",
-                  .hint = "choose another folder"}
-            .raise();
+        refuse_in(file.string(), "study", "folder", "a file that is no run of a study",
+                  "runs of a study, which are replaced", "choose another folder");
     std::error_code ignored;  // a file that remains is refused when it is read
     std::filesystem::remove(file, ignored);
 }

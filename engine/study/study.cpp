@@ -29,33 +29,19 @@ constexpr double usual_budget = 15;  // StudySettings::budget, unless a study is
 
 void require_positive(const char* field, double value, const char* expected) {
     if (value > 0 && std::isfinite(value)) return;
-    Complaint{
-        .file = {}, .object = "study", .field = field, .found = short_text(value), .expected = expected, .hint = {}}
-        .raise();
+    refuse("study", field, short_text(value), expected);
 }
 
 void check_settings(const StudySettings& settings) {
     constexpr const char* share = "a share above 0 and below 1, for example 0.05 for 5 %";
     require_positive("error", settings.error, share);
-    if (settings.error >= 1)
-        Complaint{.file = {},
-                  .object = "study",
-                  .field = "error",
-                  .found = short_text(settings.error),
-                  .expected = share,
-                  .hint = {}}
-            .raise();
+    if (settings.error >= 1) refuse("study", "error", short_text(settings.error), share);
     if (settings.budget) require_positive("budget", *settings.budget, "a number > 0");
     if (settings.seconds) require_positive("seconds", *settings.seconds, "a time > 0 (s)");
     constexpr int most_threads = 1024;
     if (settings.threads < 0 || settings.threads > most_threads)
-        Complaint{.file = {},
-                  .object = "study",
-                  .field = "threads",
-                  .found = std::to_string(settings.threads),
-                  .expected = "a number of threads from 0 to 1024 (0: the number of cores)",
-                  .hint = {}}
-            .raise();
+        refuse("study", "threads", std::to_string(settings.threads),
+               "a number of threads from 0 to 1024 (0: the number of cores)");
 }
 
 /// Names the tractions that act on another area with the finest meshes: a box or a sphere may select other faces there.
@@ -67,8 +53,8 @@ void add_load_sentences(const std::vector<StudyRun>& runs, std::vector<std::stri
     for (const StudyLoad& load : runs[0].loads) {
         const auto fine = std::ranges::find(finest->loads, load.name, &StudyLoad::name);
         if (fine == finest->loads.end() || std::abs(fine->area - load.area) <= least_change * load.area) continue;
-        sentences.push_back("Load '" + load.name + "' acts on " + short_number(load.area) +
-                            " m^2 in the scene as it is, and on " + short_number(fine->area) + " m^2 with the " +
+        sentences.push_back("Load '" + load.name + "' acts on " + short_text(load.area) +
+                            " m^2 in the scene as it is, and on " + short_text(fine->area) + " m^2 with the " +
                             variant_text(finest->variant) +
                             ", because other faces are selected there. The mesh errors include this change. To avoid "
                             "it, choose the faces by a set of the mesh, or by a box that ends where faces end.");
@@ -222,13 +208,9 @@ private:
         if (settings_.folder.empty()) return false;
         StoredRun stored = read_run(settings_.folder, inputs_[i], plan_[i].variant);
         if (!stored.found.empty())
-            Complaint{.file = settings_.folder.string(),
-                      .object = "study",
-                      .field = "folder",
-                      .found = stored.found,
-                      .expected = "runs of " + scene_.path.string() + " in its present version, with these settings",
-                      .hint = "choose another folder, or redo to replace runs of studies"}
-                .raise();
+            refuse_in(settings_.folder.string(), "study", "folder", stored.found,
+                      "runs of " + scene_.path.string() + " in its present version, with these settings",
+                      "choose another folder, or redo to replace runs of studies");
         if (!stored.run || stored.run->status == StudyRunStatus::refused) return false;
         runs_[i] = std::move(*stored.run);
         return true;
@@ -276,13 +258,9 @@ private:
     void require_unchanged(std::size_t i) const {
         CaseHasher now(scene_.path);
         if (inputs_of(i, now) == inputs_[i]) return;
-        Complaint{.file = scene_.path.string(),
-                  .object = "study",
-                  .field = "scene",
-                  .found = "that the scene or one of its files changed while the study ran",
-                  .expected = "the same content for all runs",
-                  .hint = "runs that ended before the change are kept; undo the change to continue, or begin again"}
-            .raise();
+        refuse_in(scene_.path.string(), "study", "scene",
+                  "that the scene or one of its files changed while the study ran", "the same content for all runs",
+                  "runs that ended before the change are kept; undo the change to continue, or begin again");
     }
 
     void make_run(std::size_t i, int threads_of_run) {
@@ -367,15 +345,10 @@ StudyResult study(const std::filesystem::path& scene, const StudySettings& setti
 void write_cheapest_scene(const std::filesystem::path& scene, const StudyResult& result,
                           const std::filesystem::path& file) {
     if (!result.cheapest || !result.cheapest->reaches)
-        Complaint{.file = scene.string(),
-                  .object = "study",
-                  .field = "error",
-                  .found = result.cheapest ? percent(result.wanted_error) + ", which no settings reach"
-                                           : "no quantity with a known error",
-                  .expected =
-                      result.cheapest ? "at least " + percent(result.cheapest->error) : "a quantity with a known error",
-                  .hint = {}}
-            .raise();
+        refuse_in(scene.string(), "study", "error",
+                  result.cheapest ? percent(result.wanted_error) + ", which no settings reach"
+                                  : "no quantity with a known error",
+                  result.cheapest ? "at least " + percent(result.cheapest->error) : "a quantity with a known error");
     write_scene(file, scene, result.cheapest->assignments);
 }
 

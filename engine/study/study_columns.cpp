@@ -275,13 +275,8 @@ void choose_columns_by_name(const std::vector<std::string>& names, const std::fi
         std::vector<std::string> known;
         for (const StudyColumn& column : columns)
             if (known.empty() || known.back() != column.what.probe) known.push_back(column.what.probe);
-        Complaint{.file = file.string(),
-                  .object = "study",
-                  .field = "probe",
-                  .found = in_quotes(name),
-                  .expected = "NAME or NAME.QUANTITY, where NAME is one of " + listed(known),
-                  .hint = nearest_hint(name, known)}
-            .raise();
+        refuse_in(file.string(), "study", "probe", in_quotes(name),
+                  "NAME or NAME.QUANTITY, where NAME is one of " + listed(known), nearest_hint(name, known));
     }
 }
 

@@ -25,6 +25,22 @@ void Complaint::raise() const {
 SceneError::SceneError(const std::string& text, Complaint complaint)
     : std::runtime_error(text), complaint_(std::make_shared<const Complaint>(std::move(complaint))) {}
 
+void refuse(std::string_view object, std::string_view field, std::string_view found, std::string_view expected,
+            std::string_view hint) {
+    refuse_in({}, object, field, found, expected, hint);
+}
+
+void refuse_in(std::string_view file, std::string_view object, std::string_view field, std::string_view found,
+               std::string_view expected, std::string_view hint) {
+    Complaint{.file = std::string(file),
+              .object = std::string(object),
+              .field = std::string(field),
+              .found = std::string(found),
+              .expected = std::string(expected),
+              .hint = std::string(hint)}
+        .raise();
+}
+
 SceneError error_at(const Complaint& place, const SceneError& inner) {
     Complaint parts = inner.complaint();
     if (parts.file.empty()) {
@@ -39,6 +55,11 @@ std::string short_text(Real value, int digits) {
     char text[32];
     std::snprintf(text, sizeof text, "%.*g", digits, value);
     return text;
+}
+
+std::string short_text(const Vec3& value, int digits) {
+    return "(" + short_text(value.x(), digits) + ", " + short_text(value.y(), digits) + ", " +
+           short_text(value.z(), digits) + ")";
 }
 
 namespace {

@@ -12,12 +12,20 @@
 
 namespace skerry {
 
+/// Throws a SceneError with these parts of the message, of which each may be empty. refuse() names no file.
+[[noreturn]] void refuse(std::string_view object, std::string_view field, std::string_view found,
+                         std::string_view expected, std::string_view hint = {});
+[[noreturn]] void refuse_in(std::string_view file, std::string_view object, std::string_view field,
+                            std::string_view found, std::string_view expected, std::string_view hint = {});
+
 /// Returns an error whose text is that of `inner` with `place` in front. Its parts are those of `inner`. If `inner`
 /// names no file, they get the file and the object of the place, and its field in front of the field of `inner`.
 SceneError error_at(const Complaint& place, const SceneError& inner);
 
-/// Formats a number with `digits` significant digits.
+/// Formats a number with `digits` significant digits, like %.*g of printf.
 std::string short_text(Real value, int digits = 3);
+/// Formats a vector as (x, y, z).
+std::string short_text(const Vec3& value, int digits = 3);
 
 /// Returns the name closest to `text`: the one with the fewest changed, missing, added or swapped letters. Empty if
 /// there are no names.

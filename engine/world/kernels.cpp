@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "skerry/instruction_set.h"
 
 namespace skerry {
@@ -30,13 +30,7 @@ const Kernels& choose_kernels(std::span<const KernelSet> sets, std::string_view 
             "this build contains this instruction set, but the processor or the operating system does not support it";
     }
     if (wanted.empty()) return *last;
-    Complaint{.file = {},
-              .object = "environment",
-              .field = "SKERRY_INSTRUCTION_SET",
-              .found = "\"" + std::string(wanted) + "\"",
-              .expected = "one of " + listed(sets),
-              .hint = hint}
-        .raise();
+    refuse("environment", "SKERRY_INSTRUCTION_SET", "\"" + std::string(wanted) + "\"", "one of " + listed(sets), hint);
 }
 
 const Kernels& kernels() {

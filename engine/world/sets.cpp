@@ -25,8 +25,7 @@ const MeshSet& set_of(const BodyRecord& record, const std::string& name) {
     const auto found = record.sets.find(name);
     if (found == record.sets.end()) {
         const std::vector<std::string> names = mesh::names_of(record.sets);
-        Complaint{{}, body_title(record), "set", '"' + name + '"', mesh::expected_set(names), nearest_hint(name, names)}
-            .raise();
+        refuse(body_title(record), "set", '"' + name + '"', mesh::expected_set(names), nearest_hint(name, names));
     }
     return found->second;
 }

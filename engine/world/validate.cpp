@@ -10,7 +10,6 @@
 #include "engine/mesh/require_positive.h"
 #include "engine/mesh/sets.h"
 #include "engine/mesh/surface/check_shells.h"
-#include "engine/world/complaint.h"
 #include "systems/collision/build_surface.h"
 #include "systems/dynamics/rigid/rigid_motion.h"
 #include "systems/geometry/rotation.h"
@@ -128,26 +127,22 @@ std::string shown(Real value) {
 }
 
 std::string shown(const Vec3& value) {
-    return "(" + shown(value.x()) + ", " + shown(value.y()) + ", " + shown(value.z()) + ")";
+    return short_text(value, 6);
 }
 
-void require(bool good, const std::string& object, const char* field, Real found, const char* expected) {
+void require(bool good, std::string_view object, std::string_view field, Real found, std::string_view expected) {
     if (!good || !std::isfinite(found)) refuse(object, field, shown(found), expected);
 }
 
-void refuse(const std::string& object, const char* field, const std::string& found, const std::string& expected) {
-    Complaint{.file = {}, .object = object, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
-}
-
 void require_table(const std::string& object, const std::string& field, const TimeTable& table) {
-    if (table.keys.empty()) refuse(object, field.c_str(), "no key", "at least one key");
+    if (table.keys.empty()) refuse(object, field, "no key", "at least one key");
     for (std::size_t k = 0; k < table.keys.size(); ++k) {
         const TimeKey& key = table.keys[k];
         const std::string place = field + "[" + std::to_string(k) + "]";
-        if (!std::isfinite(key.value)) refuse(object, (place + ".value").c_str(), shown(key.value), "a finite number");
-        if (!std::isfinite(key.time)) refuse(object, (place + ".time").c_str(), shown(key.time), "a finite number (s)");
+        if (!std::isfinite(key.value)) refuse(object, place + ".value", shown(key.value), "a finite number");
+        if (!std::isfinite(key.time)) refuse(object, place + ".time", shown(key.time), "a finite number (s)");
         if (k > 0 && !(key.time > table.keys[k - 1].time))
-            refuse(object, (place + ".time").c_str(), short_text(key.time, 9) + " s",
+            refuse(object, place + ".time", short_text(key.time, 9) + " s",
                    "a time after that of the key before, " + short_text(table.keys[k - 1].time, 9) + " s");
     }
 }
@@ -167,7 +162,7 @@ void require_different_nodes(const std::string& object, std::span<const Index> n
         refuse(object, "nodes", "node " + std::to_string(*twice) + " twice", "each node at most once");
 }
 
-void require_finite(const std::string& object, const char* field, const Vec3& found) {
+void require_finite(std::string_view object, std::string_view field, const Vec3& found) {
     if (!found.allFinite()) refuse(object, field, shown(found), "three finite numbers");
 }
 
@@ -372,15 +367,9 @@ void validate(const Motion& motion, const Vec3& pivot) {
     validate(motion, "attachment");
     require_finite("attachment", "pivot", pivot);
     if (!motion.keys.empty() && !pivot.isZero(0))
-        Complaint{.file = {},
-                  .object = "attachment",
-                  .field = "pivot",
-                  .found = "a pivot and keys",
-                  .expected = "a pivot only for an angular velocity",
-                  .hint =
-                      "keys rotate the nodes about the position of the keys: give each key the position of the "
-                      "centre of rotation"}
-            .raise();
+        refuse("attachment", "pivot", "a pivot and keys", "a pivot only for an angular velocity",
+               "keys rotate the nodes about the position of the keys: give each key the position of the "
+               "centre of rotation");
 }
 
 namespace {
@@ -394,15 +383,9 @@ void require_keys_of_plane(const Plane& plane, const ColliderSettings& collider,
     const Mat3 turn = rotation_matrix(collider.rotation);
     const MotionKey& first = collider.motion.keys.front();
     const auto refuse_key = [&](const char* field, const std::string& found, const std::string& expected) {
-        Complaint{.file = {},
-                  .object = object,
-                  .field = field,
-                  .found = found,
-                  .expected = expected,
-                  .hint =
-                      "keys are poses of the plane itself, as for move_to: position is a point of the plane, and "
-                      "rotation turns +z to its normal; correct all keys, or leave out point and normal"}
-            .raise();
+        refuse(object, field, found, expected,
+               "keys are poses of the plane itself, as for move_to: position is a point of the plane, and "
+               "rotation turns +z to its normal; correct all keys, or leave out point and normal");
     };
     const Vec3 normal = turn * plane.normal.normalized(), of_keys = rotation_matrix(first.rotation).col(2);
     if (collider.motion.turns() && plane.normal.normalized() != Vec3::UnitZ() && (of_keys - normal).norm() > same)

@@ -16,10 +16,10 @@ void require_terms(const MaterialSettings& material, const std::string& object) 
     for (std::size_t p = 0; p < material.terms.size(); ++p) {
         const std::string field = "terms[" + std::to_string(p) + "]";
         const auto [share, exponent] = material.terms[p];
-        require(share >= 0, object, (field + ".share").c_str(), share,
+        require(share >= 0, object, field + ".share", share,
                 "a share >= 0, because modulus and exponent have one sign");
         const Real size = std::abs(exponent);
-        require(size >= least_exponent && size <= largest_exponent, object, (field + ".exponent").c_str(), exponent,
+        require(size >= least_exponent && size <= largest_exponent, object, field + ".exponent", exponent,
                 "an exponent between 0.1 and 100 in size");
         sum += share;
     }
@@ -32,14 +32,14 @@ void require_orthotropic(const OrthotropicModuli& moduli, const std::string& obj
     const std::array<const char*, 3> pair{"12", "23", "13"};
     for (Index i = 0; i < 3; ++i) {
         const std::string entry = "[" + std::to_string(i) + "]";
-        require(E[i] > 0, object, ("orthotropic.young_modulus" + entry).c_str(), E[i], "a modulus > 0 (Pa)");
-        require(G[i] > 0, object, ("orthotropic.shear_modulus" + entry).c_str(), G[i], "a modulus > 0 (Pa)");
+        require(E[i] > 0, object, "orthotropic.young_modulus" + entry, E[i], "a modulus > 0 (Pa)");
+        require(G[i] > 0, object, "orthotropic.shear_modulus" + entry, G[i], "a modulus > 0 (Pa)");
     }
     for (Index k = 0; k < 3; ++k) {
         const Index first = k == 1 ? 1 : 0, second = k == 0 ? 1 : 2;
         const std::string name = pair[static_cast<std::size_t>(k)];
         const Real most = std::sqrt(E[first] / E[second]);
-        require(std::abs(nu[k]) < most, object, ("orthotropic.poisson_ratio[" + std::to_string(k) + "]").c_str(), nu[k],
+        require(std::abs(nu[k]) < most, object, "orthotropic.poisson_ratio[" + std::to_string(k) + "]", nu[k],
                 ("a number between -" + shown(most) + " and " + shown(most) + ", the root of E" + name.substr(0, 1) +
                  "/E" + name.substr(1) + ", for a positive definite stiffness")
                     .c_str());

@@ -70,21 +70,11 @@ void WorldState::require_between_steps(const char* call) const {
     // calls that all ranks of a divided world can make alike
     constexpr std::array<std::string_view, 4> on_ranks{"advance", "distribute", "settle_start", "watch_steps"};
     if (ranks.on() && std::ranges::find(on_ranks, call) == on_ranks.end())
-        Complaint{.file = {},
-                  .object = call,
-                  .field = "world",
-                  .found = "a world that is divided among ranks",
-                  .expected = "an undivided world",
-                  .hint = "call it before distribute(), or with the world that gathered() returns"}
-            .raise();
+        refuse(call, "world", "a world that is divided among ranks", "an undivided world",
+               "call it before distribute(), or with the world that gathered() returns");
     if (!advancing) return;
-    Complaint{.file = {},
-              .object = call,
-              .field = {},
-              .found = "a call during advance() or rollout()",
-              .expected = "a call after their end",
-              .hint = "a callback that they run may read the world but must not change or advance it"}
-        .raise();
+    refuse(call, {}, "a call during advance() or rollout()", "a call after their end",
+           "a callback that they run may read the world but must not change or advance it");
 }
 
 void WorldState::draw(bool resting) {
@@ -134,13 +124,8 @@ World::StateOwner& World::StateOwner::operator=(StateOwner&&) noexcept = default
 
 WorldState& World::StateOwner::operator*() const {
     if (!owned_)
-        Complaint{.file = {},
-                  .object = "world",
-                  .field = {},
-                  .found = "a moved-from world",
-                  .expected = "a valid world",
-                  .hint = "use the world to which the content of this world was moved"}
-            .raise();
+        refuse("world", {}, "a moved-from world", "a valid world",
+               "use the world to which the content of this world was moved");
     return *owned_;
 }
 

@@ -21,7 +21,7 @@
 
 #include "engine/live/server/admission.h"
 #include "engine/output/page/page_document.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -274,13 +274,8 @@ LiveServer::LiveServer(int port, LiveHub& hub)
     mg_error_data error{.code = nullptr, .text = text.data(), .text_buffer_size = text.size()};
     impl_->context = mg_start2(&start, &error);
     if (!impl_->context)
-        Complaint{.file = {},
-                  .object = "live view",
-                  .field = "port",
-                  .found = std::to_string(port) + ", which cannot be opened (" + text.data() + ")",
-                  .expected = "a free port, or 0 to choose one",
-                  .hint = "another program may use this port"}
-            .raise();
+        refuse("live view", "port", std::to_string(port) + ", which cannot be opened (" + text.data() + ")",
+               "a free port, or 0 to choose one", "another program may use this port");
     mg_server_port ports{};
     mg_get_server_ports(impl_->context, 1, &ports);
     impl_->port = ports.port;

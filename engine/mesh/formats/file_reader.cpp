@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 namespace {
@@ -44,10 +44,9 @@ std::string in_quotes(std::string_view text) {
 
 FileReader::FileReader(const std::string& path) : path_(path) {
     std::error_code error;
-    if (!std::filesystem::exists(path, error))
-        Complaint{path, {}, {}, "no such file", "a mesh file", "check the path"}.raise();
+    if (!std::filesystem::exists(path, error)) refuse_in(path, {}, {}, "no such file", "a mesh file", "check the path");
     if (!std::filesystem::is_regular_file(path, error))
-        Complaint{path, {}, {}, "a folder or device", "a mesh file", "check the path"}.raise();
+        refuse_in(path, {}, {}, "a folder or device", "a mesh file", "check the path");
     std::ifstream file(path, std::ios::binary);
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     if (file && !error) {
@@ -55,9 +54,8 @@ FileReader::FileReader(const std::string& path) : path_(path) {
         file.read(data_.data(), static_cast<std::streamsize>(data_.size()));
     }
     if (!file || error)
-        Complaint{
-            path, {}, {}, "a file that cannot be opened or read", "a mesh file", "check the permissions of the file"}
-            .raise();
+        refuse_in(path, {}, {}, "a file that cannot be opened or read", "a mesh file",
+                  "check the permissions of the file");
 }
 
 void FileReader::set_row(const char* kind, std::size_t number, std::size_t count) {
@@ -221,8 +219,7 @@ void FileReader::complain(std::string field, std::string found, std::string expe
     std::string object = section_.empty() ? std::string() : section_ + ", ";
     if (row_kind_ != nullptr)
         object += row_kind_ + (" " + std::to_string(row_number_)) + " of " + std::to_string(row_count_) + ", ";
-    Complaint{path_, object + place(), std::move(field), std::move(found), std::move(expected), std::move(hint)}
-        .raise();
+    refuse_in(path_, object + place(), field, found, expected, hint);
 }
 
 }  // namespace skerry::mesh

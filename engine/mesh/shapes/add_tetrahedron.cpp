@@ -1,12 +1,11 @@
 #include "engine/mesh/shapes/add_tetrahedron.h"
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
 #include "engine/mesh/tetrahedron.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 
@@ -15,18 +14,8 @@ void add_tetrahedron(Mesh& mesh, std::array<Index, 4> nodes) {
     mesh.tetrahedra.push_back(nodes);
 }
 
-void refuse(const char* shape, const char* field, std::string found, std::string expected) {
-    Complaint{.file = {},
-              .object = shape,
-              .field = field,
-              .found = std::move(found),
-              .expected = std::move(expected),
-              .hint = {}}
-        .raise();
-}
-
 void require_size(const char* shape, const char* field, Real value) {
-    if (!(std::isfinite(value) && value > 0)) refuse(shape, field, shown(value), "a length > 0 (m)");
+    if (!(std::isfinite(value) && value > 0)) refuse(shape, field, short_text(value, 6), "a length > 0 (m)");
 }
 
 void require_count(const char* shape, const char* field, int value) {
@@ -37,14 +26,8 @@ void require_fits(const char* shape, const char* field, double tetrahedra) {
     // The table of triangle corners has four rows per tetrahedron, and row numbers have 32 bits.
     constexpr int most = 0x7fffffff / 4;
     if (!(tetrahedra <= most))
-        refuse(shape, field, "a mesh of about " + shown(tetrahedra) + " elements",
+        refuse(shape, field, "a mesh of about " + short_text(tetrahedra, 6) + " elements",
                "at most " + std::to_string(most) + ", because indices have 32 bits");
-}
-
-std::string shown(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return text;
 }
 
 }  // namespace skerry::mesh

@@ -11,17 +11,11 @@ namespace skerry::mesh {
 /// Appends a tetrahedron with the given nodes, ordered so that its volume is positive.
 void add_tetrahedron(Mesh& mesh, std::array<Index, 4> nodes);
 
-/// Throws SceneError for a parameter of a shape.
-[[noreturn]] void refuse(const char* shape, const char* field, std::string found, std::string expected);
-
 /// Throw SceneError unless a size is finite and positive, and a count is at least 1.
 void require_size(const char* shape, const char* field, Real value);
 void require_count(const char* shape, const char* field, int value);
 
 /// Throws SceneError if the corners of this number of tetrahedra (four corners each) exceed a 32-bit index.
 void require_fits(const char* shape, const char* field, double tetrahedra);
-
-/// Returns a number as a text with six digits.
-std::string shown(double value);
 
 }  // namespace skerry::mesh

@@ -5,6 +5,7 @@
 
 #include "engine/mesh/shapes/add_tetrahedron.h"
 #include "engine/mesh/shapes/stack_discs.h"
+#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 namespace {
@@ -25,7 +26,7 @@ void check_profile(std::span<const ProfilePoint> profile) {
     for (std::size_t i = 0; i < profile.size(); ++i) {
         require_size("lathe profile", "radius", profile[i][0]);
         if (!std::isfinite(profile[i][1]) || (i > 0 && !(profile[i][1] > profile[i - 1][1])))
-            refuse("lathe", "profile", "z = " + shown(profile[i][1]) + " at point " + std::to_string(i),
+            refuse("lathe", "profile", "z = " + short_text(profile[i][1], 6) + " at point " + std::to_string(i),
                    "finite z in ascending order (m)");
     }
 }

@@ -3,6 +3,7 @@
 
 #include "engine/mesh/shapes/add_tetrahedron.h"
 #include "engine/mesh/shapes/fill_grid.h"
+#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 namespace {
@@ -24,9 +25,10 @@ Mesh table(const TableShape& shape) {
     require_size("table", "leg", shape.leg);
     require_count("table", "cells_per_leg", shape.cells_per_leg);
     if (!(2 * shape.leg < shape.length && 2 * shape.leg < shape.width))
-        refuse("table", "leg", shown(shape.leg), "less than half the length and half the width of the table (m)");
+        refuse("table", "leg", short_text(shape.leg, 6),
+               "less than half the length and half the width of the table (m)");
     if (!(shape.thickness < shape.height))
-        refuse("table", "thickness", shown(shape.thickness), "less than the height of the table (m)");
+        refuse("table", "thickness", short_text(shape.thickness, 6), "less than the height of the table (m)");
 
     const Real cell = shape.leg / shape.cells_per_leg;
     const std::array<Real, 2> top{shape.length, shape.width};

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <numeric>
 #include <span>
-#include <sstream>
 #include <utility>
 
 #include "engine/mesh/surface/add_fault.h"
@@ -10,7 +9,7 @@
 #include "engine/mesh/surface/crossings.h"
 #include "engine/mesh/surface/shells.h"
 #include "engine/mesh/tetrahedron.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "systems/collision/tree/box.h"
 
 namespace skerry {
@@ -33,14 +32,9 @@ void require_surface(const SurfaceMesh& surface, const std::string& name) {
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
         for (const Index n : surface.triangles[t])
             if (n < 0 || n >= count)
-                Complaint{name,
-                          "triangle " + std::to_string(t),
-                          "node",
-                          std::to_string(n),
-                          "a node index from 0 to " + std::to_string(count - 1),
-                          {}}
-                    .raise();
-    if (surface.triangles.empty()) Complaint{name, {}, {}, "no triangles", "at least one triangle", {}}.raise();
+                refuse_in(name, "triangle " + std::to_string(t), "node", std::to_string(n),
+                          "a node index from 0 to " + std::to_string(count - 1));
+    if (surface.triangles.empty()) refuse_in(name, {}, {}, "no triangles", "at least one triangle");
 }
 
 /// Welds the surface, and reports triangles that are flat afterwards.
@@ -81,11 +75,8 @@ void report_repeated_shells(SurfaceReport& report, std::span<const Index> repeat
 
 SurfaceReport check_shells(const SurfaceMesh& surface, Real tolerance, const std::string& name, bool keep_walls) {
     require_surface(surface, name);
-    if (!(tolerance < 1)) {
-        std::ostringstream found;
-        found << tolerance;
-        Complaint{name, {}, "tolerance", found.str(), "a fraction of the diagonal below 1", {}}.raise();
-    }
+    if (!(tolerance < 1))
+        refuse_in(name, {}, "tolerance", short_text(tolerance, 6), "a fraction of the diagonal below 1");
     SurfaceReport report{.nodes = surface.nodes.size(), .triangles = surface.triangles.size()};
     Aabb box = empty_box();
     for (const std::array<Index, 3>& triangle : surface.triangles)
@@ -153,21 +144,16 @@ std::string fault_text(const SurfaceFault& fault) {
         {thin_walls, "sampled place with a wall thinner than half the mean edge",
          "sampled places with a wall thinner than half the mean edge"},
     };
-    std::ostringstream text;
-    text.precision(4);
-    if (fault.kind == unlikely_size) {
-        text << "a size of " << fault.length << " m, " << other_unit;
-        return text.str();
-    }
+    const std::string length = short_text(fault.length, 4);
+    if (fault.kind == unlikely_size) return "a size of " + length + " m, " + std::string(other_unit);
     const Noun& noun = *std::ranges::find(nouns, fault.kind, &Noun::kind);
-    text << fault.count << ' ' << (fault.count == 1 ? noun.one : noun.more);
-    if (fault.kind == holes) text << ", the longest " << fault.length << " m around";
-    if (fault.kind == duplicate_shells && fault.length > 0) text << ", up to " << fault.length << " m apart";
-    if (fault.kind == thin_walls) text << ", down to " << fault.length << " m";
-    text << (fault.count > 1 && fault.kind != holes ? ", the first" : "") << " at (" << fault.place.x() << ", "
-         << fault.place.y() << ", " << fault.place.z() << ") m, triangle " << fault.triangle;
-    if (fault.other != no_index) text << " and triangle " << fault.other;
-    return text.str();
+    std::string text = std::to_string(fault.count) + " " + (fault.count == 1 ? noun.one : noun.more);
+    if (fault.kind == holes) text += ", the longest " + length + " m around";
+    if (fault.kind == duplicate_shells && fault.length > 0) text += ", up to " + length + " m apart";
+    if (fault.kind == thin_walls) text += ", down to " + length + " m";
+    text += (fault.count > 1 && fault.kind != holes ? ", the first at " : " at ") + short_text(fault.place, 4) +
+            " m, triangle " + std::to_string(fault.triangle);
+    return fault.other == no_index ? text : text + " and triangle " + std::to_string(fault.other);
 }
 
 }  // namespace mesh

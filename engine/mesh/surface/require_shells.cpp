@@ -2,7 +2,7 @@
 
 #include "engine/mesh/surface/check_shells.h"
 #include "engine/mesh/surface/crossings.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 
@@ -12,7 +12,7 @@ void require_shells(const SurfaceMesh& surface, const std::string& name, bool ma
     const auto refuse_any = [&](std::initializer_list<SurfaceFaultKind> kinds, const char* expected, const char* hint) {
         for (const SurfaceFaultKind kind : kinds)
             if (const SurfaceFault* fault = report.find(kind))
-                Complaint{name, "mesh", "triangles", fault_text(*fault), expected, hint}.raise();
+                refuse_in(name, "mesh", "triangles", fault_text(*fault), expected, hint);
     };
     refuse_any({flat_triangles, duplicate_triangles, turned_triangles, holes, one_sided_shells}, "a closed surface",
                "repair the surface; skerry inspect FILE lists its faults");

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "systems/dynamics/elements/element_energy.h"
 
 namespace skerry {
@@ -122,13 +122,7 @@ std::vector<Real> DrawnSurface::values(const BodyFrame& body, std::span<const Re
 
 void require_positive(const std::filesystem::path& file, const char* setting, Real value) {
     if (value > 0 && std::isfinite(value)) return;
-    Complaint{.file = file.string(),
-              .object = "output",
-              .field = setting,
-              .found = std::to_string(value),
-              .expected = "a number above 0",
-              .hint = {}}
-        .raise();
+    refuse_in(file.string(), "output", setting, std::to_string(value), "a number above 0");
 }
 
 std::vector<Vec3f> relative_to(const Vec3& origin, std::span<const Vec3> points) {

@@ -8,7 +8,7 @@
 #include "engine/output/film/usd_film.h"
 #include "engine/output/write_file.h"
 #include "engine/output/writer.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "skerry/output.h"
 
 namespace skerry {
@@ -17,8 +17,7 @@ namespace {
 
 [[noreturn]] void refuse_film(const std::filesystem::path& file, const char* field, const std::string& found,
                               const std::string& expected) {
-    Complaint{.file = file.string(), .object = "film", .field = field, .found = found, .expected = expected, .hint = {}}
-        .raise();
+    refuse_in(file.string(), "film", field, found, expected);
 }
 
 /// Throws unless a film with these settings can be written to `file`. Returns the file.

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -16,6 +15,7 @@
 
 #include "engine/output/collect_frame.h"
 #include "engine/output/film/drawn_surface.h"
+#include "engine/output/json_object.h"
 #include "engine/output/shape_picture.h"
 #include "engine/output/write_file.h"
 #include "skerry/output.h"
@@ -24,8 +24,6 @@
 namespace skerry {
 
 namespace {
-
-using GltfJson = nlohmann::ordered_json;
 
 // Numbers of the specification of glTF.
 constexpr int type_float = 5126, type_uint32 = 5125, target_vertices = 34962, target_indices = 34963;
@@ -65,27 +63,30 @@ std::vector<Vec3f> vertex_normals(const GltfMesh& mesh) {
 class GltfFile {
 public:
     GltfFile(FilmColor color, Real top) : color_(color), top_(top) {
-        json_ = {{"asset", {{"version", "2.0"}, {"generator", "Skerry"}}},
-                 {"scene", 0},
-                 {"scenes", {{{"nodes", {0}}}}},
-                 {"nodes", {{{"name", "World"}, {"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}}}}};
+        json_ = object_of(
+            {{"asset", object_of({{"version", "2.0"}, {"generator", "Skerry"}})},
+             {"scene", 0},
+             {"scenes", Json::array({object_of({{"nodes", {0}}})})},
+             {"nodes",
+              Json::array({object_of({{"name", "World"}, {"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}})})}});
     }
 
     void add(const GltfMesh& mesh) {
         if (mesh.triangles.empty()) return;
         const Eigen::Quaternion<Real> turn(mesh.rotation);
-        const std::size_t number = append("meshes", {{"name", mesh.name}, {"primitives", primitives(mesh)}});
-        const std::size_t node = append("nodes", {{"name", mesh.name},
-                                                  {"mesh", number},
-                                                  {"translation", {mesh.origin.x(), mesh.origin.y(), mesh.origin.z()}},
-                                                  {"rotation", {turn.x(), turn.y(), turn.z(), turn.w()}}});
+        const std::size_t number = append("meshes", object_of({{"name", mesh.name}, {"primitives", primitives(mesh)}}));
+        const std::size_t node =
+            append("nodes", object_of({{"name", mesh.name},
+                                       {"mesh", number},
+                                       {"translation", {mesh.origin.x(), mesh.origin.y(), mesh.origin.z()}},
+                                       {"rotation", {turn.x(), turn.y(), turn.z(), turn.w()}}}));
         json_["nodes"][0]["children"].push_back(node);
     }
 
     void write(const std::filesystem::path& file) {
         pad(binary_, '\0');
-        if (!binary_.empty()) append("buffers", {{"byteLength", binary_.size()}});
-        std::string text = json_.dump(-1, ' ', false, GltfJson::error_handler_t::replace);
+        if (!binary_.empty()) append("buffers", object_of({{"byteLength", binary_.size()}}));
+        std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
         pad(text, ' ');
         constexpr std::uint32_t magic = 0x46546c67, version = 2, json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
         constexpr std::size_t headers = 12 + 8 + 8;
@@ -107,7 +108,7 @@ private:
     static void pad(std::string& bytes, char with) { bytes.append((4 - bytes.size() % 4) % 4, with); }
 
     /// Appends an object to a list of the file, and returns its number in the list.
-    std::size_t append(const char* list, GltfJson object) {
+    std::size_t append(const char* list, Json object) {
         json_[list].push_back(std::move(object));
         return json_[list].size() - 1;
     }
@@ -115,7 +116,7 @@ private:
     /// Appends bytes to the binary part, and returns the number of the view of these bytes.
     std::size_t view(std::string_view bytes, int target) {
         pad(binary_, '\0');
-        GltfJson view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes.size()}};
+        Json view = object_of({{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes.size()}});
         if (target != 0) view["target"] = target;
         binary_.append(bytes);
         return append("bufferViews", std::move(view));
@@ -125,13 +126,13 @@ private:
     template <class T>
     std::size_t array(const std::vector<T>& values, const char* type, int component, int target) {
         const std::string_view bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-        return append("accessors", {{"bufferView", view(bytes, target)},
-                                    {"componentType", component},
-                                    {"count", values.size()},
-                                    {"type", type}});
+        return append("accessors", object_of({{"bufferView", view(bytes, target)},
+                                              {"componentType", component},
+                                              {"count", values.size()},
+                                              {"type", type}}));
     }
 
-    GltfJson primitives(const GltfMesh& mesh) {
+    Json primitives(const GltfMesh& mesh) {
         const bool textured = mesh.visual != nullptr && !mesh.visual->texture_corners.empty();
         VisualPoints vertices{.node = std::vector<Index>(mesh.points.size()), .texture_point = {}};
         if (textured) {
@@ -150,15 +151,16 @@ private:
             return all;
         };
         const std::vector<Vec3f> points = expanded(mesh.points);
-        GltfJson attributes = {{"POSITION", array(points, "VEC3", type_float, target_vertices)},
-                               {"NORMAL", array(expanded(vertex_normals(mesh)), "VEC3", type_float, target_vertices)}};
+        Json attributes =
+            object_of({{"POSITION", array(points, "VEC3", type_float, target_vertices)},
+                       {"NORMAL", array(expanded(vertex_normals(mesh)), "VEC3", type_float, target_vertices)}});
         Vec3f lower = points.front(), upper = lower;
         for (const Vec3f& point : points)
             for (std::size_t axis = 0; axis < point.size(); ++axis) {
                 lower[axis] = std::min(lower[axis], point[axis]);
                 upper[axis] = std::max(upper[axis], point[axis]);
             }
-        GltfJson& accessor = json_["accessors"][attributes["POSITION"].get<std::size_t>()];
+        Json& accessor = json_["accessors"][attributes["POSITION"].get<std::size_t>()];
         accessor["min"] = lower;
         accessor["max"] = upper;
         if (textured) {
@@ -178,11 +180,11 @@ private:
             attributes["COLOR_0"] = array(colors, "VEC3", type_float, target_vertices);
             attributes[attribute_name()] = array(values, "SCALAR", type_float, target_vertices);
         }
-        GltfJson all = GltfJson::array();
+        Json all = Json::array();
         for (const auto& [material, indices] : corners)
-            all.push_back({{"attributes", attributes},
-                           {"indices", array(indices, "SCALAR", type_uint32, target_indices)},
-                           {"material", material_number(mesh, material)}});
+            all.push_back(object_of({{"attributes", attributes},
+                                     {"indices", array(indices, "SCALAR", type_uint32, target_indices)},
+                                     {"material", material_number(mesh, material)}}));
         return all;
     }
 
@@ -210,13 +212,13 @@ private:
         const auto known = std::ranges::find(materials_, shown);
         if (known != materials_.end()) return static_cast<std::size_t>(known - materials_.begin());
         const auto& [r, g, b] = shown.color;
-        GltfJson surface = {
-            {"baseColorFactor", {r, g, b, shown.opacity}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}};
+        Json surface =
+            object_of({{"baseColorFactor", {r, g, b, shown.opacity}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}});
         if (const std::optional<std::size_t> texture = texture_number(shown.texture)) {
-            surface["baseColorTexture"] = {{"index", *texture}};
+            surface["baseColorTexture"] = object_of({{"index", *texture}});
             surface["baseColorFactor"] = {1, 1, 1, shown.opacity};
         }
-        GltfJson entry = {{"name", shown.name}, {"pbrMetallicRoughness", surface}};
+        Json entry = object_of({{"name", shown.name}, {"pbrMetallicRoughness", surface}});
         if (shown.opacity < 1) entry["alphaMode"] = "BLEND";
         materials_.push_back(std::move(shown));
         return append("materials", std::move(entry));
@@ -229,14 +231,14 @@ private:
         const std::string bytes{std::istreambuf_iterator<char>(in), {}};
         const bool is_png = bytes.starts_with("\x89PNG");
         if (!is_png && !bytes.starts_with("\xff\xd8")) return std::nullopt;
-        const std::size_t number =
-            append("images", {{"bufferView", view(bytes, 0)}, {"mimeType", is_png ? "image/png" : "image/jpeg"}});
-        return append("textures", {{"source", number}});
+        const std::size_t number = append(
+            "images", object_of({{"bufferView", view(bytes, 0)}, {"mimeType", is_png ? "image/png" : "image/jpeg"}}));
+        return append("textures", object_of({{"source", number}}));
     }
 
     FilmColor color_;
     Real top_;  // value at the upper end of the colours
-    GltfJson json_;
+    Json json_;
     std::string binary_;
     std::vector<VisualMaterial> materials_;
 };

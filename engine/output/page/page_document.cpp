@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <ostream>
 #include <span>
 #include <sstream>
@@ -13,12 +12,10 @@
 #include "engine/output/page/page_assets.h"
 #include "engine/output/page/stream/pack.h"
 #include "engine/output/write_file.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json json_of(const Vec3& v) {
     return {v.x(), v.y(), v.z()};
@@ -36,10 +33,10 @@ std::string packed(const Rows& rows) {
 Json json_of_colliders(std::span<const PageCollider> colliders) {
     Json list = Json::array();
     for (const PageCollider& collider : colliders)
-        list.push_back({{"name", collider.name},
-                        {"kind", collider.kind},
-                        {"points", packed<float>(collider.picture.nodes)},
-                        {"triangles", packed<std::uint32_t>(collider.picture.triangles)}});
+        list.push_back(object_of({{"name", collider.name},
+                                  {"kind", collider.kind},
+                                  {"points", packed<float>(collider.picture.nodes)},
+                                  {"triangles", packed<std::uint32_t>(collider.picture.triangles)}}));
     return list;
 }
 
@@ -64,11 +61,11 @@ Json json_of_visuals(std::span<const std::vector<VisualMaterial>> visuals) {
         Json& rows = list.emplace_back(Json::array());
         for (const VisualMaterial& material : materials) {
             const std::string image = material.texture.empty() ? "" : image_uri(material.texture);
-            rows.push_back({{"name", material.name},
-                            {"color", material.color},
-                            {"opacity", material.opacity},
-                            {"image", image},
-                            {"left_out", image.empty() ? material.texture : ""}});
+            rows.push_back(object_of({{"name", material.name},
+                                      {"color", material.color},
+                                      {"opacity", material.opacity},
+                                      {"image", image},
+                                      {"left_out", image.empty() ? material.texture : ""}}));
         }
     }
     return list;
@@ -76,7 +73,7 @@ Json json_of_visuals(std::span<const std::vector<VisualMaterial>> visuals) {
 
 Json json_of_lines(std::span<const PageLine> lines) {
     Json list = Json::array();
-    for (const PageLine& line : lines) list.push_back({{"name", line.name}, {"kind", name_of(line.kind)}});
+    for (const PageLine& line : lines) list.push_back(object_of({{"name", line.name}, {"kind", name_of(line.kind)}}));
     return list;
 }
 
@@ -95,54 +92,54 @@ Json json_of_report(const PageSummary& summary) {
     const WorldReport& report = summary.report;
     Json stages = Json::array();
     for (const StageReport& stage : report.stages)
-        stages.push_back(
-            {{"name", stage.name}, {"seconds", stage.seconds}, {"runs", stage.runs}, {"skipped", stage.skipped}});
+        stages.push_back(object_of(
+            {{"name", stage.name}, {"seconds", stage.seconds}, {"runs", stage.runs}, {"skipped", stage.skipped}}));
     Json self_crossings = Json::array();
     for (const SelfCrossing& crossing : report.self_crossings) self_crossings.push_back(crossing.message());
     char hash[17];
     std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(summary.state_hash));
-    return {{"time", report.time},
-            {"steps", report.steps},
-            {"bodies", report.bodies},
-            {"colliders", report.colliders},
-            {"nodes", report.nodes},
-            {"elements", report.elements},
-            {"stable_step", report.stable_step},
-            {"mean_contacts", report.mean_contacts},
-            {"max_contacts", report.max_contacts},
-            {"mean_regions", report.mean_regions},
-            {"max_regions", report.max_regions},
-            {"largest_region", report.largest_region},
-            {"mean_iterations", report.mean_iterations},
-            {"solved", report.solved},
-            {"closed_form", report.closed_form},
-            {"certified", report.certified},
-            {"unconverged", report.unconverged},
-            {"worst_error", report.worst_error},
-            {"max_penetration", report.max_penetration},
-            {"self_crossings", self_crossings},
-            {"distrust", report.distrust()},
-            {"state_hash", hash},
-            {"stages", stages}};
+    return object_of({{"time", report.time},
+                      {"steps", report.steps},
+                      {"bodies", report.bodies},
+                      {"colliders", report.colliders},
+                      {"nodes", report.nodes},
+                      {"elements", report.elements},
+                      {"stable_step", report.stable_step},
+                      {"mean_contacts", report.mean_contacts},
+                      {"max_contacts", report.max_contacts},
+                      {"mean_regions", report.mean_regions},
+                      {"max_regions", report.max_regions},
+                      {"largest_region", report.largest_region},
+                      {"mean_iterations", report.mean_iterations},
+                      {"solved", report.solved},
+                      {"closed_form", report.closed_form},
+                      {"certified", report.certified},
+                      {"unconverged", report.unconverged},
+                      {"worst_error", report.worst_error},
+                      {"max_penetration", report.max_penetration},
+                      {"self_crossings", self_crossings},
+                      {"distrust", report.distrust()},
+                      {"state_hash", hash},
+                      {"stages", stages}});
 }
 
 /// Two possible upper ends of the legend of a field: the largest value, and the value below which 99 % of the values
 /// lie.
 Json json_of(const Quantile& quantile) {
-    return {{"max", quantile.max()}, {"usual", quantile.at(0.99)}};
+    return object_of({{"max", quantile.max()}, {"usual", quantile.at(0.99)}});
 }
 
 Json json_of_data(const PageData& data, const PageSummary& summary) {
-    Json json = {{"title", summary.title}, {"gravity", json_of(data.gravity())}};
+    Json json = object_of({{"title", summary.title}, {"gravity", json_of(data.gravity())}});
     json.update(json_of_objects(data.stream(), {}));
-    json.update({{"rows", json_of_rows(data)},
-                 {"speed", json_of(data.fields()[0])},
-                 {"stress", json_of(data.fields()[stress_field])},
-                 {"strain", json_of(data.fields()[strain_field])},
-                 {"error", json_of(data.fields()[error_field])},
-                 {"force", json_of(data.force())},
-                 {"line_force", json_of(data.line_force())},
-                 {"report", json_of_report(summary)}});
+    json.update(object_of({{"rows", json_of_rows(data)},
+                           {"speed", json_of(data.fields()[0])},
+                           {"stress", json_of(data.fields()[stress_field])},
+                           {"strain", json_of(data.fields()[strain_field])},
+                           {"error", json_of(data.fields()[error_field])},
+                           {"force", json_of(data.force())},
+                           {"line_force", json_of(data.line_force())},
+                           {"report", json_of_report(summary)}}));
     return json;
 }
 
@@ -190,15 +187,9 @@ void put_page(std::ostream& out, const PageParts& parts) {
 
 void require_page_library(const std::filesystem::path& file) {
     if (!three_js.empty()) return;
-    Complaint{.file = file.string(),
-              .object = "page",
-              .field = {},
-              .found = "a build without three.js",
-              .expected = "a build with three.js",
-              .hint =
-                  "install the package libjs-three, or set the CMake variable SKERRY_THREE_JS to the file "
-                  "three.min.js, then build again"}
-        .raise();
+    refuse_in(file.string(), "page", {}, "a build without three.js", "a build with three.js",
+              "install the package libjs-three, or set the CMake variable SKERRY_THREE_JS to the file "
+              "three.min.js, then build again");
 }
 
 PageCounts counts_of(const PageStream& stream) {
@@ -209,23 +200,23 @@ PageCounts counts_of(const PageStream& stream) {
 }
 
 Json json_of_objects(const PageStream& stream, const PageCounts& first) {
-    return {{"bodies", stream.body_names().subspan(first.bodies)},
-            {"visual_of_body", stream.visual_numbers().subspan(first.bodies)},
-            {"visuals", json_of_visuals(std::span(stream.visuals().materials()).subspan(first.visuals))},
-            {"colliders", json_of_colliders(stream.colliders().subspan(first.colliders))},
-            {"lines", json_of_lines(stream.lines().subspan(first.lines))}};
+    return object_of({{"bodies", stream.body_names().subspan(first.bodies)},
+                      {"visual_of_body", stream.visual_numbers().subspan(first.bodies)},
+                      {"visuals", json_of_visuals(std::span(stream.visuals().materials()).subspan(first.visuals))},
+                      {"colliders", json_of_colliders(stream.colliders().subspan(first.colliders))},
+                      {"lines", json_of_lines(stream.lines().subspan(first.lines))}});
 }
 
 Json json_of_row(const PageRow& row) {
-    return {{"time", row.time},
-            {"kinetic", row.energy.kinetic},
-            {"elastic", row.energy.elastic},
-            {"potential", row.energy.potential},
-            {"dissipated", row.energy.dissipated},
-            {"contacts", row.contacts},
-            {"stick", row.stick},
-            {"slide", row.slide},
-            {"regions", row.regions}};
+    return object_of({{"time", row.time},
+                      {"kinetic", row.energy.kinetic},
+                      {"elastic", row.energy.elastic},
+                      {"potential", row.energy.potential},
+                      {"dissipated", row.energy.dissipated},
+                      {"contacts", row.contacts},
+                      {"stick", row.stick},
+                      {"slide", row.slide},
+                      {"regions", row.regions}});
 }
 
 std::string text_of(const Json& json) {

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "engine/output/json_object.h"
 #include "engine/output/page/page_data.h"
 
 namespace skerry {
@@ -33,11 +33,11 @@ struct PageCounts {
 };
 PageCounts counts_of(const PageStream& stream);
 /// Returns the objects of a stream that a page does not know yet, as the members of the run element of a page.
-nlohmann::ordered_json json_of_objects(const PageStream& stream, const PageCounts& first);
+Json json_of_objects(const PageStream& stream, const PageCounts& first);
 /// Returns the values of a frame for the plots, by name.
-nlohmann::ordered_json json_of_row(const PageRow& row);
+Json json_of_row(const PageRow& row);
 /// Returns JSON as text. Names come from users and may contain any bytes. Bytes that are not UTF-8 become U+FFFD.
-std::string text_of(const nlohmann::ordered_json& json);
+std::string text_of(const Json& json);
 
 void write_page(const std::filesystem::path& file, const PageData& data, const PageSummary& summary);
 

@@ -94,15 +94,11 @@ auto called_for(const RecordedProbe& probe, auto&& function) {
     }
 }
 
-[[noreturn]] void refuse(const std::string& field, const std::string& found, const std::string& expected) {
-    Complaint{.file = {}, .object = {}, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
-}
-
 void require_name(const std::string& name) {
     const bool odd =
         std::ranges::any_of(name, [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' ' || c == 127; });
     if (name.empty() || name == "." || name == "time" || odd)
-        refuse("name", "\"" + name + "\"",
+        refuse({}, "name", "\"" + name + "\"",
                "a name other than \"time\" and \".\", without / and control characters (the name heads columns)");
 }
 
@@ -110,7 +106,8 @@ void require_nodes(const World& world, BodyHandle body, std::span<const Index> n
     const auto count = static_cast<Index>(world.positions(body).size());
     for (const Index n : nodes)
         if (n < 0 || n >= count)
-            refuse("nodes", "node " + std::to_string(n), "node indices of the body, 0 to " + std::to_string(count - 1));
+            refuse({}, "nodes", "node " + std::to_string(n),
+                   "node indices of the body, 0 to " + std::to_string(count - 1));
 }
 
 void require_weights(const PointProbe& point) {
@@ -118,7 +115,7 @@ void require_weights(const PointProbe& point) {
     for (const Real w : point.weight) sum += w;
     constexpr Real rounding = 1e-9;
     if (!(std::abs(sum - 1) < rounding))
-        refuse("weight", "weights whose sum is " + short_text(sum, 9), "weights that sum to one");
+        refuse({}, "weight", "weights whose sum is " + short_text(sum, 9), "weights that sum to one");
 }
 
 void put_force(ForceSum& force, bool of_contacts, std::vector<Real>& values) {
@@ -277,7 +274,7 @@ void check_probes(const World& world, std::span<const RecordedProbe> probes) {
         called_for(probe, [&] {
             require_name(probe.name);
             if (!names.insert(probe.name).second)
-                refuse("name", "a name that an earlier probe has", "a different name for every probe");
+                refuse({}, "name", "a name that an earlier probe has", "a different name for every probe");
             require_objects(world, probe);
         });
 }

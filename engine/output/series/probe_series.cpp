@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "engine/output/writer.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "skerry/recorder.h"
 
 namespace skerry {
@@ -54,9 +54,7 @@ public:
 
 [[noreturn]] void refuse_series(const std::filesystem::path& file, const std::string& found,
                                 const std::string& expected, const std::string& hint = {}) {
-    Complaint{
-        .file = file.string(), .object = "--probes", .field = {}, .found = found, .expected = expected, .hint = hint}
-        .raise();
+    refuse_in(file.string(), "--probes", {}, found, expected, hint);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -15,6 +14,7 @@
 #include "engine/output/series/probe_columns.h"
 #include "engine/output/vtk/vtk_file.h"
 #include "engine/output/write_file.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -55,13 +55,10 @@ std::string rows_to_keep(const std::filesystem::path& file, const std::string& h
     const std::string text = all.str();
     if (text.empty()) return {};
     if (!text.starts_with(head))
-        Complaint{.file = file.string(),
-                  .object = "output",
-                  .field = "first line",
-                  .found = "\"" + text.substr(0, std::min<std::size_t>(text.find('\n'), 60)) + "\"",
-                  .expected = "the column headings of the recorded probes",
-                  .hint = "a continued run appends its rows to the file; choose another file or delete this one"}
-            .raise();
+        refuse_in(file.string(), "output", "first line",
+                  "\"" + text.substr(0, std::min<std::size_t>(text.find('\n'), 60)) + "\"",
+                  "the column headings of the recorded probes",
+                  "a continued run appends its rows to the file; choose another file or delete this one");
     std::string kept;
     for (std::size_t begin = head.size(), end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
         const std::string line = text.substr(begin, end + 1 - begin);
@@ -83,20 +80,12 @@ PointProbe probe_point(const World& world, BodyHandle body, const Vec3& point) {
     const std::span<const Vec3> nodes = world.positions(body);
     const auto found = follow_point(nodes, world.tetrahedra(body), point, world.mean_edge(body));
     if (!found) {
-        std::ostringstream place, nearest;
-        place << "(" << point.x() << ", " << point.y() << ", " << point.z() << ") m";
         const auto [node, distance] = nearest_node(nodes, point);
-        nearest << "a point of the body";
+        std::string nearest = "a point of the body";
         if (node != no_index)
-            nearest << "; the nearest node is " << node << ", " << distance << " m away, at (" << nodes[node].x()
-                    << ", " << nodes[node].y() << ", " << nodes[node].z() << ") m";
-        Complaint{.file = {},
-                  .object = "body '" + world.name(body) + "'",
-                  .field = "point",
-                  .found = place.str(),
-                  .expected = nearest.str(),
-                  .hint = {}}
-            .raise();
+            nearest += "; the nearest node is " + std::to_string(node) + ", " + short_text(distance, 6) +
+                       " m away, at " + short_text(nodes[node], 6) + " m";
+        refuse("body '" + world.name(body) + "'", "point", short_text(point, 6) + " m", nearest);
     }
     return {.body = body, .node = found->node, .weight = found->weight};
 }
@@ -126,25 +115,13 @@ struct Recorder::Impl {
         // The file is truncated to remove the incomplete row.
         std::error_code ignored;
         std::filesystem::resize_file(stream_file, stream_size - text.size(), ignored);
-        Complaint{.file = stream_file.string(),
-                  .object = "output",
-                  .field = {},
-                  .found = "the error \"" + reason + "\" while writing a row",
-                  .expected = "enough space for the row",
-                  .hint = "free disk space, then continue or repeat the run"}
-            .raise();
+        refuse_in(stream_file.string(), "output", {}, "the error \"" + reason + "\" while writing a row",
+                  "enough space for the row", "free disk space, then continue or repeat the run");
     }
 };
 
 Recorder::Recorder(World& world, std::vector<RecordedProbe> probes, Real every) : impl_(std::make_unique<Impl>()) {
-    if (!(every >= 0) || !std::isfinite(every))
-        Complaint{.file = {},
-                  .object = "Recorder",
-                  .field = "every",
-                  .found = std::to_string(every),
-                  .expected = "a time >= 0 (s)",
-                  .hint = {}}
-            .raise();
+    if (!(every >= 0) || !std::isfinite(every)) refuse("Recorder", "every", std::to_string(every), "a time >= 0 (s)");
     check_probes(world, probes);
     impl_->every = every;
     impl_->last_time = world.time();

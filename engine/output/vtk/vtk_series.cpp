@@ -14,7 +14,7 @@
 #include "engine/output/vtk/vtk_file.h"
 #include "engine/output/vtk/write_visuals.h"
 #include "engine/output/write_file.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 #include "systems/dynamics/elements/element_energy.h"
 
 namespace skerry {
@@ -51,13 +51,7 @@ bool is_series_file(std::string_view file_name, std::string_view name) {
 VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
     : folder_(std::move(folder)), name_(std::move(name)) {
     if (name_.empty() || name_.find_first_of("/\\") != std::string::npos)
-        Complaint{.file = folder_.string(),
-                  .object = "output",
-                  .field = "name",
-                  .found = "\"" + name_ + "\"",
-                  .expected = "a file name without / and \\",
-                  .hint = {}}
-            .raise();
+        refuse_in(folder_.string(), "output", "name", "\"" + name_ + "\"", "a file name without / and \\");
     make_folder(folder_);
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
         if (entry.symlink_status().type() == std::filesystem::file_type::regular &&
@@ -98,13 +92,9 @@ void VtkSeries::remove_earlier() {
         std::error_code error;
         std::filesystem::remove(file, error);
         if (error)
-            Complaint{.file = file.string(),
-                      .object = "output",
-                      .field = {},
-                      .found = "the error \"" + error.message() + "\" while removing this file of an earlier run",
-                      .expected = "a file that can be replaced",
-                      .hint = "check the permissions of the folder, or choose another folder"}
-                .raise();
+            refuse_in(file.string(), "output", {},
+                      "the error \"" + error.message() + "\" while removing this file of an earlier run",
+                      "a file that can be replaced", "check the permissions of the folder, or choose another folder");
     }
     earlier_.clear();
 }

@@ -3,16 +3,11 @@
 #include <charconv>
 #include <cstring>
 
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
 namespace {
-
-[[noreturn]] void refuse_share(const std::string& who, const std::string& found, const std::string& expected,
-                               const std::string& hint) {
-    Complaint{.file = {}, .object = who, .field = {}, .found = found, .expected = expected, .hint = hint}.raise();
-}
 
 const char* const by_hand = "set the share by hand with --rank I --of N, where I is from 0 to N - 1";
 
@@ -30,7 +25,7 @@ public:
         const char* const end = found + std::strlen(found);
         const auto [read, error] = std::from_chars(found, end, value);
         if (error != std::errc() || read != end || value < 0)
-            refuse_share(name, "\"" + std::string(found) + "\"", "a whole number from 0", by_hand);
+            refuse(name, {}, "\"" + std::string(found) + "\"", "a whole number from 0", by_hand);
         return value;
     }
 
@@ -46,10 +41,10 @@ private:
 };
 
 void require_within(const Share& share, const std::string& who) {
-    if (share.of < 1) refuse_share(who, "0 processes", "at least one process", by_hand);
+    if (share.of < 1) refuse(who, {}, "0 processes", "at least one process", by_hand);
     if (share.rank >= share.of)
-        refuse_share(who, "rank " + std::to_string(share.rank) + " of " + std::to_string(share.of),
-                     "a rank from 0 to " + std::to_string(share.of - 1), by_hand);
+        refuse(who, {}, "rank " + std::to_string(share.rank) + " of " + std::to_string(share.of),
+               "a rank from 0 to " + std::to_string(share.of - 1), by_hand);
 }
 
 /// Returns the share from the rank of this process among the jobs of a SLURM array. The job numbers of an array may
@@ -59,15 +54,15 @@ Share array_share(const Variables& variables) {
     if (!id) return {};
     const std::optional<int> count = variables.number("SLURM_ARRAY_TASK_COUNT");
     if (!count)
-        refuse_share("SLURM_ARRAY_TASK_ID", "no environment variable SLURM_ARRAY_TASK_COUNT",
-                     "a variable SLURM_ARRAY_TASK_COUNT with the number of jobs of the array", by_hand);
+        refuse("SLURM_ARRAY_TASK_ID", {}, "no environment variable SLURM_ARRAY_TASK_COUNT",
+               "a variable SLURM_ARRAY_TASK_COUNT with the number of jobs of the array", by_hand);
     const int least = variables.number("SLURM_ARRAY_TASK_MIN").value_or(0);
     const int step = variables.number("SLURM_ARRAY_TASK_STEP").value_or(1);
     if (*id < least || step < 1 || (*id - least) % step != 0 || (*id - least) / step >= *count)
-        refuse_share("SLURM_ARRAY_TASK_ID",
-                     std::to_string(*id) + " of " + std::to_string(*count) + " jobs that are numbered from " +
-                         std::to_string(least) + " with an increment of " + std::to_string(step),
-                     "a job number of an array without gaps, such as --array=0-63", by_hand);
+        refuse("SLURM_ARRAY_TASK_ID", {},
+               std::to_string(*id) + " of " + std::to_string(*count) + " jobs that are numbered from " +
+                   std::to_string(least) + " with an increment of " + std::to_string(step),
+               "a job number of an array without gaps, such as --array=0-63", by_hand);
     return {(*id - least) / step, *count, "SLURM_ARRAY_TASK_ID, SLURM_ARRAY_TASK_COUNT", {}};
 }
 
@@ -104,8 +99,8 @@ Share share_of(std::optional<int> rank, std::optional<int> of, const Environment
     Share share;
     if (rank || of) {
         if (!rank || !of)
-            refuse_share("command line", rank ? "--rank without --of" : "--of without --rank",
-                         "both options, --rank I --of N", {});
+            refuse("command line", {}, rank ? "--rank without --of" : "--of without --rank",
+                   "both options, --rank I --of N", {});
         share = {*rank, *of, "--rank, --of", {}};
         require_within(share, "command line");
         return share;

@@ -19,7 +19,7 @@
 #include "engine/program/sweep/results/sweep_table.h"
 #include "engine/program/sweep/share.h"
 #include "engine/program/sweep/sweep_plan.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -56,14 +56,11 @@ std::vector<int> cases_left(const SweepPlan& plan, const std::vector<int>& mine,
     }
     if (others == 0) return left;
     if (!redo)
-        Complaint{.file = plan.folder.string(),
-                  .object = "output",
-                  .field = {},
-                  .found = std::to_string(others) + (others == 1 ? " file that does" : " files that do") +
-                           " not belong to these cases; " + first,
-                  .expected = "results of the cases of " + plan.file.place.file().string() + " in its present version",
-                  .hint = "add --redo to compute these cases again, or choose another folder with --out"}
-            .raise();
+        refuse_in(plan.folder.string(), "output", {},
+                  std::to_string(others) + (others == 1 ? " file that does" : " files that do") +
+                      " not belong to these cases; " + first,
+                  "results of the cases of " + plan.file.place.file().string() + " in its present version",
+                  "add --redo to compute these cases again, or choose another folder with --out");
     std::cerr << "skerry: " << others << " cases are computed again, because their files hold other results"
               << std::endl;
     return left;
@@ -211,13 +208,9 @@ void check_folder(const SweepPlan& plan, const SweepOptions& options) {
         const std::string name = read.filename().string();
         const bool taken = name.starts_with("case_") || name == "sweep.csv" || name == "sweep.html";
         if (taken && std::filesystem::equivalent(std::filesystem::absolute(read).parent_path(), plan.folder, error))
-            Complaint{.file = read.string(),
-                      .object = "--out",
-                      .field = {},
-                      .found = "an input file that would be overwritten by a result of the same name",
-                      .expected = "another folder for the results",
-                      .hint = "choose another --out, or rename the input file"}
-                .raise();
+            refuse_in(read.string(), "--out", {},
+                      "an input file that would be overwritten by a result of the same name",
+                      "another folder for the results", "choose another --out, or rename the input file");
     }
 }
 

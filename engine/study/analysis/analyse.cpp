@@ -11,7 +11,7 @@ namespace skerry {
 namespace {
 
 std::string chaos_text(const StudyResult& result) {
-    std::string text = "Runs whose starts differ by 1e-12 m agree until " + short_number(result.agree_until) + " s";
+    std::string text = "Runs whose starts differ by 1e-12 m agree until " + short_text(result.agree_until) + " s";
     if (result.growth_rate > 0)
         text += "; small differences grow tenfold every " + duration_text(std::log(10) / result.growth_rate);
     return text +

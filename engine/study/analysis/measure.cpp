@@ -104,11 +104,9 @@ std::string singular_text(const StudyFamily& family, std::size_t column, StudyFi
     const StudyColumn& before = levels[levels.size() - 2]->columns[column];
     if (!(std::min(rate[0], rate[1]) > least_rate) || !(rate[1] > least_steadiness * rate[0])) return {};
     if ((fine.place - before.place).norm() > same_place * scene.size) return {};
-    const Vec3& at = scene.place;
-    return "grows " + short_number(std::exp2(rate[1])) + " times with each halving of the edges, at node " +
-           std::to_string(scene.node) + " (" + short_number(at.x()) + ", " + short_number(at.y()) + ", " +
-           short_number(at.z()) +
-           ") m. Sharp inner corners, edges of clamps and point loads have no finite stress: round the corner, spread "
+    return "grows " + short_text(std::exp2(rate[1])) + " times with each halving of the edges, at node " +
+           std::to_string(scene.node) + " " + short_text(scene.place) +
+           " m. Sharp inner corners, edges of clamps and point loads have no finite stress: round the corner, spread "
            "the load, or measure the stress elsewhere";
 }
 
@@ -156,7 +154,7 @@ void apply_smoothed(Real value, MeasuredQuantity& quantity) {
     r.best = r.best_error = no_value;
     r.verdict = StudyVerdict::irregular;
     r.sentence += (r.sentence.empty() ? "" : "; ") + std::string("linear elements are too stiff here: with smoothed ") +
-                  "elements the value is " + short_number(value, 4) + " " + r.unit +
+                  "elements the value is " + short_text(value, 4) + " " + r.unit +
                   ", and the error bar is a multiple of the difference";
 }
 
@@ -214,7 +212,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     for (const auto& [variant, value] : quantity.elements)
         if (std::abs(value - r.value) > std::max(r.error, wanted * r.scale) && r.sentence.empty())
             r.sentence = "with " + std::string(name_of(*variant.element)) + " elements the value is " +
-                         short_number(value, 4) + " " + r.unit + ", outside the error bar";
+                         short_text(value, 4) + " " + r.unit + ", outside the error bar";
 }
 
 /// Measures the error of a number of each run.

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "engine/output/json_object.h"
 #include "engine/output/number_text.h"
 #include "engine/output/table/table_page.h"
 #include "engine/study/report/wording.h"
@@ -11,8 +11,6 @@
 namespace skerry {
 
 namespace {
-
-using PageJson = nlohmann::ordered_json;  // numbers that are not finite become null
 
 constexpr const char* cpu_time = "CPU time [s]";
 constexpr std::size_t most_rows = 400;  // largest number of rows of a time series in the page
@@ -30,11 +28,11 @@ bool is_zero(const StudyQuantity& q) {
     return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error <= rounding * q.scale;
 }
 
-PageJson run_rows(const StudyResult& result) {
-    PageJson rows = PageJson::array();
+Json run_rows(const StudyResult& result) {
+    Json rows = Json::array();
     for (std::size_t i = 0; i < result.runs.size(); ++i) {
         const StudyRun& run = result.runs[i];
-        PageJson figures = {{cpu_time, run.cpu_seconds}, {"steps", run.steps}, {"tetrahedra", run.tetrahedra}};
+        Json figures = {{cpu_time, run.cpu_seconds}, {"steps", run.steps}, {"tetrahedra", run.tetrahedra}};
         for (const StudyQuantity& q : result.quantities) {
             if (i >= q.run_values.size()) continue;
             figures[heading(q)] = q.run_values[i];
@@ -42,35 +40,34 @@ PageJson run_rows(const StudyResult& result) {
         }
         std::string changes;
         for (const std::string& assignment : run.assignments) changes += (changes.empty() ? "" : " ") + assignment;
-        rows.push_back({{"case", i},
-                        {"status", run.status == StudyRunStatus::left_out ? "left out" : name_of(run.status)},
-                        {"message", run.message},
-                        {"warnings", run.warnings},
-                        {"values",
-                         {{"settings", variant_text(run.variant)},
-                          {"mesh level", run.variant.refine},
-                          {"step", run.variant.step},
-                          {"tolerance", run.variant.tolerance},
-                          {"assignments", changes}}},
-                        {"figures", figures}});
+        rows.push_back(object_of({{"case", i},
+                                  {"status", run.status == StudyRunStatus::left_out ? "left out" : name_of(run.status)},
+                                  {"message", run.message},
+                                  {"warnings", run.warnings},
+                                  {"values", object_of({{"settings", variant_text(run.variant)},
+                                                        {"mesh level", run.variant.refine},
+                                                        {"step", run.variant.step},
+                                                        {"tolerance", run.variant.tolerance},
+                                                        {"assignments", changes}})},
+                                  {"figures", figures}}));
     }
     return rows;
 }
 
 /// The table without the columns that are empty in all rows but the heading.
-PageJson without_empty_columns(const PageJson& rows) {
-    PageJson kept = PageJson::array();
-    for (const PageJson& row : rows) {
-        PageJson& cells = kept.emplace_back(PageJson::array());
+Json without_empty_columns(const Json& rows) {
+    Json kept = Json::array();
+    for (const Json& row : rows) {
+        Json& cells = kept.emplace_back(Json::array());
         for (std::size_t c = 0; c < row.size(); ++c)
-            if (std::any_of(rows.begin() + 1, rows.end(), [c](const PageJson& any) { return any[c] != ""; }))
+            if (std::any_of(rows.begin() + 1, rows.end(), [c](const Json& any) { return any[c] != ""; }))
                 cells.push_back(row[c]);
     }
     return kept;
 }
 
-PageJson summary_table(const StudyResult& result) {
-    PageJson rows = {{"quantity", "value", "relative", "verdict", "parts", "best value", "orders", "remark"}};
+Json summary_table(const StudyResult& result) {
+    Json rows = {{"quantity", "value", "relative", "verdict", "parts", "best value", "orders", "remark"}};
     for (const StudyQuantity& q : result.quantities) {
         if (is_zero(q)) continue;
         const QuantityText text = quantity_text(q);
@@ -89,35 +86,34 @@ PageJson summary_table(const StudyResult& result) {
     return without_empty_columns(rows);
 }
 
-PageJson time_series(const StudyResult& result) {
+Json time_series(const StudyResult& result) {
     const StudyRun& scene = result.runs.front();
     const std::size_t stride = (scene.time.size() + most_rows - 1) / most_rows;
     const auto thinned = [stride](const std::vector<Real>& values) {
-        PageJson list = PageJson::array();
+        Json list = Json::array();
         for (std::size_t row = 0; row < values.size(); row += std::max<std::size_t>(stride, 1)) {
             constexpr int digits = 7;
-            list.push_back(std::isfinite(values[row]) ? PageJson(std::stod(short_number(values[row], digits)))
-                                                      : PageJson());
+            list.push_back(std::isfinite(values[row]) ? Json(std::stod(short_text(values[row], digits))) : Json());
         }
         return list;
     };
-    PageJson columns = PageJson::array();
+    Json columns = Json::array();
     for (std::size_t column = 0; column < result.bands.size(); ++column) {
         if (result.bands[column].empty()) continue;
-        PageJson runs = PageJson::array();
+        Json runs = Json::array();
         for (const StudyRun& run : result.runs)
             runs.push_back(run.time == scene.time && column < run.columns.size() ? thinned(run.columns[column].values)
-                                                                                 : PageJson());
-        columns.push_back(
-            {{"name", scene.columns[column].what.heading()}, {"runs", runs}, {"band", thinned(result.bands[column])}});
+                                                                                 : Json());
+        columns.push_back(object_of(
+            {{"name", scene.columns[column].what.heading()}, {"runs", runs}, {"band", thinned(result.bands[column])}}));
     }
-    return {{"time", thinned(scene.time)}, {"columns", columns}};
+    return object_of({{"time", thinned(scene.time)}, {"columns", columns}});
 }
 
 }  // namespace
 
 std::string study_page(const StudyResult& result) {
-    PageJson figures = {cpu_time, "steps", "tetrahedra"};
+    Json figures = {cpu_time, "steps", "tetrahedra"};
     std::string first_error;
     for (const StudyQuantity& q : result.quantities) {
         figures.push_back(heading(q));
@@ -137,26 +133,25 @@ std::string study_page(const StudyResult& result) {
                         percent(cheapest.error) + ", CPU time " + duration_text(cheapest.cpu_seconds) + "; " +
                         cheapest.sentence + ".");
     }
-    const PageJson data = {
-        {"name", "Study of " + result.scene},
-        {"description", "Error bars of each quantity, from runs with other meshes, steps, tolerances and elements."},
-        {"noun", "run"},
-        {"scene", result.scene},
-        {"parameters", {"settings", "mesh level", "step", "tolerance", "assignments"}},
-        {"figures", figures},
-        {"tabled", {cpu_time, "steps", "tetrahedra"}},
-        {"rows", run_rows(result)},
-        {"start",
-         {{"x", cpu_time},
-          {"y", first_error.empty() ? "steps" : first_error},
-          {"color", "settings"},
-          {"logX", true},
-          {"logY", true},
-          {"lines", false}}},
-        {"notes", notes},
-        {"summary", summary_table(result)},
-        {"series", time_series(result)}};
-    return table_page("Study of " + result.scene, data.dump(-1, ' ', false, PageJson::error_handler_t::replace));
+    const Json data = object_of(
+        {{"name", "Study of " + result.scene},
+         {"description", "Error bars of each quantity, from runs with other meshes, steps, tolerances and elements."},
+         {"noun", "run"},
+         {"scene", result.scene},
+         {"parameters", {"settings", "mesh level", "step", "tolerance", "assignments"}},
+         {"figures", figures},
+         {"tabled", {cpu_time, "steps", "tetrahedra"}},
+         {"rows", run_rows(result)},
+         {"start", object_of({{"x", cpu_time},
+                              {"y", first_error.empty() ? "steps" : first_error},
+                              {"color", "settings"},
+                              {"logX", true},
+                              {"logY", true},
+                              {"lines", false}})},
+         {"notes", notes},
+         {"summary", summary_table(result)},
+         {"series", time_series(result)}});
+    return table_page("Study of " + result.scene, data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace skerry

@@ -24,11 +24,11 @@ std::pair<Real, std::string> prefix_of(Real size, const std::string& unit) {
 /// Formats a value to the second digit of its error. An error may be its own value.
 std::string to_digit_of(Real value, Real error) {
     constexpr int most_digits = 6, most_decimals = 4;
-    if (!(error > 0) || !std::isfinite(error)) return short_number(value, most_digits);
+    if (!(error > 0) || !std::isfinite(error)) return short_text(value, most_digits);
     const int decimals = 1 - static_cast<int>(std::floor(std::log10(error)));
     const int before = value == 0 ? 1 : 1 + static_cast<int>(std::floor(std::log10(std::abs(value))));
     if (decimals > most_decimals || before + decimals > most_digits || before > most_digits)
-        return short_number(value, value == error ? 2 : most_digits);
+        return short_text(value, value == error ? 2 : most_digits);
     // A value that rounds to zero has no sign.
     const bool is_zero = std::abs(value) < 0.5 * std::pow(10, -std::max(decimals, 0));
     char text[64];
@@ -41,14 +41,14 @@ std::string share_text(Real share) {
     constexpr Real whole = 99.5, most_written_out = 1e6;  // [%]
     const Real percents = 100 * share;
     const bool is_whole = percents >= whole && percents < most_written_out;
-    return (is_whole ? std::to_string(std::lround(percents)) : short_number(percents, 2)) + " %";
+    return (is_whole ? std::to_string(std::lround(percents)) : short_text(percents, 2)) + " %";
 }
 
 std::string order_text(const char* name, Real order, Real expected) {
     if (!std::isfinite(order)) return {};
     // Where the theory has a lowest and a highest order, `expected` is the lowest one.
-    return std::string(name) + " " + short_number(order, 2) + " (" + (expected < 2 ? "at least " : "") +
-           short_number(expected, 2) + " expected)";
+    return std::string(name) + " " + short_text(order, 2) + " (" + (expected < 2 ? "at least " : "") +
+           short_text(expected, 2) + " expected)";
 }
 
 }  // namespace
@@ -60,8 +60,8 @@ std::string variant_text(const StudyVariant& variant) {
     if (levels > 0)
         add("mesh " + std::to_string(levels) + (levels > 1 ? " levels " : " level ") +
             (variant.refine > 0 ? "finer" : "coarser"));
-    if (variant.step != 1) add("steps x " + short_number(variant.step));
-    if (variant.tolerance != 1) add("tolerance x " + short_number(variant.tolerance));
+    if (variant.step != 1) add("steps x " + short_text(variant.step));
+    if (variant.tolerance != 1) add("tolerance x " + short_text(variant.tolerance));
     if (variant.element) add(std::string(name_of(*variant.element)) + " elements");
     if (variant.draw != 0) add("start moved by 1e-12 m (" + std::to_string(variant.draw) + ")");
     return text.empty() ? "the scene as it is" : text;
@@ -96,7 +96,7 @@ QuantityText quantity_text(const StudyQuantity& q) {
         if (std::abs(std::abs(q.value) - q.scale) > near * q.scale) {
             const auto [scale_factor, scale_prefix] = prefix_of(q.scale, q.unit);
             text.share +=
-                " of " + short_number(q.scale / scale_factor) + (q.unit == "1" ? "" : " " + scale_prefix + q.unit);
+                " of " + short_text(q.scale / scale_factor) + (q.unit == "1" ? "" : " " + scale_prefix + q.unit);
         }
     }
     constexpr Real least_share = 1e-4;  // below this share of the scale, errors are too small to show an order

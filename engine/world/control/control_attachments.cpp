@@ -18,10 +18,6 @@ namespace {
 // Directions with a cosine of their angle up to this value count as perpendicular.
 constexpr Real least_oblique = 1e-9;
 
-std::string vector_text(const Vec3& v) {
-    return "(" + short_text(v.x()) + ", " + short_text(v.y()) + ", " + short_text(v.z()) + ")";
-}
-
 /// Matrix of AttachmentTable::held for the given directions. Throws SceneError if they are not perpendicular.
 Mat3 held_directions(const std::vector<Vec3>& directions) {
     if (directions.empty()) return Mat3::Identity();
@@ -33,7 +29,7 @@ Mat3 held_directions(const std::vector<Vec3>& directions) {
         if (!(directions[d].norm() > 0)) refuse("attach", "directions", "a vector of length 0", "a nonzero length");
         const Vec3 unit = directions[d].normalized();
         if (!((held.transpose() * unit).cwiseAbs().maxCoeff() <= least_oblique))
-            refuse("attach", "directions", vector_text(directions[d]), "a direction perpendicular to those before it");
+            refuse("attach", "directions", short_text(directions[d]), "a direction perpendicular to those before it");
         held.col(static_cast<Index>(d)) = unit;
     }
     return directions.size() == 3 ? Mat3(Mat3::Identity()) : held;
@@ -43,15 +39,12 @@ Mat3 held_directions(const std::vector<Vec3>& directions) {
 void require_axes(const Model& model, std::size_t body, std::span<const Index> nodes, const Mat3& held) {
     const std::string& name = model.body_records[body].name;
     if (model.has_frame(body))
-        Complaint{.file = {},
-                  .object = "attach",
-                  .field = "directions",
-                  .found = std::string("the ") + (model.is_rigid(body) ? "rigid" : "implicit") + " body '" + name + "'",
-                  .expected = "an explicit body",
-                  .hint = model.is_rigid(body) ? "join a rigid body to the world by a slider or another joint"
-                                               : "set the dynamics of the body to explicit, or tie its nodes to a "
-                                                 "plane collider by a tie of kind slide"}
-            .raise();
+        refuse("attach", "directions",
+               std::string("the ") + (model.is_rigid(body) ? "rigid" : "implicit") + " body '" + name + "'",
+               "an explicit body",
+               model.is_rigid(body) ? "join a rigid body to the world by a slider or another joint"
+                                    : "set the dynamics of the body to explicit, or tie its nodes to a "
+                                      "plane collider by a tie of kind slide");
     const AttachmentTable& table = model.attachments;
     for (std::size_t a = 0; a < table.slot.size(); ++a) {
         if (table.body[a] != static_cast<Index>(body) || holds_completely(table.held[a])) continue;
@@ -79,13 +72,9 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
     if (nodes.empty()) refuse("attach", "nodes", "no nodes", "at least one node of the body");
     require_nodes("attach", nodes, count);
     if (model.bodies.core_nodes[b] > 0)
-        Complaint{.file = {},
-                  .object = "attach",
-                  .field = "body",
-                  .found = std::string("the ") + model.round_name(b) + " '" + model.body_records[b].name + "'",
-                  .expected = "a body with a mesh",
-                  .hint = std::string("to prescribe its motion, replace the ") + model.round_name(b) + " by a collider"}
-            .raise();
+        refuse("attach", "body", std::string("the ") + model.round_name(b) + " '" + model.body_records[b].name + "'",
+               "a body with a mesh",
+               std::string("to prescribe its motion, replace the ") + model.round_name(b) + " by a collider");
     const bool rigid = model.is_rigid(b), implicit = model.has_frame(b) && !rigid;
     const Mat3 held = held_directions(directions);
     if (!holds_completely(held) && (motion.turns() || !motion.angular_velocity.isZero(0)))
@@ -96,15 +85,11 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
     }
     if (!holds_completely(held)) require_axes(model, b, nodes, held);
     if (model.has_frame(b) && !hold_whole(model, b, nodes))
-        Complaint{.file = {},
-                  .object = "attach",
-                  .field = "nodes",
-                  .found = std::to_string(nodes.size()) + " nodes of the " + (rigid ? "rigid" : "implicit") +
-                           " body '" + model.body_records[b].name + "'",
-                  .expected = std::string("three or more nodes that are not on one line, to hold ") +
-                              (rigid ? "the whole body" : "the body's rotating frame"),
-                  .hint = {}}
-            .raise();
+        refuse("attach", "nodes",
+               std::to_string(nodes.size()) + " nodes of the " + (rigid ? "rigid" : "implicit") + " body '" +
+                   model.body_records[b].name + "'",
+               std::string("three or more nodes that are not on one line, to hold ") +
+                   (rigid ? "the whole body" : "the body's rotating frame"));
     state_->require_between_steps("attach");
     std::vector<Index> numbers(nodes.begin(), nodes.end());
     if (rigid) {

@@ -2,7 +2,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "engine/world/control/control.h"
 #include "engine/world/edit/rigid_bodies.h"
@@ -43,13 +42,10 @@ void place_rigid(WorldState& world, std::size_t body, std::span<const Vec3> posi
     const RigidFit fit = fit_rigid_body(model, body, position);
     // largest distance of a node from the rigid shape, as a fraction of the mean edge length
     constexpr Real rounding = 1e-6;
-    if (fit.misfit > rounding * model.bodies.mean_edge[body]) {
-        char misfit[32];
-        std::snprintf(misfit, sizeof misfit, "%g", fit.misfit);
+    if (fit.misfit > rounding * model.bodies.mean_edge[body])
         refuse(title_of_body(model, body), "position",
-               std::string("node positions that differ by ") + misfit + " m from the rigid shape",
+               "node positions that differ by " + shown(fit.misfit) + " m from the rigid shape",
                "the shape of the rigid body, translated and rotated as a whole");
-    }
     place_nodes(world, body, position);
     set_rigid_pose(model, body, fit.center, fit.rotation);
 }

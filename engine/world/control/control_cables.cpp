@@ -120,7 +120,7 @@ std::vector<PlacedAnchor> placed_points(WorldState& state, const std::string& ob
         placed.push_back(place_anchor(state, points[p], object, field));
         any_body |= points[p].body.has_value();
         if (p > 0 && points[p].point == points[p - 1].point)
-            refuse(object, field.c_str(), "the same place as the point before", "another place");
+            refuse(object, field, "the same place as the point before", "another place");
     }
     if (!any_body) refuse(object, "points", "no point on a body", "at least one point on a body");
     return placed;

@@ -21,13 +21,7 @@ namespace {
 
 [[noreturn]] void refuse_change(const Model& model, std::size_t body, const char* field, const std::string& found,
                                 const std::string& expected, const std::string& hint = {}) {
-    Complaint{.file = {},
-              .object = "body '" + model.body_records[body].name + "'",
-              .field = field,
-              .found = found,
-              .expected = expected,
-              .hint = hint}
-        .raise();
+    refuse("body '" + model.body_records[body].name + "'", field, found, expected, hint);
 }
 
 /// "joints, ties and cables"

@@ -68,9 +68,7 @@ void require_directions(const std::vector<Vec3>& direction, std::size_t count, c
                "one direction, or one for each of the " + std::to_string(count) + " tetrahedra");
     for (std::size_t t = 0; t < direction.size(); ++t)
         if (!(direction[t].allFinite() && direction[t].norm() > 0))
-            refuse(object, "direction",
-                   "(" + short_text(direction[t].x()) + ", " + short_text(direction[t].y()) + ", " +
-                       short_text(direction[t].z()) + ") at place " + std::to_string(t),
+            refuse(object, "direction", short_text(direction[t]) + " at place " + std::to_string(t),
                    "a vector that is not zero");
 }
 

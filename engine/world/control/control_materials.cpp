@@ -101,13 +101,9 @@ void weigh(Model& model, std::size_t body) {
 void require_changeable(const Model& model, const MaterialRow& now, const MaterialRow& next,
                         std::span<const std::size_t> bodies) {
     if (now.constants.yields() != next.constants.yields())
-        Complaint{.file = {},
-                  .object = "material",
-                  .field = "plasticity",
-                  .found = next.constants.yields() ? "plasticity" : "no plasticity",
-                  .expected = now.constants.yields() ? "plasticity" : "no plasticity",
-                  .hint = "add a new material; the plasticity of an existing one can change, but not appear or vanish"}
-            .raise();
+        refuse("material", "plasticity", next.constants.yields() ? "plasticity" : "no plasticity",
+               now.constants.yields() ? "plasticity" : "no plasticity",
+               "add a new material; the plasticity of an existing one can change, but not appear or vanish");
     const auto flowed = std::ranges::find_if(bodies, [&](std::size_t body) { return has_flowed(model, body); });
     if (flowed != bodies.end() && !now.same_elements(next))
         refuse("material", "young_modulus, poisson_ratio, density, losses",

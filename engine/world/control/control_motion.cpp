@@ -181,13 +181,8 @@ void require_pose(auto&& object, const Pose& pose) {
 
 void require_duration(auto&& object, Real duration, Real now) {
     if (std::isfinite(duration) && duration > 0 && now + duration > now) return;
-    Complaint{.file = {},
-              .object = object(),
-              .field = "duration",
-              .found = short_text(duration),
-              .expected = "a time > 0 (s)",
-              .hint = "to move " + object() + " at once, call set_pose"}
-        .raise();
+    refuse(object(), "duration", short_text(duration), "a time > 0 (s)",
+           "to move " + object() + " at once, call set_pose");
 }
 
 }  // namespace

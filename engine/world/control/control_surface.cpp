@@ -60,7 +60,7 @@ void require_faces(const Model& model, std::size_t body, std::span<const std::ar
     std::set<Index> listed;
     for (std::size_t i = 0; i < faces.size(); ++i)
         if (found[i] == no_index || !listed.insert(found[i]).second)
-            refuse(object, ("faces[" + std::to_string(i) + "]").c_str(),
+            refuse(object, "faces[" + std::to_string(i) + "]",
                    "nodes " + std::to_string(faces[i][0]) + ", " + std::to_string(faces[i][1]) + ", " +
                        std::to_string(faces[i][2]),
                    "the three nodes of a face on the surface of the body, each face at most once");

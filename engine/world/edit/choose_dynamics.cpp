@@ -111,23 +111,16 @@ void require_implicit_materials(const Model& model, Index material, std::span<co
                                 const std::string& name) {
     if (sets_losses(model, material, tetrahedron_material)) refuse_losses(name);
     if (!yields(model, material, tetrahedron_material)) return;
-    Complaint{.file = {},
-              .object = name.empty() ? "body" : "body '" + name + "'",
-              .field = "plasticity",
-              .found = "a material of an implicit body that yields",
-              .expected = "no plasticity, because implicit bodies do not yield",
-              .hint = "remove it from the material, or make the body explicit"}
-        .raise();
+    refuse(name.empty() ? "body" : "body '" + name + "'", "plasticity", "a material of an implicit body that yields",
+           "no plasticity, because implicit bodies do not yield",
+           "remove it from the material, or make the body explicit");
 }
 
 void refuse_losses(const std::string& body) {
-    Complaint{.file = {},
-              .object = body.empty() ? "body" : "body '" + body + "'",
-              .field = "loss_factor",
-              .found = "a material of an implicit body that sets a loss factor above 0",
-              .expected = "no loss_factor, because implicit bodies have no such losses",
-              .hint = "remove it from the material, or make the body explicit"}
-        .raise();
+    refuse(body.empty() ? "body" : "body '" + body + "'", "loss_factor",
+           "a material of an implicit body that sets a loss factor above 0",
+           "no loss_factor, because implicit bodies have no such losses",
+           "remove it from the material, or make the body explicit");
 }
 
 BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate,

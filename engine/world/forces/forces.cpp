@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "engine/world/complaint.h"
 #include "engine/world/world_state.h"
 
 namespace skerry {
@@ -63,13 +64,7 @@ Vec3 ForceReport::moment_about(const Vec3& point) const {
 void World::measure_forces(bool on, const Vec3& moment_point) {
     state_->require_between_steps("measure_forces");
     if (!moment_point.allFinite())
-        Complaint{.file = {},
-                  .object = "measure_forces",
-                  .field = "moment_point",
-                  .found = "a value that is not finite",
-                  .expected = "three finite numbers (m)",
-                  .hint = {}}
-            .raise();
+        refuse("measure_forces", "moment_point", "a value that is not finite", "three finite numbers (m)");
     state_->settle();
     if (on)
         state_->record.forces.start(state_->model, state_->cache.resting, moment_point);
@@ -83,13 +78,7 @@ bool World::measures_forces() const {
 
 Forces World::forces() const {
     if (!state_->record.forces.on())
-        Complaint{.file = {},
-                  .object = "forces",
-                  .field = {},
-                  .found = "a world that does not measure forces",
-                  .expected = "a call of measure_forces before that of advance",
-                  .hint = {}}
-            .raise();
+        refuse("forces", {}, "a world that does not measure forces", "a call of measure_forces before that of advance");
     return Forces(*state_);
 }
 

@@ -48,7 +48,7 @@ AnchorRow point_of_body(WorldState& world, std::size_t body, const Vec3& point, 
     const std::optional<TrianglePoint> nearest = nearest_point(fitted_tree(world, body), point, infinity);
     if (!nearest || !(nearest->distance <= reach))
         refuse(
-            object, (field + ".point").c_str(),
+            object, field + ".point",
             "a point " + short_text(nearest ? nearest->distance : infinity) + " m outside body '" + record.name + "'",
             "a point in the body, or at most " + short_text(reach) +
                 " m outside (the mean edge length of its surface)");
@@ -72,9 +72,9 @@ void PlacedAnchor::store(AnchorColumns& columns, std::size_t row) const {
 
 PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::string& object,
                           const std::string& field) {
-    require_finite(object, (field + ".point").c_str(), anchor.point);
+    require_finite(object, field + ".point", anchor.point);
     if (anchor.body && anchor.collider)
-        refuse(object, field.c_str(), "a body and a collider", "a body, a collider, or neither for the world");
+        refuse(object, field, "a body and a collider", "a body, a collider, or neither for the world");
     PlacedAnchor placed;
     if (anchor.body) {
         placed.body = world.model.row(*anchor.body, object.c_str());

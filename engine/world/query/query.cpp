@@ -100,13 +100,7 @@ std::optional<SurfaceHit> first_of(WorldState& world, const QueryFilter& filter,
 
 void require_distance(const char* call, Real max_distance) {
     if (max_distance >= 0) return;
-    Complaint{.file = {},
-              .object = call,
-              .field = "max_distance",
-              .found = std::to_string(max_distance),
-              .expected = "a length >= 0, or infinity (m)",
-              .hint = {}}
-        .raise();
+    refuse(call, "max_distance", std::to_string(max_distance), "a length >= 0, or infinity (m)");
 }
 
 }  // namespace
@@ -118,13 +112,7 @@ std::optional<SurfaceHit> World::cast_ray(const Vec3& origin, const Vec3& direct
     require_distance("cast_ray", max_distance);
     const Real length = direction.stableNorm();
     if (!(length > 0) || !std::isfinite(length))
-        Complaint{.file = {},
-                  .object = "cast_ray",
-                  .field = "direction",
-                  .found = "a length of " + std::to_string(length),
-                  .expected = "a finite vector that is not zero",
-                  .hint = {}}
-            .raise();
+        refuse("cast_ray", "direction", "a length of " + std::to_string(length), "a finite vector that is not zero");
     const Ray ray{origin, direction / length};
     return first_of(
         *state_, filter, max_distance,

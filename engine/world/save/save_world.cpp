@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/output/write_file.h"
+#include "engine/world/complaint.h"
 #include "engine/world/save/checks.h"
 #include "engine/world/save/list_state.h"
 #include "engine/world/save/saved_file.h"
@@ -39,13 +40,8 @@ private:
 
     /// A file with this number could not be loaded.
     [[noreturn]] static void refuse(const std::string& path, const WrongReal& wrong) {
-        Complaint{.file = {},
-                  .object = "save",
-                  .field = path,
-                  .found = at_row(wrong.found, wrong.row),
-                  .expected = "finite numbers",
-                  .hint = "a position, a velocity or a load of the world is too large"}
-            .raise();
+        skerry::refuse("save", path, at_row(wrong.found, wrong.row), "finite numbers",
+                       "a position, a velocity or a load of the world is too large");
     }
 
     std::vector<ArraySource> arrays_;

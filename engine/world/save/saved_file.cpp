@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "components/hash.h"
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -135,13 +135,8 @@ public:
             refuse("at most 7 spaces");
     }
     [[noreturn]] void refuse(const std::string& expected) const {
-        Complaint{.file = file_,
-                  .object = "header",
-                  .field = {},
-                  .found = "other text at byte " + std::to_string(length_bytes + at_),
-                  .expected = expected,
-                  .hint = "the file was not written by Skerry; save the world again"}
-            .raise();
+        refuse_in(file_, "header", {}, "other text at byte " + std::to_string(length_bytes + at_), expected,
+                  "the file was not written by Skerry; save the world again");
     }
 
 private:
@@ -195,13 +190,7 @@ void copy_strided(const std::byte* from, std::size_t from_stride, std::byte* to,
 void refuse_file(const std::string& name, const std::string& found, const std::string& hint,
                  const std::string& expected) {
     const std::string usual = "a world that Skerry saved, version " + std::to_string(world_file_version);
-    Complaint{.file = name,
-              .object = {},
-              .field = {},
-              .found = found,
-              .expected = expected.empty() ? usual : expected,
-              .hint = hint}
-        .raise();
+    refuse_in(name, {}, {}, found, expected.empty() ? usual : expected, hint);
 }
 
 std::vector<std::byte> saved_bytes(std::vector<ArraySource> arrays, const SavedTexts& texts) {
@@ -300,13 +289,8 @@ SavedFile::SavedFile(std::string name, std::span<const std::byte> bytes) : name_
 void SavedFile::complain(const std::string& path, const std::string& found, const std::string& expected) const {
     const std::size_t slash = path.rfind('/');
     const bool in_group = slash != std::string::npos;
-    Complaint{.file = name_,
-              .object = in_group ? path.substr(0, slash) : std::string(),
-              .field = in_group ? path.substr(slash + 1) : path,
-              .found = found,
-              .expected = expected,
-              .hint = "the file is damaged or was edited; save the world again"}
-        .raise();
+    refuse_in(name_, in_group ? path.substr(0, slash) : std::string(), in_group ? path.substr(slash + 1) : path, found,
+              expected, "the file is damaged or was edited; save the world again");
 }
 
 }  // namespace skerry

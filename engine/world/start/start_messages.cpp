@@ -13,7 +13,7 @@ std::string text(Vec3 value) {
     constexpr Real rounding = 1e-9;
     const Real largest = value.cwiseAbs().maxCoeff();
     for (Real& component : value) component = std::abs(component) > rounding * largest ? component : 0;
-    return "(" + short_text(value.x()) + ", " + short_text(value.y()) + ", " + short_text(value.z()) + ")";
+    return short_text(value);
 }
 
 }  // namespace
@@ -42,15 +42,11 @@ void refuse_overlap(const StartOverlap& overlap, std::size_t others, const std::
     const std::string rest = others == 0   ? ""
                              : others == 1 ? ", and 1 more overlap"
                                            : ", and " + std::to_string(others) + " more overlaps";
-    Complaint{.file = {},
-              .object = "start_overlaps",
-              .field = {},
-              .found = "an overlap: " + overlap.message() + rest,
-              .expected = "bodies that are apart from each other and from colliders",
-              .hint = why + "; to remove this overlap, move '" +
-                      (second_leaves ? overlap.second_name : overlap.first_name) + "' by " + short_text(overlap.depth) +
-                      " m along " + text(direction) + ", or set start_overlaps to \"ignore\" to start with the overlap"}
-        .raise();
+    refuse("start_overlaps", {}, "an overlap: " + overlap.message() + rest,
+           "bodies that are apart from each other and from colliders",
+           why + "; to remove this overlap, move '" + (second_leaves ? overlap.second_name : overlap.first_name) +
+               "' by " + short_text(overlap.depth) + " m along " + text(direction) +
+               ", or set start_overlaps to \"ignore\" to start with the overlap");
 }
 
 }  // namespace skerry

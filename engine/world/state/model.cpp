@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/world/complaint.h"
 #include "systems/collision/build_surface.h"
 #include "systems/collision/tree/bvh.h"
 #include "systems/dynamics/clusters/build_clusters.h"
@@ -13,13 +14,8 @@ namespace skerry {
 namespace {
 
 [[noreturn]] void refuse_stale(const char* call, const char* kind) {
-    Complaint{.file = {},
-              .object = call,
-              .field = kind,
-              .found = "a handle without an object",
-              .expected = "a handle to an existing object of this world",
-              .hint = "the object was removed, or belongs to another world"}
-        .raise();
+    refuse(call, kind, "a handle without an object", "a handle to an existing object of this world",
+           "the object was removed, or belongs to another world");
 }
 
 template <class Map, class HandleType>

@@ -170,14 +170,11 @@ void require_countable(const WorldState& world, Real dt) {
     if (!(dt > most * step)) return;
     body = place_of_stiffest(world, body);
     const bool of_body = !model.settings.step_size && body != no_index;
-    Complaint{.file = {},
-              .object = "advance",
-              .field = "dt",
-              .found = short_text(dt) + " s in steps of " + short_text(step) + " s" +
-                       (of_body ? ", the stable step of body '" + name_body(world, body).name + "'" : std::string()),
-              .expected = "at most 2147483647 steps",
-              .hint = of_body ? "check the size and material of this body" : "use a shorter dt or a larger step_size"}
-        .raise();
+    refuse("advance", "dt",
+           short_text(dt) + " s in steps of " + short_text(step) + " s" +
+               (of_body ? ", the stable step of body '" + name_body(world, body).name + "'" : std::string()),
+           "at most 2147483647 steps",
+           of_body ? "check the size and material of this body" : "use a shorter dt or a larger step_size");
 }
 
 /// Marks the world as advancing during the lifetime of this object, also when an exception is thrown.
@@ -209,14 +206,7 @@ StepReport World::advance(Real dt) {
 StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>& go_on) {
     WorldState& world = *state_;
     world.require_between_steps("advance");
-    if (!(dt >= 0) || !std::isfinite(dt))
-        Complaint{.file = {},
-                  .object = "advance",
-                  .field = "dt",
-                  .found = short_text(dt),
-                  .expected = "a time >= 0 (s)",
-                  .hint = {}}
-            .raise();
+    if (!(dt >= 0) || !std::isfinite(dt)) refuse("advance", "dt", short_text(dt), "a time >= 0 (s)");
     // Sets the floating-point mode for the code that runs between the stages. This code must not depend on the mode of
     // the caller.
     const ArithmeticScope arithmetic;

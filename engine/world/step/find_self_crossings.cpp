@@ -1,7 +1,7 @@
 // Checks whether the surfaces of bodies cross themselves. Only bodies with self-contact are kept from doing so.
 #include <algorithm>
-#include <cstdio>
 
+#include "engine/world/complaint.h"
 #include "engine/world/step/step.h"
 #include "jobs/parallel_for.h"
 #include "systems/collision/search/search_pair.h"
@@ -60,14 +60,9 @@ void find_self_crossings(Executor& executor, Model& model, Real time, Column<Ind
 }
 
 std::string SelfCrossing::message() const {
-    const auto seconds = [](Real time) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.3g s", time);
-        return std::string(text);
-    };
     return "the surface of body '" + name + "' crosses itself in up to " + std::to_string(most_places) +
-           (most_places == 1 ? " place" : " places") + ", first found at " + seconds(first_time) + " and last at " +
-           seconds(last_time);
+           (most_places == 1 ? " place" : " places") + ", first found at " + short_text(first_time) +
+           " s and last at " + short_text(last_time) + " s";
 }
 
 }  // namespace skerry

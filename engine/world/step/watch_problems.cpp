@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/problem/step_problem.h"
+#include "engine/world/complaint.h"
 #include "engine/world/step/step.h"
 #include "systems/contact/keep_resting_contacts.h"
 
@@ -96,14 +97,7 @@ void show_contact_problem(const WorldState& world, Real time) {
 }
 
 void World::watch_contact_problems(std::function<void(const StepProblem&)> take, std::uint64_t every) {
-    if (every == 0)
-        Complaint{.file = {},
-                  .object = "watch_contact_problems",
-                  .field = "every",
-                  .found = "0",
-                  .expected = "a number of steps >= 1",
-                  .hint = {}}
-            .raise();
+    if (every == 0) refuse("watch_contact_problems", "every", "0", "a number of steps >= 1");
     state_->record.problem_watch = {std::move(take), every};
 }
 

@@ -1,9 +1,10 @@
 #include "engine/program/sweep/cases/draw.h"
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <numbers>
+
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
@@ -12,9 +13,7 @@ namespace {
 /// Rounds to 12 significant digits. This gives 0.3 instead of 0.30000000000000004, and hides differences in the last
 /// bits.
 double rounded(double value) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.12g", value);
-    return std::strtod(text, nullptr);
+    return std::strtod(short_text(value, 12).c_str(), nullptr);
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ std::filesystem::path case_file(const std::filesystem::path& folder, int index) 
 }
 
 void write_case(const std::filesystem::path& file, const CaseHead& head, const CaseResult& result, const Json& report) {
-    const Json json = {
+    const Json json = object_of({
         {"schema", case_schema},
         {"sweep", head.sweep},
         {"scene_file", head.scene},
@@ -99,7 +99,7 @@ void write_case(const std::filesystem::path& file, const CaseHead& head, const C
         {"figures", json_of_figures(result)},
         {"state_hash", result.state_hash},
         {"report", report},
-    };
+    });
     write_file(file,
                [&](std::ostream& out) { out << json.dump(1, ' ', false, Json::error_handler_t::replace) << "\n"; });
 }

@@ -15,12 +15,12 @@ Json rows_json(const SweepTable& table) {
             if (table.cases.values[i][p]) values[table.cases.parameters[p].name] = *table.cases.values[i][p];
         // A value that is not finite becomes null.
         for (const auto& [name, value] : file.result.figures) figures[name] = value;
-        rows.push_back({{"case", i},
-                        {"status", whole ? name_of(file.result.status) : "not run"},
-                        {"message", file.result.message},
-                        {"warnings", file.result.warnings},
-                        {"values", values},
-                        {"figures", figures}});
+        rows.push_back(object_of({{"case", i},
+                                  {"status", whole ? name_of(file.result.status) : "not run"},
+                                  {"message", file.result.message},
+                                  {"warnings", file.result.warnings},
+                                  {"values", values},
+                                  {"figures", figures}}));
     }
     return rows;
 }
@@ -30,12 +30,12 @@ Json rows_json(const SweepTable& table) {
 std::string table_page(const SweepTable& table) {
     Json parameters = Json::array();
     for (const Parameter& parameter : table.cases.parameters) parameters.push_back(parameter.name);
-    const Json data = {{"name", table.sweep.name},
-                       {"description", table.sweep.description},
-                       {"scene", table.sweep.scene.path.filename().string()},
-                       {"parameters", parameters},
-                       {"figures", figure_names(table)},
-                       {"rows", rows_json(table)}};
+    const Json data = object_of({{"name", table.sweep.name},
+                                 {"description", table.sweep.description},
+                                 {"scene", table.sweep.scene.path.filename().string()},
+                                 {"parameters", parameters},
+                                 {"figures", figure_names(table)},
+                                 {"rows", rows_json(table)}});
     return table_page(table.sweep.name, data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

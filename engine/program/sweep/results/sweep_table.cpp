@@ -19,7 +19,7 @@ constexpr const char* shown_of_probes[] = {".slip_m", ".largest_force_max_N", ".
 using Cells = std::vector<std::string>;
 
 std::string number_cell(double value) {
-    return std::isfinite(value) ? short_number(value, 5) : "-";
+    return std::isfinite(value) ? short_text(value, 5) : "-";
 }
 
 double figure_of(const CaseResult& result, std::string_view name) {
@@ -40,7 +40,7 @@ std::vector<std::string> shown_figures(const SweepTable& table) {
 
 std::string value_cell(const std::optional<Json>& value) {
     if (!value) return "-";
-    if (value->is_number_float()) return short_number(value->get<double>(), 6);
+    if (value->is_number_float()) return short_text(value->get<double>(), 6);
     return value->is_string() ? value->get<std::string>() : value->dump();
 }
 

@@ -1,0 +1,27 @@
+// JSON documents that keep the order of their keys.
+#pragma once
+
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace skerry {
+
+/// JSON document that keeps the order of its keys. A document that was read has the order of the file, a schema has the
+/// order of the key tables. Numbers that are not finite become null.
+using Json = nlohmann::ordered_json;
+
+/// A key of a JSON object, and its value.
+struct JsonMember {
+    const char* key;
+    mutable Json value;  // object_of() moves it
+};
+/// Returns the JSON object with these members. The constructor of the library does the same with several times the code
+/// at each call.
+inline Json object_of(std::initializer_list<JsonMember> members) {
+    Json::object_t object;
+    for (const JsonMember& member : members) object.emplace(member.key, std::move(member.value));
+    return object;
+}
+
+}  // namespace skerry
