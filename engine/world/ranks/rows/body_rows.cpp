@@ -265,7 +265,8 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                            .watched = rows.watch[0].body,
                            .kept = rows.watch[0].kept,
                            .look = rows.watch[0].look,
-                           .gives_common = false});
+                           .gives_common = false,
+                           .is_used_up = true});
     Model fresh;
     ranks.place = compose_rows(sources, ranks.whole, fresh);
     RowMoves& moves = sources[0].moves;
