@@ -13,13 +13,20 @@ namespace skerry {
 
 namespace {
 
+/// The rows of a range that a column has.
+std::span<const std::byte> bytes_of_rows(AnyColumn column, Range rows) {
+    const auto begin = static_cast<std::size_t>(rows.begin), end = static_cast<std::size_t>(rows.end);
+    const std::size_t has = std::min(end, column.size()), bytes = column.type().bytes;
+    if (begin >= has) return {};
+    return {column.read() + begin * bytes, (has - begin) * bytes};
+}
+
 /// Appends rows of a column to another column of the same type. Parts of the range beyond the last row are left out.
 void append_rows(AnyColumn from, Range rows, AnyColumn to) {
-    const auto begin = static_cast<std::size_t>(rows.begin), end = static_cast<std::size_t>(rows.end);
-    if (begin >= std::min(end, from.size())) return;
-    const std::size_t count = std::min(end, from.size()) - begin, first = to.size(), bytes = from.type().bytes;
-    to.resize(first + count);
-    std::memcpy(to.write() + first * bytes, from.read() + begin * bytes, count * bytes);
+    const std::span<const std::byte> added = bytes_of_rows(from, rows);
+    const std::size_t first = to.size(), bytes = to.type().bytes;
+    to.resize(first + added.size() / bytes);
+    if (!added.empty()) std::memcpy(to.write() + first * bytes, added.data(), added.size());
 }
 
 /// Appends a row with its lists of entries (lists_of).
@@ -118,15 +125,31 @@ private:
                 end += rows.size();
             }
             for (std::size_t c = 0; c < columns_[table].size(); ++c) {
-                for (std::size_t row = 0; row < picks_.size(); ++row)
-                    append_rows(sources_[picks_[row].source].columns[table][c], old[row].*range_of[table],
-                                columns_[table][c]);
+                append_column(table, c, old);
                 for (const RowSource& source : sources_)
                     if (source.is_used_up && table != 0) free_column(table, c, *source.model);
             }
         }
         for (std::size_t row = 0; row < picks_.size(); ++row)
             renumber_rows_of_body(to_, row, now[row], down_of(picks_[row]));
+    }
+
+    /// `rows`: rows of each picked body in the tables of its source.
+    void append_column(std::size_t table, std::size_t c, std::span<const OfBodyTables<Range>> rows) {
+        constexpr auto range_of = OfBodyTables<Range>::members();
+        std::vector<std::span<const std::byte>> parts;
+        std::size_t total = 0;
+        for (std::size_t row = 0; row < picks_.size(); ++row) {
+            parts.push_back(bytes_of_rows(sources_[picks_[row].source].columns[table][c], rows[row].*range_of[table]));
+            total += parts.back().size();
+        }
+        const AnyColumn to = columns_[table][c];
+        to.resize(total / to.type().bytes);  // at once, so that the column does not grow in steps
+        std::byte* end = to.write();
+        for (const std::span<const std::byte> part : parts) {
+            if (!part.empty()) std::memcpy(end, part.data(), part.size());
+            end += part.size();
+        }
     }
 
     void append_clusters() {
