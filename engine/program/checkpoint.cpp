@@ -19,57 +19,7 @@ namespace {
     refuse_in(file.string(), "--restart", {}, found, expected, hint);
 }
 
-Json to_json(const RunMemory& memory) {
-    return object_of({{"scene", memory.scene.string()},
-                      {"assignments", memory.assignments},
-                      {"seconds", memory.seconds},
-                      {"frame_step", memory.frame_step},
-                      {"samples", memory.samples},
-                      {"probe_step", memory.probe_step},
-                      {"frame", memory.frame},
-                      {"sample", memory.sample},
-                      {"seconds_wall", memory.seconds_wall},
-                      {"peak_kinetic_energy", memory.peak_kinetic_energy},
-                      {"probes", memory.probes}});
-}
-
 const char* const damaged = "the file is damaged or was edited; start the run again without --restart";
-
-RunMemory memory_of(const std::filesystem::path& file, const std::string& text) {
-    if (text.empty())
-        refuse_restart(file, "a saved world that contains no state of a run",
-                       "a file written by `skerry run --checkpoint`");
-    RunMemory memory;
-    try {
-        const Json json = Json::parse(text);
-        memory.scene = json.at("scene").get<std::string>();
-        json.at("assignments").get_to(memory.assignments);
-        json.at("seconds").get_to(memory.seconds);
-        json.at("frame_step").get_to(memory.frame_step);
-        json.at("samples").get_to(memory.samples);
-        json.at("probe_step").get_to(memory.probe_step);
-        json.at("frame").get_to(memory.frame);
-        json.at("sample").get_to(memory.sample);
-        json.at("seconds_wall").get_to(memory.seconds_wall);
-        json.at("peak_kinetic_energy").get_to(memory.peak_kinetic_energy);
-        memory.probes = json.at("probes");
-    } catch (const std::exception& error) {
-        refuse_restart(file, std::string("an unreadable state of a run (") + error.what() + ")",
-                       "a file written by `skerry run --checkpoint`", damaged);
-    }
-    const bool good = memory.frame_step > 0 && std::isfinite(memory.frame_step) && memory.samples > 0 &&
-                      memory.probe_step >= 0 && memory.frame >= 0 && memory.sample >= 0 &&
-                      memory.sample < memory.samples;
-    if (!good)
-        refuse_restart(
-            file,
-            "frame " + std::to_string(memory.frame) + ", sample " + std::to_string(memory.sample) + " of " +
-                std::to_string(memory.samples) + " and a frame step of " + Json(memory.frame_step).dump() + " s",
-            "frame and sample numbers of at least 0, a sample number below the number of samples, and a positive "
-            "frame step",
-            damaged);
-    return memory;
-}
 
 // Tolerance for rounding errors of summed times, as a fraction of the interval between checkpoints.
 constexpr double slack = 1e-9;
@@ -113,6 +63,54 @@ void rename_world(RecordedProbe& probe, std::uint32_t number) {
 }
 
 }  // namespace
+
+Json to_json(const RunMemory& memory) {
+    return object_of({{"scene", memory.scene.string()},
+            {"assignments", memory.assignments},
+            {"seconds", memory.seconds},
+            {"frame_step", memory.frame_step},
+            {"samples", memory.samples},
+            {"probe_step", memory.probe_step},
+            {"frame", memory.frame},
+            {"sample", memory.sample},
+            {"seconds_wall", memory.seconds_wall},
+            {"peak_kinetic_energy", memory.peak_kinetic_energy},
+            {"probes", memory.probes}});
+}
+
+RunMemory memory_of(const std::filesystem::path& file, const std::string& text) {
+    if (text.empty())
+        refuse_restart(file, "a saved world that contains no state of a run", "a file written by `skerry run --checkpoint`");
+    RunMemory memory;
+    try {
+        const Json json = Json::parse(text);
+        memory.scene = json.at("scene").get<std::string>();
+        json.at("assignments").get_to(memory.assignments);
+        json.at("seconds").get_to(memory.seconds);
+        json.at("frame_step").get_to(memory.frame_step);
+        json.at("samples").get_to(memory.samples);
+        json.at("probe_step").get_to(memory.probe_step);
+        json.at("frame").get_to(memory.frame);
+        json.at("sample").get_to(memory.sample);
+        json.at("seconds_wall").get_to(memory.seconds_wall);
+        json.at("peak_kinetic_energy").get_to(memory.peak_kinetic_energy);
+        memory.probes = json.at("probes");
+    } catch (const std::exception& error) {
+        refuse_restart(file, std::string("an unreadable state of a run (") + error.what() + ")",
+               "a file written by `skerry run --checkpoint`", damaged);
+    }
+    const bool good = memory.frame_step > 0 && std::isfinite(memory.frame_step) && memory.samples > 0 &&
+                      memory.probe_step >= 0 && memory.frame >= 0 && memory.sample >= 0 &&
+                      memory.sample < memory.samples;
+    if (!good)
+        refuse_restart(file,
+               "frame " + std::to_string(memory.frame) + ", sample " + std::to_string(memory.sample) + " of " +
+                   std::to_string(memory.samples) + " and a frame step of " + Json(memory.frame_step).dump() + " s",
+               "frame and sample numbers of at least 0, a sample number below the number of samples, and a positive "
+               "frame step",
+               damaged);
+    return memory;
+}
 
 Restart read_restart(const std::filesystem::path& file, const LoadSettings& settings) {
     LoadedWorld loaded = load_world(file, settings);

@@ -26,6 +26,11 @@ struct RunMemory {
     Json probes = Json::array();
 };
 
+Json to_json(const RunMemory& memory);
+/// Reads the text of to_json. `source`: file or rank that the text comes from, for messages. Throws SceneError if the
+/// text is damaged.
+RunMemory memory_of(const std::filesystem::path& source, const std::string& text);
+
 struct Restart {
     World world;
     RunMemory memory;

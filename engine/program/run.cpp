@@ -92,7 +92,7 @@ public:
         result_.checkpoints = checkpoints_.written();
         result_.checkpoints_failed = checkpoints_.failed();
         result_.probes = probes_.records();
-        result_.ranks = ranks_.report(result_.seconds_wall, waiting_, steps_);
+        result_.ranks = ranks_.report(result_.seconds_wall, steps_);
         if (const World* whole = ranks_.whole()) errors_.finish(*whole);
         result_.errors = errors_.bodies();
         if (figures_) result_.series = figures_->all();
@@ -104,10 +104,10 @@ private:
     void begin() {
         ranks_.set_last_words(checkpoints_.last_words());
         result_.peak_kinetic_energy = memory_.peak_kinetic_energy;
-        if (result_.restarted_at)
-            probes_.go_on(memory_.probes);
-        else
+        if (!result_.restarted_at)
             add_frame();
+        else if (ranks_.is_first())
+            probes_.go_on(memory_.probes);
     }
     void add_frame() {
         if (const World* whole = ranks_.whole()) {
@@ -125,11 +125,10 @@ private:
         };
         const Stopwatch watch;
         const Real start = world_.time();
-        const double waited = ranks_.seconds();
         ranks_.before_advance();
         const StepReport step = world_.advance(duration, go_on);
+        ranks_.after_advance();
         result_.seconds_wall += watch.seconds();
-        waiting_ += ranks_.seconds() - waited;
         steps_ += static_cast<std::uint64_t>(step.steps);
         if (step.status == StepStatus::stopped)
             result_.status = "stopped by a signal at " + short_text(world_.time(), 6) + " s";
@@ -168,7 +167,6 @@ private:
     std::optional<SeriesFigures> figures_;
     World& world_;             // the part of the world that this rank advances
     std::uint64_t steps_ = 0;  // number of steps since the run was started or resumed
-    double waiting_ = 0;       // wall time of the steps within calls of other ranks [s]
 };
 
 /// Moves the bodies to a static equilibrium. If there is none, the run ends with this status before its first step.
@@ -260,32 +258,29 @@ std::vector<BrokenTie> broken_ties(const ScenePlan& plan, World& world) {
     return found;
 }
 
-}  // namespace
+/// Progress and plan at the start of a run.
+struct RunBeginning {
+    RunMemory memory;
+    RunPlan plan;
+    double time = 0;  // [s]
+    bool is_restart = false;
+};
 
-RunResult simulate(const RunOptions& asked, RunRanks& ranks) {
-    const Stopwatch loading;
-    RunOptions options = ranks.options_for(asked);
-    std::optional<Restart> restart;
-    if (!options.restart.empty()) {
-        restart = read_restart(options.restart, {options.overrides.backend, options.overrides.threads});
-        if (options.scene.empty()) options.scene = restart->memory.scene;
-        options.overrides.assignments = restart->memory.assignments;
-    }
-    RunResult result;
-    const ScenePlan plan = plan_with_progress(options.scene, options.overrides, !options.quiet);
-    result.seconds_load = loading.seconds();
-    const Stopwatch setting_up;
+/// Builds the world of a scene, or takes it from a checkpoint, and plans the run. Only for rank 0.
+Scene begin_run(const RunOptions& options, const ScenePlan& plan, std::optional<Restart>& restart,
+                RunBeginning& beginning, RunResult& result) {
     SetupProgress setup(!options.quiet, plan);
     Scene scene = build_scene(plan, [&](std::size_t bodies) { setup.added(bodies); });
     World& world = scene.world;
-    RunMemory memory;
     if (restart) {
         put_in_place(options.restart, std::move(restart->world), scene);
-        memory = std::move(restart->memory);
+        beginning.memory = std::move(restart->memory);
+        beginning.is_restart = true;
         result.restarted_at = world.time();
-        result.seconds_wall = memory.seconds_wall;
+        result.seconds_wall = beginning.memory.seconds_wall;
     }
     if (options.from_rest) start_from_rest(world, result);
+    RunMemory& memory = beginning.memory;
     memory.scene = std::filesystem::absolute(options.scene);
     memory.assignments = options.overrides.assignments;
     result.bad_boundaries = bad_boundaries(plan, world);
@@ -298,26 +293,93 @@ RunResult simulate(const RunOptions& asked, RunRanks& ranks) {
     count_bodies(world, result);
 
     setup.begin("choosing the step length");
-    const RunPlan run_plan = restart ? plan_run(options, memory, world.time())
-                                     : plan_run(scene, options.scene, options.seconds, options.frames_per_second);
-    memory.frame_step = run_plan.frame_step;
-    memory.samples = run_plan.samples;
-    memory.probe_step = run_plan.probe_step;
-    const RunStart start{.step_count = run_plan.steps(world),
-                         .frames = restart ? static_cast<std::size_t>(memory.frame) + 1 : 0,
-                         .frame_step = memory.frame_step,
-                         .row_step = run_plan.even() ? 0 : run_plan.probe_step};
+    beginning.time = world.time();
+    beginning.plan = restart ? plan_run(options, memory, world.time())
+                             : plan_run(scene, options.scene, options.seconds, options.frames_per_second);
+    memory.frame_step = beginning.plan.frame_step;
+    memory.samples = beginning.plan.samples;
+    memory.probe_step = beginning.plan.probe_step;
     for (std::string& note : plan_notes(plan)) result.notes.push_back(std::move(note));
-    if (const std::string note = stiff_note(plan, world, start.step_count, run_plan.longest_call()); !note.empty())
+    if (const std::string note =
+            stiff_note(plan, world, beginning.plan.steps(world), beginning.plan.longest_call());
+        !note.empty())
         result.notes.push_back(note);
     if (!options.quiet) print_lines("NOTE", result.notes);
-    ranks.compare_starts(world, options.scene, options.overrides.assignments);
+    return scene;
+}
+
+/// Scene of a rank other than 0, which gets its bodies from rank 0.
+Scene scene_without_bodies(const ScenePlan& plan) {
+    return {.name = plan.name,
+            .description = {},
+            .materials = {},
+            .world = World({.backend = plan.settings.backend, .threads = plan.settings.threads}),
+            .probes = {},
+            .recorded = {}};
+}
+
+RunStart run_start(const RunBeginning& beginning, const World& world) {
+    const RunPlan& plan = beginning.plan;
+    return {.step_count = plan.steps(world),
+            .frames = beginning.is_restart ? static_cast<std::size_t>(beginning.memory.frame) + 1 : 0,
+            .frame_step = plan.frame_step,
+            .row_step = plan.even() ? 0 : plan.probe_step};
+}
+
+/// Collective. Gives all ranks the beginning that rank 0 has found, and notes it in the results.
+void share_beginning(const RunRanks& ranks, RunBeginning& beginning, RunResult& result) {
+    const RunPlan& plan = beginning.plan;
+    const Json first = ranks.of_first({{"memory", to_json(beginning.memory)},
+                                       {"plan", {plan.seconds, plan.frame_step, plan.samples, plan.probe_step}},
+                                       {"time", beginning.time},
+                                       {"is_restart", beginning.is_restart},
+                                       {"status", result.status}});
+    if (!ranks.is_first()) {
+        const Json& numbers = first.at("plan");
+        beginning = {.memory = memory_of("rank 0", first.at("memory").dump()),
+                     .plan = {numbers.at(0).get<double>(), numbers.at(1).get<double>(), numbers.at(2).get<int>(),
+                              numbers.at(3).get<double>()},
+                     .time = first.at("time").get<double>(),
+                     .is_restart = first.at("is_restart").get<bool>()};
+        first.at("status").get_to(result.status);
+        if (beginning.is_restart) result.restarted_at = beginning.time;
+        result.seconds_wall = beginning.memory.seconds_wall;
+    }
+}
+
+}  // namespace
+
+RunResult simulate(const RunOptions& asked, RunRanks& ranks) {
+    const Stopwatch loading;
+    RunOptions options = ranks.options_for(asked);
+    std::optional<Restart> restart;
+    if (!options.restart.empty()) {
+        if (ranks.is_first())
+            restart = read_restart(options.restart, {options.overrides.backend, options.overrides.threads});
+        const Json memory = ranks.of_first(restart ? to_json(restart->memory) : Json());
+        if (options.scene.empty()) options.scene = memory.at("scene").get<std::string>();
+        memory.at("assignments").get_to(options.overrides.assignments);
+    }
+    RunResult result;
+    ScenePlan plan = plan_with_progress(options.scene, options.overrides, !options.quiet);
+    result.seconds_load = loading.seconds();
+    ranks.compare_starts(options.scene, options.overrides.assignments);
+    const Stopwatch setting_up;
+    RunBeginning beginning;
+    Scene scene = ranks.is_first() ? begin_run(options, plan, restart, beginning, result) : scene_without_bodies(plan);
+    World& world = scene.world;
     std::optional<RunOutputs> outputs;
-    if (ranks.is_first()) outputs.emplace(options, scene, start, result);
-    CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(run_plan.seconds / 10), world.time());
+    if (ranks.is_first())
+        outputs.emplace(options, scene, run_start(beginning, world), result);
+    else
+        plan = {};  // frees its meshes
+    share_beginning(ranks, beginning, result);
+    const RunPlan& run_plan = beginning.plan;
+    CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(run_plan.seconds / 10), beginning.time);
 
     result.seconds_setup = setting_up.seconds();
-    FrameLoop(scene, ranks, options, run_plan, std::move(memory), outputs ? &*outputs : nullptr, checkpoints, result)
+    FrameLoop(scene, ranks, options, run_plan, std::move(beginning.memory), outputs ? &*outputs : nullptr, checkpoints,
+              result)
         .run();
     result.stopped_by = caught_signal;
     if (!outputs) return result;

@@ -137,6 +137,7 @@ Json statistics_of(const RunResult& result) {
         {"threads", result.threads},
         {"ranks", object_of({{"count", result.ranks.count},
                              {"hosts", result.ranks.hosts},
+                             {"peak_memory", result.ranks.peak_memory},
                              {"messages_per_step", result.ranks.messages},
                              {"bytes_per_step", result.ranks.bytes},
                              {"reductions_per_step", result.ranks.reductions},

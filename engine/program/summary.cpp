@@ -1,4 +1,5 @@
 // Summary that is printed at the end of a run, for people who do not know the methods of the engine.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/output/number_text.h"
@@ -161,7 +162,11 @@ std::string ranks_line(const RanksReport& ranks) {
                                      " bytes and " + short_text(ranks.reductions) +
                                      " reductions in a step on average; waiting takes " + percent(ranks.waiting) +
                                      " of the time, and the busiest rank computes " + short_text(ranks.imbalance) +
-                                     " times as long as the mean");
+                                     " times as long as the mean; memory of rank 0 " +
+                                     with_unit(ranks.peak_memory.front(), "B") + ", of the others at most " +
+                                     with_unit(*std::max_element(ranks.peak_memory.begin() + 1,
+                                                                 ranks.peak_memory.end()),
+                                               "B"));
 }
 
 /// Lines with statistics of the steps. Empty if no step was made.

@@ -71,22 +71,13 @@ public:
     void exchange(std::span<const int> peers, std::span<const RankMessage> out, std::span<RankMessage> in) override {
         const Stopclock clock(traffic_.seconds);
         ++traffic_.exchanges;
-        sends_.resize(peers.size());
+        sends_.clear();
         for (std::size_t i = 0; i < peers.size(); ++i) {
             ++traffic_.messages;
             traffic_.bytes += out[i].size();
-            MPI_Isend(out[i].data(), length_of(out[i].size(), "a message to rank " + std::to_string(peers[i])),
-                      MPI_BYTE, peers[i], exchange_tag, world_, &sends_[i]);
+            send_pieces(out[i], peers[i]);
         }
-        for (std::size_t i = 0; i < peers.size(); ++i) {
-            MPI_Message message{};
-            MPI_Status status{};
-            int length = 0;
-            MPI_Mprobe(peers[i], exchange_tag, world_, &message, &status);
-            MPI_Get_count(&status, MPI_BYTE, &length);
-            in[i].resize(static_cast<std::size_t>(length));
-            MPI_Mrecv(in[i].data(), length, MPI_BYTE, &message, MPI_STATUS_IGNORE);
-        }
+        for (std::size_t i = 0; i < peers.size(); ++i) receive_pieces(peers[i], in[i]);
         MPI_Waitall(static_cast<int>(sends_.size()), sends_.data(), MPI_STATUSES_IGNORE);
     }
     void reduce(std::span<std::byte> record, void (*combine)(std::byte*, const std::byte*)) override {
@@ -149,6 +140,8 @@ public:
 
 private:
     static constexpr int exchange_tag = 1, gather_tag = 2;
+    // Greatest length of a piece of a message. A message ends with the first shorter piece, which may be empty [bytes].
+    static constexpr std::size_t longest_piece = std::size_t{1} << 24;
 
     /// Returns the number of bytes as MPI counts them. Throws std::runtime_error if there are too many.
     int length_of(std::size_t bytes, const std::string& object) const {
@@ -159,6 +152,28 @@ private:
                                      "; use more ranks");
         return static_cast<int>(bytes);
     }
+    void send_pieces(const RankMessage& message, int to) {
+        std::size_t begin = 0, length = longest_piece;
+        for (; length == longest_piece; begin += length) {
+            length = std::min(longest_piece, message.size() - begin);
+            MPI_Isend(message.data() + begin, static_cast<int>(length), MPI_BYTE, to, exchange_tag, world_,
+                      &sends_.emplace_back());
+        }
+    }
+    void receive_pieces(int from, RankMessage& message) {
+        std::size_t begin = 0, length = longest_piece;
+        for (; length == longest_piece; begin += length) {
+            MPI_Message piece{};
+            MPI_Status status{};
+            int count = 0;
+            MPI_Mprobe(from, exchange_tag, world_, &piece, &status);
+            MPI_Get_count(&status, MPI_BYTE, &count);
+            length = static_cast<std::size_t>(count);
+            message.resize(begin + length);
+            MPI_Mrecv(message.data() + begin, count, MPI_BYTE, &piece, MPI_STATUS_IGNORE);
+        }
+    }
+
     /// Calls act(begin, length) for pieces of a message of any length.
     template <class Act>
     static void for_each_piece(std::size_t bytes, Act act) {

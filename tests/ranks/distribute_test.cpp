@@ -1,6 +1,9 @@
 // Bodies of a divided world: their owners, and their moves between ranks.
 #include <catch2/catch.hpp>
+#include <atomic>
+#include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -152,6 +155,75 @@ TEST_CASE("bodies of all ranks that cross themselves are reported", "[ranks]") {
     };
     REQUIRE(messages(both[0]).size() > 0);
     CHECK(messages(both[0]) == messages(both[1]));
+}
+
+TEST_CASE("only rank 0 needs to build the world", "[ranks]") {
+    for (const char* name : {"pile", "linked", "frames"}) {
+        const RankScene scene = own_scene(name);
+        World whole = scene.make(1);
+        whole.advance(scene.seconds / 4);
+        run_on_ranks(3, [&](Ranks& ranks) {
+            World world = ranks.rank() == 0 ? scene.make(1) : World({.threads = 1});
+            distribute(world, ranks);
+            world.advance(scene.seconds / 4);
+            INFO(name);
+            if (std::optional<World> all = gathered(world)) CHECK(all->state_hash() == whole.state_hash());
+        });
+    }
+}
+
+TEST_CASE("a world that cannot be divided is refused on all ranks", "[ranks]") {
+    std::mutex mutex;
+    std::vector<std::string> messages;
+    run_on_ranks(3, [&](Ranks& ranks) {
+        World world({.contact_regions = ranks.rank() == 0 ? ContactRegions::global : ContactRegions::separate});
+        const std::string message = message_of([&] { distribute(world, ranks); });
+        const std::scoped_lock lock(mutex);
+        messages.push_back(message);
+    });
+    CHECK(messages[0].find("settings.contact_regions: found global") != std::string::npos);
+    CHECK(messages == std::vector<std::string>(3, messages[0]));
+}
+
+/// Bodies with sets and labels, some of which are far apart.
+World bodies_with_sets() {
+    World world({.gravity = Vec3::Zero(), .threads = 1});
+    const MaterialHandle rubber = world.add_material({});
+    for (int i = 0; i < 9; ++i) {
+        Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {1 + i % 2, 1, 1});
+        mesh.label.assign(mesh.tetrahedra.size(), i);
+        mesh.sets["end"].nodes = {0, 1 + i % 3};
+        world.add_body(mesh, {.material = rubber, .position = {0.3 * i, 0, 0}});
+    }
+    return world;
+}
+
+TEST_CASE("bodies keep their meshes, labels and sets on the ranks to which they move", "[ranks]") {
+    World whole = bodies_with_sets();
+    const Model& expected = WorldAccess::state_of(whole).model;
+    std::atomic<int> compared = 0;
+    run_on_ranks(3, [&](Ranks& ranks) {
+        World world = ranks.rank() == 0 ? bodies_with_sets() : World({.threads = 1});
+        distribute(world, ranks);
+        WorldState& state = WorldAccess::state_of(world);
+        for (std::int32_t turn = 0; turn < 3; ++turn) {
+            move_to_owners(state, next_owners(state.ranks, turn));
+            for (std::size_t b = 0; b < state.ranks.place.size(); ++b) {
+                const BodyRecord& found = state.model.body_records[b];
+                const BodyRecord& record = expected.body_records[static_cast<std::size_t>(state.ranks.place[b])];
+                const auto require_same = [&](bool same, const char* member) {
+                    if (!same) throw std::runtime_error("body '" + record.name + "' has another " + member);
+                };
+                require_same(found.name == record.name, "name");
+                require_same(found.tetrahedra == record.tetrahedra, "list of tetrahedra");
+                require_same(found.surface == record.surface, "surface");
+                require_same(found.label == record.label, "list of labels");
+                require_same(found.sets == record.sets, "list of sets");
+                ++compared;
+            }
+        }
+    });
+    CHECK(compared >= 3 * 9);
 }
 
 /// Two boxes that fly towards each other and collide after 0.095 s.

@@ -77,6 +77,20 @@ class MpirunTest(ProgramCase):
         self.assertEqual((alone["ranks"]["count"], shared["ranks"]["count"], shared["ranks"]["hosts"]), (1, 3, 1))
         self.assertGreater(shared["ranks"]["messages_per_step"], 0)
 
+    def test_only_rank_0_needs_the_memory_of_the_whole_world(self):
+        def peaks(run, balls):
+            ball = dict(BLOCK, mesh={"ball": {"radius": 0.1, "resolution": 6}}, position=[0, 0, 0.2],
+                        repeat={"count": [balls, 1, 1], "spacing": [0.3, 1, 1]})
+            scene = self.write("row.json", dict(SCENE, seconds=0.001, bodies=[ball], probes=[]))
+            return self.stats_of(run, scene)["ranks"]["peak_memory"]
+        few, many, ranks = 4, 104, 4
+        grown, alone = ([a - b for a, b in zip(peaks(run, many), peaks(run, few), strict=True)] for run in (
+            lambda *arguments: self.ranks(ranks, *arguments), self.skerry))
+        self.assertEqual(len(grown), ranks)
+        # a quarter of the bodies, copies of neighbours, and messages that hold a part of the bodies twice
+        for peak in grown[1:]:
+            self.assertLess(peak, 0.5 * alone[0])
+
     def test_rank_0_alone_prints(self):
         done = self.ranks(2, "run", self.scene)
         self.assertEqual(done.stdout.count("times real time"), 1)

@@ -53,6 +53,13 @@ void exchange_of_two(Ranks& ranks) {
         ranks.exchange(peers, out, in);
         require(in == out, "messages arrive in the order in which they were sent, and long ones too");
     }
+    constexpr std::size_t piece = std::size_t{1} << 24;  // MPI gets longer messages in pieces
+    for (const std::size_t bytes : {piece - 1, piece, 5 * piece / 2, std::size_t{0}}) {
+        std::vector<RankMessage> out{RankMessage(bytes)}, in(1);
+        for (std::size_t i = 0; i < bytes; ++i) out[0][i] = static_cast<std::byte>(i % 251);
+        ranks.exchange(peers, out, in);
+        require(in == out, "messages in pieces arrive complete");
+    }
 }
 
 struct Extremes {

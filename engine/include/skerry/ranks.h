@@ -40,9 +40,11 @@ struct RankSettings {
     std::uint64_t seed = 1;  // for OwnerMap::random
 };
 
-/// Divides a world among ranks. All ranks must call the function with equal worlds. Afterwards each rank simulates the
-/// bodies that it owns. All ranks must then make the same calls of advance() and gathered(). Calls that change objects
-/// throw SceneError. Throws SceneError if the world uses something that ranks cannot divide.
+/// Divides the world of rank 0 among all ranks, which must all call the function. The worlds of the other ranks are
+/// replaced by parts of this world, with the same handles; only their backend, number of threads and callback of
+/// watch_steps() stay. So the other ranks need not build anything. Afterwards each rank simulates the bodies that it
+/// owns. All ranks must then make the same calls of advance() and gathered(). Calls that change objects throw
+/// SceneError. Throws SceneError on all ranks if the world uses something that ranks cannot divide.
 /// Reading a divided world, for instance bodies(), energy() or state_hash(), gives values of the bodies that this rank
 /// holds only; read results from gathered().
 void distribute(World& world, Ranks& ranks, const RankSettings& settings = {});

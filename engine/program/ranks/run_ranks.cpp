@@ -1,5 +1,6 @@
 #include "engine/program/ranks/run_ranks.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -36,6 +37,14 @@ std::string host_name() {
     std::array<char, 256> name{};
     gethostname(name.data(), name.size() - 1);
     return name.data();
+}
+
+/// Greatest resident memory of this process so far [bytes].
+double peak_memory() {
+    constexpr double kib = 1024;
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return kib * static_cast<double>(usage.ru_maxrss);
 }
 
 std::string rank_name(std::size_t rank, const std::string& host) {
@@ -99,8 +108,8 @@ RunRanks RunRanks::join() {
     return RunRanks(std::move(ranks));
 }
 
-void RunRanks::agree(const Json& mine) const {
-    const std::vector<Json> all = gather_everywhere(*ranks_, mine);
+std::vector<Json> RunRanks::agree(const Json& mine) const {
+    std::vector<Json> all = gather_everywhere(*ranks_, mine);
     const auto failed = [](const Json& rank) { return rank.contains("error"); };
     const auto first = std::ranges::find_if(all, failed);
     if (first != all.end()) {
@@ -123,18 +132,21 @@ void RunRanks::agree(const Json& mine) const {
                                                     "set; SKERRY_INSTRUCTION_SET chooses one that all hosts have"}
                                       .text(),
                                   exit_bad_input);
+    return all;
 }
 
-void RunRanks::compare_starts(const World& world, const std::filesystem::path& scene,
-                              std::span<const std::string> assignments) {
+Json RunRanks::of_first(const Json& mine) const {
+    return several() ? agree({{"alike", Json::object()}, {"value", mine}}).front().at("value") : mine;
+}
+
+void RunRanks::compare_starts(const std::filesystem::path& scene, std::span<const std::string> assignments) {
     if (!several()) return;
     agree({{"host", host_name()},
            {"alike",
             {{"program", SKERRY_VERSION " with the hash " + hash_of_text(file_content("/proc/self/exe"))},
              {"command line", command_line()},
              {"instruction set", instruction_set()},
-             {"hash of the scene and its files", CaseHasher(scene).hash(assignments)},
-             {"hash of all bodies at the start", hash_text(world.state_hash())}}}});
+             {"hash of the scene and its files", CaseHasher(scene).hash(assignments)}}}});
 }
 
 RunOptions RunRanks::options_for(const RunOptions& asked) const {
@@ -158,14 +170,20 @@ World& RunRanks::divide(Scene& scene, OwnerMap owners) {
     scene_ = &scene;
     if (!several()) return scene.world;
     part_.emplace(std::move(scene.world));
-    distribute(*part_, *ranks_, {.map = owners});
-    agree({{"alike", Json::object()}});
+    of_first({});  // so that no rank waits for a rank that has failed
     divided_ = true;
+    try {
+        distribute(*part_, *ranks_, {.map = owners});
+    } catch (const SceneError&) {
+        divided_ = false;  // all ranks have this error
+        throw;
+    }
     return *part_;
 }
 
 World* RunRanks::whole() {
     if (several() && !is_gathered_) {
+        { const World old = std::move(scene_->world); }  // frees its memory
         std::optional<World> world = gathered(*part_);
         if (world) scene_->world = std::move(*world);
         is_gathered_ = true;
@@ -173,24 +191,44 @@ World* RunRanks::whole() {
     return is_first() ? &scene_->world : nullptr;
 }
 
+void RunRanks::before_advance() {
+    is_gathered_ = false;
+    if (several()) before_ = ranks_->traffic();
+}
+
+void RunRanks::after_advance() {
+    if (!several()) return;
+    const RankTraffic& now = ranks_->traffic();
+    in_steps_.messages += now.messages - before_.messages;
+    in_steps_.bytes += now.bytes - before_.bytes;
+    in_steps_.reductions += now.reductions - before_.reductions;
+    in_steps_.seconds += now.seconds - before_.seconds;
+}
+
 bool RunRanks::any(bool mine) const {
     return last_code(mine ? 1 : 0) != 0;
 }
 
-RanksReport RunRanks::report(double wall, double waiting, std::uint64_t steps) const {
-    if (!several() || steps == 0) return {};
-    const RankTraffic& traffic = ranks_->traffic();
+RanksReport RunRanks::report(double wall, std::uint64_t steps) const {
+    RanksReport report;
+    if (!several()) {
+        report.peak_memory = {peak_memory()};
+        return report;
+    }
     const std::vector<Json> all = gather_everywhere(*ranks_, {{"host", host_name()},
-                                                              {"messages", traffic.messages},
-                                                              {"bytes", traffic.bytes},
+                                                              {"peak_memory", peak_memory()},
+                                                              {"messages", in_steps_.messages},
+                                                              {"bytes", in_steps_.bytes},
                                                               {"wall", wall},
-                                                              {"waiting", waiting}});
-    const auto count = static_cast<double>(steps);
-    RanksReport report{.count = ranks_->size(), .reductions = static_cast<double>(traffic.reductions) / count};
+                                                              {"waiting", in_steps_.seconds}});
+    report.count = ranks_->size();
+    const auto count = static_cast<double>(std::max<std::uint64_t>(steps, 1));
+    report.reductions = static_cast<double>(in_steps_.reductions) / count;
     std::set<std::string> hosts;
     double longest = 0, sum = 0;
     for (const Json& rank : all) {
         hosts.insert(rank["host"]);
+        report.peak_memory.push_back(rank["peak_memory"].get<double>());
         report.messages += rank["messages"].get<double>() / count;
         report.bytes += rank["bytes"].get<double>() / count;
         const double waited = rank["waiting"], computed = rank["wall"].get<double>() - waited;

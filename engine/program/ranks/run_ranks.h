@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/program/commands.h"
 #include "engine/scene/place.h"
@@ -19,13 +20,14 @@ namespace skerry {
 /// Comparison of the ranks of a run, for its report.
 struct RanksReport {
     int count = 1, hosts = 1;
+    std::vector<double> peak_memory;                 // greatest resident memory of each rank so far [bytes]
     double messages = 0, bytes = 0, reductions = 0;  // per step; messages and bytes are sums over all ranks
     double waiting = 0;                              // share of the wall time of the steps, mean over the ranks
     double imbalance = 1;                            // longest time that a rank computes, over the mean of all ranks
 };
 
-/// The ranks that make a run together. The world is divided among them. Rank 0 alone reports and writes files, for
-/// which it gathers the whole world. Without other ranks all functions are trivial.
+/// The ranks that make a run together. Rank 0 builds the world, which is then divided among them. Rank 0 alone reports
+/// and writes files, for which it gathers the whole world. Without other ranks all functions are trivial.
 class RunRanks {
 public:
     /// Joins the other processes that mpirun or srun has started with this process, if there are any. Throws SceneError
@@ -39,27 +41,26 @@ public:
 
     /// Throws an error on all ranks unless all of them run the same program with the same options, and have read the
     /// same files. `scene` and `assignments`: scene file with the changes by options.
-    void compare_starts(const World& world, const std::filesystem::path& scene,
-                        std::span<const std::string> assignments);
+    void compare_starts(const std::filesystem::path& scene, std::span<const std::string> assignments);
+    /// Collective. Returns the value of rank 0 on all ranks. Throws an error on all ranks if rank 0 has failed before.
+    Json of_first(const Json& mine) const;
     /// Returns the options for this rank. Throws SceneError for outputs that several ranks cannot write.
     RunOptions options_for(const RunOptions& asked) const;
-    /// Divides the world of the scene among the ranks, and returns the part of this rank. Throws SceneError if the
-    /// world holds something that cannot be divided. Afterwards the world of the scene is valid on rank 0 alone, after
-    /// a call of whole().
+    /// Divides the world of the scene of rank 0 among the ranks, and returns the part of this rank. Throws SceneError if
+    /// the world holds something that cannot be divided. Afterwards the world of the scene is valid on rank 0 alone,
+    /// after a call of whole().
     World& divide(Scene& scene, OwnerMap owners);
     /// Collective. Returns the whole world on rank 0, null on the other ranks. It is gathered if there was a call of
     /// advance() since the last call of this function.
     World* whole();
-    /// Must be called before the part is advanced.
-    void before_advance() { is_gathered_ = false; }
+    /// Must be called before and after the part is advanced.
+    void before_advance();
+    void after_advance();
 
     /// Collective. Returns true on all ranks if the argument is true on one of them.
     bool any(bool mine) const;
-    /// Wall time that this rank has spent in calls of other ranks [s].
-    double seconds() const { return several() ? ranks_->traffic().seconds : 0; }
-    /// Collective. `wall`: wall time of the steps [s]. `waiting`: part of it within calls of other ranks [s]. `steps`:
-    /// number of steps. All ranks return the same.
-    RanksReport report(double wall, double waiting, std::uint64_t steps) const;
+    /// Collective. `wall`: wall time of the steps [s]. `steps`: number of steps. All ranks return the same.
+    RanksReport report(double wall, std::uint64_t steps) const;
 
     /// Sets the text that rank 0 writes to standard error if the job is ended, because another rank has failed.
     void set_last_words(std::string text);
@@ -71,13 +72,14 @@ public:
 
 private:
     explicit RunRanks(std::unique_ptr<Ranks> ranks) : ranks_(std::move(ranks)) {}
-    /// Collective. Throws AgreedError if one of the ranks has an error.
-    void agree(const Json& mine) const;
+    /// Collective. Returns the values of all ranks. Throws AgreedError if one of the ranks has an error.
+    std::vector<Json> agree(const Json& mine) const;
 
     std::unique_ptr<Ranks> ranks_;  // null: this process is alone
     bool divided_ = false, is_gathered_ = false;
     Scene* scene_ = nullptr;
     std::optional<World> part_;
+    RankTraffic before_, in_steps_;  // at the last call of before_advance; sums over all calls of advance
     std::array<std::string, 2> last_words_;  // the text in use, and that before it
 };
 

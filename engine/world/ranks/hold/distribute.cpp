@@ -1,10 +1,16 @@
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <numeric>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/world/complaint.h"
 #include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/ranks/rows/body_rows.h"
+#include "engine/world/ranks/rows/put_record.h"
 #include "engine/world/step/step.h"
 #include "jobs/arithmetic_scope.h"
 #include "skerry/ranks.h"
@@ -21,8 +27,6 @@ namespace {
 /// Refuses worlds that ranks cannot divide.
 void require_divisible(const WorldState& world) {
     const Settings& settings = world.model.settings;
-    if (world.ranks.on())
-        refuse_division("world", "a world that is already divided", "an undivided world", "call it once");
     if (settings.integrator == Integrator::leapfrog)
         refuse_division("settings.integrator", "leapfrog", "symplectic_euler",
                         "several ranks have only this integrator");
@@ -42,38 +46,190 @@ void sort_self_crossings(WorldState& world) {
     });
 }
 
-}  // namespace
+/// Collective. Returns the message of rank 0.
+RankMessage message_of_first(Ranks& ranks, std::span<const std::byte> mine) {
+    return std::move(ranks.gather_everywhere(mine).front());
+}
 
-void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
+/// Number of messages in which a rank sends its bodies to another rank. So only a part of the bodies is in memory
+/// twice.
+constexpr Index batches = 8;
+
+/// Returns a message with the marked bodies of one batch. The first batch also has the contact data of the pairs that a
+/// rank owns. `with_records`: true if the receiver is not rank 0.
+RankMessage message_of_batch(WorldState& world, std::span<const std::uint8_t> marked, Index batch, int pairs_of,
+                             bool with_records) {
+    const WholeWorld& whole = world.ranks.whole;
+    std::vector<std::uint8_t> sent;
+    for (std::size_t b = 0; b < marked.size(); ++b)
+        sent.push_back(marked[b] != 0 && whole.unit[world.ranks.place[b]] % batches == batch);
+    BodyRows rows = rows_of_bodies(world, sent, [&](std::uint64_t pair) {
+        return batch == 0 && whole.pair_owner(pair, whole.owner) == pairs_of;
+    });
+    if (with_records) copy_records(world.model, sent, rows);
+    return message_of(rows);
+}
+
+/// Calls visit(member) for all facts about the undivided world that rank 0 tells the others.
+void for_each_fact(WholeWorld& whole, std::vector<BodyExtent>& extents, Model& model, auto&& visit) {
+    visit(whole.owner);
+    visit(whole.slot);
+    visit(whole.unit);
+    visit(whole.place_of_slot);
+    visit(extents);
+    visit(model.forced);
+    visit(model.disabled_pairs.key);
+}
+
+void join_ranks(RankState& mine, Ranks& ranks, const RankSettings& settings, std::uint64_t step) {
+    mine.ranks = &ranks;
+    mine.rank = ranks.rank();
+    mine.whole.settings = settings;
+    mine.whole.searched_step = step;
+}
+
+/// Completes the start of a world, and chooses the owners of its bodies.
+std::vector<BodyExtent> choose_parts(World& world, Ranks& ranks, const RankSettings& settings) {
     WorldState& state = WorldAccess::state_of(world);
-    state.require_between_steps("distribute");
     require_divisible(state);
-    if (ranks.size() == 1) return;
-    const ArithmeticScope arithmetic;  // as in advance(), which would otherwise choose the clusters
     world.settle_start();
     state.settle();
     Model& model = state.model;
     note_changed_seams(model);
     settle_clusters(model, state.scratch.stiffness_sum);
     RankState& mine = state.ranks;
-    mine.ranks = &ranks;
-    mine.rank = ranks.rank();
     mine.whole = whole_world_of(model);
-    mine.whole.settings = settings;
-    mine.whole.searched_step = state.record.counters.steps;
+    join_ranks(mine, ranks, settings, state.record.counters.steps);
     mine.place.resize(model.bodies.slot.size());
     std::iota(mine.place.begin(), mine.place.end(), Index{0});
     std::vector<std::uint8_t> moves;
     for (const BodyKind kind : model.bodies.kind) moves.push_back(kind == BodyKind::deformable);
-    const std::vector<BodyExtent> extents = extents_of(state, moves);
-    WholeWorld& whole = mine.whole;
-    whole.owner = choose_owners(whole, extents, settings, ranks.size());
-    whole.holders = find_holders(whole, whole.owner, extents, ranks.size());
+    std::vector<BodyExtent> extents = extents_of(state, moves);
+    mine.whole.owner = choose_owners(mine.whole, extents, settings, ranks.size());
+    mine.whole.holders = find_holders(mine.whole, mine.whole.owner, extents, ranks.size());
+    return extents;
+}
+
+/// Returns the bytes of a divided world without the bodies that have owners.
+std::vector<std::byte> bytes_without_bodies(const WorldState& state) {
+    World world = copy_of_settled(state, {});
+    WorldState& copy = WorldAccess::state_of(world);
+    const WholeWorld& whole = state.ranks.whole;
+    copy.ranks.place = state.ranks.place;
+    copy.ranks.whole.joining_place = whole.joining_place;
+    copy.ranks.whole.records.resize(whole.size());
     std::vector<std::uint8_t> kept;
-    for (std::size_t b = 0; b < moves.size(); ++b)
-        kept.push_back(!moves[b] || std::ranges::binary_search(whole.holders[b], mine.rank));
-    replace_rows(state, kept, {}, [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == mine.rank; });
-    note_holders(mine, extents);
+    for (const Index place : copy.ranks.place) kept.push_back(whole.owner[place] == WholeWorld::everywhere);
+    replace_rows(copy, kept, {}, [](std::uint64_t) { return false; });
+    copy.ranks = {};
+    copy.model.disabled_pairs.key.clear();  // keys of absent bodies
+    return world.to_bytes();
+}
+
+/// Rank 0: divides its world, sends all other ranks their bodies, and drops those that it does not hold.
+std::vector<BodyExtent> send_parts(World& world, Ranks& ranks, const RankSettings& settings) {
+    std::vector<BodyExtent> extents;
+    RankMessage facts;
+    try {
+        extents = choose_parts(world, ranks, settings);
+    } catch (const SceneError& error) {
+        put_value(std::string(error.what()), facts);
+        message_of_first(ranks, facts);
+        throw;
+    }
+    WorldState& state = WorldAccess::state_of(world);
+    WholeWorld& whole = state.ranks.whole;
+    put_value(std::string(), facts);
+    for_each_fact(whole, extents, state.model, [&](const auto& fact) { put_value(fact, facts); });
+    for (const std::vector<Index>& places : whole.joining_place) put_value(places, facts);
+    state.model.for_each_joining([&](const char*, auto&, const auto& map) {
+        put_value(map.names.size(), facts);
+        for (const auto& [handle, name] : map.names) {
+            put_value(handle.slot, facts);
+            put_value(name, facts);
+        }
+    });
+    for (const BodyRecord& record : state.model.body_records) put_value(record.name, facts);
+    message_of_first(ranks, facts);
+    const auto held_by = [&](int rank) {
+        std::vector<std::uint8_t> held;
+        for (const std::vector<int>& holders : whole.holders)
+            held.push_back(std::ranges::binary_search(holders, rank));
+        return held;
+    };
+    for (int rank = 1; rank < ranks.size(); ++rank)
+        for (Index batch = 0; batch < batches; ++batch) {
+            const RankMessage bodies = message_of_batch(state, held_by(rank), batch, rank, true);
+            RankMessage answer;
+            ranks.exchange({&rank, 1}, {&bodies, 1}, {&answer, 1});
+        }
+    std::vector<std::uint8_t> kept = held_by(0);
+    for (std::size_t b = 0; b < kept.size(); ++b) kept[b] |= whole.owner[b] == WholeWorld::everywhere;
+    replace_rows(state, kept, {}, [&](std::uint64_t pair) { return whole.pair_owner(pair, whole.owner) == 0; });
+    message_of_first(ranks, bytes_without_bodies(state));
+    return extents;
+}
+
+/// Another rank: replaces its world by its part of the world of rank 0. Keeps the backend, the number of threads and
+/// the callback of the steps.
+std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSettings& settings) {
+    const RankMessage facts = message_of_first(ranks, {});
+    MailReader reader(facts);
+    std::string refusal;
+    take_value(reader, refusal);
+    if (!refusal.empty()) throw SceneError(refusal);
+    const Settings own = world.settings();
+    std::function<void(const StepReport&)> step_watch =
+        std::move(WorldAccess::state_of(world).record.step_watch);
+    world = World(own);  // frees the bodies
+    std::vector<BodyRows> rows;
+    for (Index batch = 0; batch < batches; ++batch) {
+        constexpr int first = 0;
+        const RankMessage answer;
+        RankMessage bodies;
+        ranks.exchange({&first, 1}, {&answer, 1}, {&bodies, 1});
+        rows.push_back(rows_of_message(bodies));
+    }
+    world = World::from_bytes(message_of_first(ranks, {}), {.backend = own.backend, .threads = own.threads});
+    WorldState& state = WorldAccess::state_of(world);
+    state.record.step_watch = std::move(step_watch);
+    WholeWorld& whole = state.ranks.whole;
+    std::vector<BodyExtent> extents;
+    for_each_fact(whole, extents, state.model, [&](auto& fact) { take_value(reader, fact); });
+    state.model.for_each_joining([&](const char*, auto&, auto&) { take_value(reader, whole.joining_place.emplace_back()); });
+    take_value(reader, whole.joining_place.emplace_back());  // of the attachments
+    state.model.for_each_joining([&](const char*, auto&, auto& map) {
+        for (auto count = reader.take<std::size_t>(); count > 0; --count) {
+            const auto slot = reader.take<std::uint32_t>();
+            take_value(reader, map.names[map.handle_of_slot(slot)]);
+        }
+    });
+    for (std::size_t place = 0; place < whole.size(); ++place) {
+        std::string name;
+        take_value(reader, name);
+        whole.records.push_back(record_of_name(std::move(name)));
+        if (whole.owner[place] == WholeWorld::everywhere) state.ranks.place.push_back(static_cast<Index>(place));
+    }
+    join_ranks(state.ranks, ranks, settings, state.record.counters.steps);
+    whole.holders = find_holders(whole, whole.owner, extents, ranks.size());
+    const std::vector<std::uint8_t> all(state.ranks.place.size(), 1);
+    replace_rows(state, all, rows, [](std::uint64_t) { return true; });
+    return extents;
+}
+
+}  // namespace
+
+void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
+    WorldState& undivided = WorldAccess::state_of(world);
+    undivided.require_between_steps("distribute");
+    if (undivided.ranks.on())
+        refuse_division("world", "a world that is already divided", "an undivided world", "call it once");
+    if (ranks.size() == 1) return require_divisible(undivided);
+    const ArithmeticScope arithmetic;  // as in advance(), which would otherwise choose the clusters
+    const std::vector<BodyExtent> extents =
+        ranks.rank() == 0 ? send_parts(world, ranks, settings) : receive_part(world, ranks, settings);
+    WorldState& state = WorldAccess::state_of(world);
+    note_holders(state.ranks, extents);
     note_ghosts(state);
     list_step_again(state);
 }
@@ -82,18 +238,19 @@ std::optional<World> gathered(const World& world) {
     WorldState& state = WorldAccess::state_of(const_cast<World&>(world));  // rows are read, not changed
     if (!state.ranks.on()) return world.clone();
     const RankState& mine = state.ranks;
-    std::vector<std::uint8_t> owned;
-    for (const Index place : mine.place) owned.push_back(mine.whole.owner[place] == mine.rank);
-    BodyRows rows = rows_of_bodies(
-        state, owned, [&](std::uint64_t pair) { return mine.whole.pair_owner(pair, mine.whole.owner) == mine.rank; });
-    const std::vector<RankMessage> all = mine.ranks->gather(mine.rank == 0 ? RankMessage() : message_of(rows));
+    std::vector<std::uint8_t> sent;
+    for (const Index place : mine.place) sent.push_back(mine.whole.owner[place] == mine.rank);
+    std::vector<BodyRows> added;
+    for (Index batch = 0; batch < batches; ++batch) {
+        const std::vector<RankMessage> bodies = mine.ranks->gather(
+            mine.rank == 0 ? RankMessage() : message_of_batch(state, sent, batch, mine.rank, false));
+        for (std::size_t rank = 1; rank < bodies.size(); ++rank) added.push_back(rows_of_message(bodies[rank]));
+    }
     if (mine.rank != 0) return std::nullopt;
     World whole = copy_of_settled(state, {});
     WorldState& copy = WorldAccess::state_of(whole);
     copy.ranks.place = mine.place;
     copy.ranks.whole = mine.whole;
-    std::vector<BodyRows> added;
-    for (std::size_t rank = 1; rank < all.size(); ++rank) added.push_back(rows_of_message(all[rank]));
     std::vector<std::uint8_t> kept;
     for (const Index place : mine.place) {
         const std::int32_t owner = mine.whole.owner[place];

@@ -227,6 +227,7 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
         BodyRows rows = rows_of_bodies(world, sent, [&](std::uint64_t pair) {
             return whole.pair_owner(pair, whole.owner) == rank && whole.pair_owner(pair, change.owner()) == partner;
         });
+        if (partner != 0) copy_records(world.model, sent, rows);
         out.push_back(message_of(rows));
     }
     if (!partners.empty()) ranks.ranks->exchange(partners, out, in);

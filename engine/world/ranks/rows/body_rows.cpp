@@ -9,6 +9,7 @@
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/ranks/rows/compose_rows.h"
 #include "engine/world/ranks/rows/moved_contacts.h"
+#include "engine/world/ranks/rows/put_record.h"
 #include "engine/world/step/step.h"
 
 namespace skerry {
@@ -38,6 +39,11 @@ BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked,
     }
     rows.enabled_pairs = world.ranks.enabled_pairs;
     return rows;
+}
+
+void copy_records(const Model& model, std::span<const std::uint8_t> marked, BodyRows& to) {
+    for (std::size_t b = 0; b < marked.size(); ++b)
+        if (marked[b] != 0) to.records.push_back(model.body_records[b]);
 }
 
 namespace {
@@ -132,13 +138,19 @@ public:
             if (body != no_index) body = moves_.body_now[static_cast<std::size_t>(body)];
     }
 
-    void records() const {
+    void records(std::span<BodyRows> added) const {
         std::vector<BodyRecord>& store = world_.ranks.whole.records;
+        const auto record = [&](Index place) -> BodyRecord& { return store[static_cast<std::size_t>(place)]; };
         for (std::size_t b = 0; b < place_before_.size(); ++b)
-            store[static_cast<std::size_t>(place_before_[b])] = std::move(model_.body_records[b]);
+            record(place_before_[b]) = std::move(model_.body_records[b]);
+        for (BodyRows& rows : added)
+            for (std::size_t b = 0; b < rows.records.size(); ++b)
+                record(rows.place[b]) = std::move(rows.records[b]);
         model_.body_records.clear();
-        for (const Index place : world_.ranks.place)
-            model_.body_records.push_back(std::move(store[static_cast<std::size_t>(place)]));
+        for (const Index place : world_.ranks.place) model_.body_records.push_back(std::move(record(place)));
+        if (world_.ranks.rank == 0) return;
+        for (const Index place : place_before_)
+            if (world_.ranks.row_of(place) == no_index) record(place) = record_of_name(std::move(record(place).name));
     }
 
     void derived_columns() const {
@@ -254,7 +266,8 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                            .watched = rows.watch[0].body,
                            .kept = rows.watch[0].kept,
                            .look = rows.watch[0].look,
-                           .gives_common = false});
+                           .gives_common = false,
+                           .is_used_up = true});
     Model fresh;
     ranks.place = compose_rows(sources, ranks.whole, fresh);
     RowMoves& moves = sources[0].moves;
@@ -268,7 +281,7 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
     move_tables(fresh, model);
     const RowsReplaced replaced(world, before, place_before, moves);
     replaced.handles_and_links();
-    replaced.records();
+    replaced.records(added);
     replaced.derived_columns();
     replaced.search();
     for (std::size_t s = 1; s < sources.size(); ++s)
@@ -314,9 +327,11 @@ RankMessage message_of(BodyRows& rows) {
     RankMessage message;
     for_each_column(rows, [&](const AnyColumn& column) {
         const std::uint64_t count = column.size();
-        put_rows(std::span<const std::uint64_t>(&count, 1), message);
+        put_value(count, message);
         put_rows(std::span<const std::byte>(column.read(), count * column.type().bytes), message);
     });
+    put_value(rows.records.size(), message);
+    for (const BodyRecord& record : rows.records) put_record(record, message);
     return message;
 }
 
@@ -328,6 +343,8 @@ BodyRows rows_of_message(std::span<const std::byte> message) {
         column.resize(count);
         reader.take_rows(std::span(column.write(), count * column.type().bytes));
     });
+    rows.records.resize(reader.take<std::size_t>());
+    for (BodyRecord& record : rows.records) record = take_record(reader);
     SKERRY_CHECK(reader.at_end());
     return rows;
 }

@@ -25,7 +25,7 @@ struct FoundSelfCrossing {
 };
 
 /// Rows of bodies, of their attachments, and of the tables that join bodies (Model::for_each_joining). No row refers to
-/// a body that is not among them. Handles, records of bodies, colliders and materials are on every rank.
+/// a body that is not among them. Handles, colliders and materials are on every rank.
 struct BodyRows {
     Model model;                  // only these rows, node clusters and the columns of StepWatch
     Column<Index> place;          // by row of BodyTable (WholeWorld)
@@ -37,6 +37,8 @@ struct BodyRows {
     ContactTable contacts;  // contacts of the last step
     Column<FoundSelfCrossing> self_crossings;
     Column<std::uint64_t> enabled_pairs;  // RankState
+    // Records by row of BodyTable. Empty for rank 0, which keeps the records of all bodies.
+    std::vector<BodyRecord> records;
 };
 
 /// Contact data that are copied with rows of bodies: those of all pairs for which the function returns true. It gets
@@ -46,10 +48,12 @@ using WantsPair = std::function<bool(std::uint64_t pair)>;
 /// Returns copies of the rows of marked bodies of a settled world. The marked bodies must be complete units. `marked`:
 /// by row of BodyTable.
 BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked, const WantsPair& wants_pair);
+/// Adds the records of the marked bodies to their rows, for a rank other than 0.
+void copy_records(const Model& model, std::span<const std::uint8_t> marked, BodyRows& to);
 
 /// Removes all bodies of a settled world that are not marked, and adds bodies. Removes contact data of all pairs for
 /// which `keeps_pair` is false. Changes no other state and wakes no body. Afterwards the rows of all tables are in the
-/// order of the undivided world.
+/// order of the undivided world, and `added` is used up.
 void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::span<BodyRows> added,
                   const WantsPair& keeps_pair);
 

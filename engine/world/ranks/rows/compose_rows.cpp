@@ -13,13 +13,20 @@ namespace skerry {
 
 namespace {
 
+/// The rows of a range that a column has.
+std::span<const std::byte> bytes_of_rows(AnyColumn column, Range rows) {
+    const auto begin = static_cast<std::size_t>(rows.begin), end = static_cast<std::size_t>(rows.end);
+    const std::size_t has = std::min(end, column.size()), bytes = column.type().bytes;
+    if (begin >= has) return {};
+    return {column.read() + begin * bytes, (has - begin) * bytes};
+}
+
 /// Appends rows of a column to another column of the same type. Parts of the range beyond the last row are left out.
 void append_rows(AnyColumn from, Range rows, AnyColumn to) {
-    const auto begin = static_cast<std::size_t>(rows.begin), end = static_cast<std::size_t>(rows.end);
-    if (begin >= std::min(end, from.size())) return;
-    const std::size_t count = std::min(end, from.size()) - begin, first = to.size(), bytes = from.type().bytes;
-    to.resize(first + count);
-    std::memcpy(to.write() + first * bytes, from.read() + begin * bytes, count * bytes);
+    const std::span<const std::byte> added = bytes_of_rows(from, rows);
+    const std::size_t first = to.size(), bytes = to.type().bytes;
+    to.resize(first + added.size() / bytes);
+    if (!added.empty()) std::memcpy(to.write() + first * bytes, added.data(), added.size());
 }
 
 /// Appends a row with its lists of entries (lists_of).
@@ -36,6 +43,32 @@ void append_row_with_lists(Table& from, std::size_t row, Table& to) {
     }
 }
 
+/// A single column in the form of a table.
+struct ColumnTable {
+    Column<Index>& column;
+    void for_each_column(auto&& visit) { visit("", column); }
+};
+
+/// Frees a column of a table. `number`: number of the column in the order of for_each_column.
+void free_column(std::size_t number, auto& table) {
+    table.for_each_column([&](const char*, auto& column, auto...) {
+        if (number-- == 0) column = {};
+    });
+}
+
+/// Frees a column that columns_by_body_table lists at [table][number].
+void free_column(std::size_t table, std::size_t number, Model& model) {
+    SurfaceTables& surface = model.surface;
+    const auto free_in = [&](auto&... tables) {
+        std::size_t place = 0;
+        ((place++ == table ? free_column(number, tables) : void()), ...);
+    };
+    ColumnTable vertex_triangle{surface.vertex_triangle};
+    free_in(model.bodies, model.nodes, model.node_blocks, model.elements, model.element_nodes, surface.edges,
+            model.tetrahedra, surface.triangles, surface.vertices, model.bvh, vertex_triangle, model.bvh_leaves,
+            model.rigid_bodies, model.implicit_nodes);
+}
+
 /// A row of one of the sources, and its place in the order of the new rows.
 struct Pick {
     Index order;
@@ -50,7 +83,7 @@ public:
 
     Column<Index> run() {
         pick_bodies();
-        for (const Pick& pick : picks_) append_body(pick);
+        append_bodies();
         append_clusters();
         append_watch();
         append_attachments();
@@ -74,23 +107,49 @@ private:
         }
     }
 
-    void append_body(const Pick& pick) {
-        RowSource& source = sources_[pick.source];
+    /// Appends the bodies column by column, so that each column of a source can be freed before the next one is copied.
+    void append_bodies() {
         constexpr auto range_of = OfBodyTables<Range>::members();
         constexpr auto index_of = OfBodyTables<Index>::members();
-        const OfBodyTables<Range> old = rows_of_body(*source.model, pick.row);
-        OfBodyTables<Range> rows;
-        OfBodyTables<Index>& down = source.moves.down[pick.row];
-        const std::size_t new_row = to_.bodies.slot.size();
+        const auto down_of = [&](const Pick& pick) -> OfBodyTables<Index>& {
+            return sources_[pick.source].moves.down[pick.row];
+        };
+        std::vector<OfBodyTables<Range>> old, now(picks_.size());
+        for (const Pick& pick : picks_) old.push_back(rows_of_body(*sources_[pick.source].model, pick.row));
         for (std::size_t table = 0; table < columns_.size(); ++table) {
-            const Range of_old = old.*range_of[table];
-            const auto begin = static_cast<Index>(columns_[table].front().size());
-            for (std::size_t c = 0; c < columns_[table].size(); ++c)
-                append_rows(source.columns[table][c], of_old, columns_[table][c]);
-            rows.*range_of[table] = {begin, begin + of_old.size()};
-            down.*index_of[table] = of_old.begin - begin;
+            Index end = 0;
+            for (std::size_t row = 0; row < picks_.size(); ++row) {
+                const Range rows = old[row].*range_of[table];
+                now[row].*range_of[table] = {end, end + rows.size()};
+                down_of(picks_[row]).*index_of[table] = rows.begin - end;
+                end += rows.size();
+            }
+            for (std::size_t c = 0; c < columns_[table].size(); ++c) {
+                append_column(table, c, old);
+                for (const RowSource& source : sources_)
+                    if (source.is_used_up && table != 0) free_column(table, c, *source.model);
+            }
         }
-        renumber_rows_of_body(to_, new_row, rows, down);
+        for (std::size_t row = 0; row < picks_.size(); ++row)
+            renumber_rows_of_body(to_, row, now[row], down_of(picks_[row]));
+    }
+
+    /// `rows`: rows of each picked body in the tables of its source.
+    void append_column(std::size_t table, std::size_t c, std::span<const OfBodyTables<Range>> rows) {
+        constexpr auto range_of = OfBodyTables<Range>::members();
+        std::vector<std::span<const std::byte>> parts;
+        std::size_t total = 0;
+        for (std::size_t row = 0; row < picks_.size(); ++row) {
+            parts.push_back(bytes_of_rows(sources_[picks_[row].source].columns[table][c], rows[row].*range_of[table]));
+            total += parts.back().size();
+        }
+        const AnyColumn to = columns_[table][c];
+        to.resize(total / to.type().bytes);  // at once, so that the column does not grow in steps
+        std::byte* end = to.write();
+        for (const std::span<const std::byte> part : parts) {
+            if (!part.empty()) std::memcpy(end, part.data(), part.size());
+            end += part.size();
+        }
     }
 
     void append_clusters() {

@@ -20,7 +20,8 @@ struct RowSource {
         marked;           // by row of BodyTable: nonzero for a body that the new model gets; empty: all
     Index watched, kept;  // StepWatch::body and StepWatch::kept
     StepEvaluation look;
-    bool gives_common;  // true: also gives the rows that join no body
+    bool gives_common;        // true: also gives the rows that join no body
+    bool is_used_up = false;  // true: the columns of its bodies are freed as soon as they are copied
     RowMoves moves{};   // new numbers of the rows; the lists of removed rows are not set
     std::vector<std::vector<AnyColumn>> columns = columns_by_body_table(*model);
 

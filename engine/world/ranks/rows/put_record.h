@@ -1,0 +1,50 @@
+// Values, lists and records of bodies in messages between ranks.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "engine/world/ranks/regions/rank_mail.h"
+#include "engine/world/state/model.h"
+
+namespace skerry {
+
+/// True for a vector, a column or a text of rows of plain data.
+template <class List>
+concept RowList = requires(List& list) {
+    list.clear();
+    list.resize(0);
+    list.data();
+};
+
+/// Appends one value of plain data, or the number of the rows of a list and its rows.
+template <class T>
+void put_value(const T& value, RankMessage& message) {
+    if constexpr (RowList<T>) {
+        put_value(static_cast<std::uint64_t>(value.size()), message);
+        put_rows(std::span<const typename T::value_type>(value.data(), value.size()), message);
+    } else {
+        put_rows(std::span<const T>(&value, 1), message);
+    }
+}
+
+/// Reads a value or a list that put_value has written.
+template <class T>
+void take_value(MailReader& message, T& value) {
+    if constexpr (RowList<T>) {
+        value.resize(message.take<std::uint64_t>());
+        message.take_rows(std::span<typename T::value_type>(value.data(), value.size()));
+    } else {
+        message.take_rows(std::span<T>(&value, 1));
+    }
+}
+
+/// Appends a record to a message, without the surface that is drawn in place of the body. Only rank 0 draws bodies.
+void put_record(const BodyRecord& record, RankMessage& message);
+/// Reads a record that put_record has written.
+BodyRecord take_record(MailReader& message);
+/// Returns the record of a body that a rank does not hold.
+BodyRecord record_of_name(std::string name);
+
+}  // namespace skerry
