@@ -66,21 +66,22 @@ void rename_world(RecordedProbe& probe, std::uint32_t number) {
 
 Json to_json(const RunMemory& memory) {
     return object_of({{"scene", memory.scene.string()},
-            {"assignments", memory.assignments},
-            {"seconds", memory.seconds},
-            {"frame_step", memory.frame_step},
-            {"samples", memory.samples},
-            {"probe_step", memory.probe_step},
-            {"frame", memory.frame},
-            {"sample", memory.sample},
-            {"seconds_wall", memory.seconds_wall},
-            {"peak_kinetic_energy", memory.peak_kinetic_energy},
-            {"probes", memory.probes}});
+                      {"assignments", memory.assignments},
+                      {"seconds", memory.seconds},
+                      {"frame_step", memory.frame_step},
+                      {"samples", memory.samples},
+                      {"probe_step", memory.probe_step},
+                      {"frame", memory.frame},
+                      {"sample", memory.sample},
+                      {"seconds_wall", memory.seconds_wall},
+                      {"peak_kinetic_energy", memory.peak_kinetic_energy},
+                      {"probes", memory.probes}});
 }
 
 RunMemory memory_of(const std::filesystem::path& file, const std::string& text) {
     if (text.empty())
-        refuse_restart(file, "a saved world that contains no state of a run", "a file written by `skerry run --checkpoint`");
+        refuse_restart(file, "a saved world that contains no state of a run",
+                       "a file written by `skerry run --checkpoint`");
     RunMemory memory;
     try {
         const Json json = Json::parse(text);
@@ -97,18 +98,19 @@ RunMemory memory_of(const std::filesystem::path& file, const std::string& text) 
         memory.probes = json.at("probes");
     } catch (const std::exception& error) {
         refuse_restart(file, std::string("an unreadable state of a run (") + error.what() + ")",
-               "a file written by `skerry run --checkpoint`", damaged);
+                       "a file written by `skerry run --checkpoint`", damaged);
     }
     const bool good = memory.frame_step > 0 && std::isfinite(memory.frame_step) && memory.samples > 0 &&
                       memory.probe_step >= 0 && memory.frame >= 0 && memory.sample >= 0 &&
                       memory.sample < memory.samples;
     if (!good)
-        refuse_restart(file,
-               "frame " + std::to_string(memory.frame) + ", sample " + std::to_string(memory.sample) + " of " +
-                   std::to_string(memory.samples) + " and a frame step of " + Json(memory.frame_step).dump() + " s",
-               "frame and sample numbers of at least 0, a sample number below the number of samples, and a positive "
-               "frame step",
-               damaged);
+        refuse_restart(
+            file,
+            "frame " + std::to_string(memory.frame) + ", sample " + std::to_string(memory.sample) + " of " +
+                std::to_string(memory.samples) + " and a frame step of " + Json(memory.frame_step).dump() + " s",
+            "frame and sample numbers of at least 0, a sample number below the number of samples, and a positive "
+            "frame step",
+            damaged);
     return memory;
 }
 

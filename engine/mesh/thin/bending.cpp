@@ -140,8 +140,8 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
         }
     });
 
-    // Columns under the same moment bend in inverse proportion to their stiffness, so their compliances are averaged. In
-    // a mean of stiffnesses a few slivers would count more than all other columns.
+    // Columns under the same moment bend in inverse proportion to their stiffness, so their compliances are averaged.
+    // In a mean of stiffnesses a few slivers would count more than all other columns.
     std::vector<Real> energy(part_count, 0), compliance(part_count, 0);
     for (std::size_t c = 0; c < columns.size(); ++c) {
         if (!(exact[c] > 0)) continue;
