@@ -300,8 +300,7 @@ Scene begin_run(const RunOptions& options, const ScenePlan& plan, std::optional<
     memory.samples = beginning.plan.samples;
     memory.probe_step = beginning.plan.probe_step;
     for (std::string& note : plan_notes(plan)) result.notes.push_back(std::move(note));
-    if (const std::string note =
-            stiff_note(plan, world, beginning.plan.steps(world), beginning.plan.longest_call());
+    if (const std::string note = stiff_note(plan, world, beginning.plan.steps(world), beginning.plan.longest_call());
         !note.empty())
         result.notes.push_back(note);
     if (!options.quiet) print_lines("NOTE", result.notes);

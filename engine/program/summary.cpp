@@ -156,17 +156,15 @@ std::string warning_lines(const RunResult& result) {
 /// Line about the processes that shared the run. Empty for a single one.
 std::string ranks_line(const RanksReport& ranks) {
     if (ranks.count == 1) return {};
-    return summary_line("ranks", count_of(static_cast<std::size_t>(ranks.count), "rank", "ranks") + " on " +
-                                     count_of(static_cast<std::size_t>(ranks.hosts), "host", "hosts") + "; " +
-                                     short_number(ranks.messages) + " messages with " + short_number(ranks.bytes) +
-                                     " bytes and " + short_number(ranks.reductions) +
-                                     " reductions in a step on average; waiting takes " + percent(ranks.waiting) +
-                                     " of the time, and the busiest rank computes " + short_number(ranks.imbalance) +
-                                     " times as long as the mean; memory of rank 0 " +
-                                     with_unit(ranks.peak_memory.front(), "B") + ", of the others at most " +
-                                     with_unit(*std::max_element(ranks.peak_memory.begin() + 1,
-                                                                 ranks.peak_memory.end()),
-                                               "B"));
+    return summary_line(
+        "ranks", count_of(static_cast<std::size_t>(ranks.count), "rank", "ranks") + " on " +
+                     count_of(static_cast<std::size_t>(ranks.hosts), "host", "hosts") + "; " +
+                     short_number(ranks.messages) + " messages with " + short_number(ranks.bytes) + " bytes and " +
+                     short_number(ranks.reductions) + " reductions in a step on average; waiting takes " +
+                     percent(ranks.waiting) + " of the time, and the busiest rank computes " +
+                     short_number(ranks.imbalance) + " times as long as the mean; memory of rank 0 " +
+                     with_unit(ranks.peak_memory.front(), "B") + ", of the others at most " +
+                     with_unit(*std::max_element(ranks.peak_memory.begin() + 1, ranks.peak_memory.end()), "B"));
 }
 
 /// Lines with statistics of the steps. Empty if no step was made.

@@ -1,6 +1,6 @@
 // Bodies of a divided world: their owners, and their moves between ranks.
-#include <catch2/catch.hpp>
 #include <atomic>
+#include <catch2/catch.hpp>
 #include <mutex>
 #include <optional>
 #include <stdexcept>

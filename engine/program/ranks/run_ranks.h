@@ -46,8 +46,8 @@ public:
     Json of_first(const Json& mine) const;
     /// Returns the options for this rank. Throws SceneError for outputs that several ranks cannot write.
     RunOptions options_for(const RunOptions& asked) const;
-    /// Divides the world of the scene of rank 0 among the ranks, and returns the part of this rank. Throws SceneError if
-    /// the world holds something that cannot be divided. Afterwards the world of the scene is valid on rank 0 alone,
+    /// Divides the world of the scene of rank 0 among the ranks, and returns the part of this rank. Throws SceneError
+    /// if the world holds something that cannot be divided. Afterwards the world of the scene is valid on rank 0 alone,
     /// after a call of whole().
     World& divide(Scene& scene, OwnerMap owners);
     /// Collective. Returns the whole world on rank 0, null on the other ranks. It is gathered if there was a call of
@@ -79,7 +79,7 @@ private:
     bool divided_ = false, is_gathered_ = false;
     Scene* scene_ = nullptr;
     std::optional<World> part_;
-    RankTraffic before_, in_steps_;  // at the last call of before_advance; sums over all calls of advance
+    RankTraffic before_, in_steps_;          // at the last call of before_advance; sums over all calls of advance
     std::array<std::string, 2> last_words_;  // the text in use, and that before it
 };
 

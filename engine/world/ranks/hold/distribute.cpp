@@ -63,9 +63,8 @@ RankMessage message_of_batch(WorldState& world, std::span<const std::uint8_t> ma
     std::vector<std::uint8_t> sent;
     for (std::size_t b = 0; b < marked.size(); ++b)
         sent.push_back(marked[b] != 0 && whole.unit[world.ranks.place[b]] % batches == batch);
-    BodyRows rows = rows_of_bodies(world, sent, [&](std::uint64_t pair) {
-        return batch == 0 && whole.pair_owner(pair, whole.owner) == pairs_of;
-    });
+    BodyRows rows = rows_of_bodies(
+        world, sent, [&](std::uint64_t pair) { return batch == 0 && whole.pair_owner(pair, whole.owner) == pairs_of; });
     if (with_records) copy_records(world.model, sent, rows);
     return message_of(rows);
 }
@@ -153,8 +152,7 @@ std::vector<BodyExtent> send_parts(World& world, Ranks& ranks, const RankSetting
     message_of_first(ranks, facts);
     const auto held_by = [&](int rank) {
         std::vector<std::uint8_t> held;
-        for (const std::vector<int>& holders : whole.holders)
-            held.push_back(std::ranges::binary_search(holders, rank));
+        for (const std::vector<int>& holders : whole.holders) held.push_back(std::ranges::binary_search(holders, rank));
         return held;
     };
     for (int rank = 1; rank < ranks.size(); ++rank)
@@ -179,8 +177,7 @@ std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSetti
     take_value(reader, refusal);
     if (!refusal.empty()) throw SceneError(refusal);
     const Settings own = world.settings();
-    std::function<void(const StepReport&)> step_watch =
-        std::move(WorldAccess::state_of(world).record.step_watch);
+    std::function<void(const StepReport&)> step_watch = std::move(WorldAccess::state_of(world).record.step_watch);
     world = World(own);  // frees the bodies
     std::vector<BodyRows> rows;
     for (Index batch = 0; batch < batches; ++batch) {
@@ -196,7 +193,8 @@ std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSetti
     WholeWorld& whole = state.ranks.whole;
     std::vector<BodyExtent> extents;
     for_each_fact(whole, extents, state.model, [&](auto& fact) { take_value(reader, fact); });
-    state.model.for_each_joining([&](const char*, auto&, auto&) { take_value(reader, whole.joining_place.emplace_back()); });
+    state.model.for_each_joining(
+        [&](const char*, auto&, auto&) { take_value(reader, whole.joining_place.emplace_back()); });
     take_value(reader, whole.joining_place.emplace_back());  // of the attachments
     state.model.for_each_joining([&](const char*, auto&, auto& map) {
         for (auto count = reader.take<std::size_t>(); count > 0; --count) {
@@ -242,8 +240,8 @@ std::optional<World> gathered(const World& world) {
     for (const Index place : mine.place) sent.push_back(mine.whole.owner[place] == mine.rank);
     std::vector<BodyRows> added;
     for (Index batch = 0; batch < batches; ++batch) {
-        const std::vector<RankMessage> bodies = mine.ranks->gather(
-            mine.rank == 0 ? RankMessage() : message_of_batch(state, sent, batch, mine.rank, false));
+        const std::vector<RankMessage> bodies =
+            mine.ranks->gather(mine.rank == 0 ? RankMessage() : message_of_batch(state, sent, batch, mine.rank, false));
         for (std::size_t rank = 1; rank < bodies.size(); ++rank) added.push_back(rows_of_message(bodies[rank]));
     }
     if (mine.rank != 0) return std::nullopt;

@@ -144,8 +144,7 @@ public:
         for (std::size_t b = 0; b < place_before_.size(); ++b)
             record(place_before_[b]) = std::move(model_.body_records[b]);
         for (BodyRows& rows : added)
-            for (std::size_t b = 0; b < rows.records.size(); ++b)
-                record(rows.place[b]) = std::move(rows.records[b]);
+            for (std::size_t b = 0; b < rows.records.size(); ++b) record(rows.place[b]) = std::move(rows.records[b]);
         model_.body_records.clear();
         for (const Index place : world_.ranks.place) model_.body_records.push_back(std::move(record(place)));
         if (world_.ranks.rank == 0) return;

@@ -22,7 +22,7 @@ struct RowSource {
     StepEvaluation look;
     bool gives_common;        // true: also gives the rows that join no body
     bool is_used_up = false;  // true: the columns of its bodies are freed as soon as they are copied
-    RowMoves moves{};   // new numbers of the rows; the lists of removed rows are not set
+    RowMoves moves{};         // new numbers of the rows; the lists of removed rows are not set
     std::vector<std::vector<AnyColumn>> columns = columns_by_body_table(*model);
 
     bool gives(std::size_t body) const { return marked.empty() || marked[body] != 0; }
