@@ -25,10 +25,10 @@ class CheckpointTest(ProgramCase):
         return json.loads(stats.read_text())
 
     def same_run(self, found, expected):
-        """All that does not tell of clocks, of threads, or of how the run was cut into parts. Errors are estimated
+        """All that does not tell of clocks, threads, memory, or of how the run was cut into parts. Errors are estimated
         since the restart."""
         own = {"seconds_wall", "seconds_load", "seconds_setup", "seconds_output", "real_time_factor", "stages",
-               "restarted_at", "threads", "backend", "checkpoints", "errors"}
+               "restarted_at", "threads", "backend", "ranks", "checkpoints", "errors"}
         for key in expected.keys() - own:
             self.assertEqual(found[key], expected[key], key)
 

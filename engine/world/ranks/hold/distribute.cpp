@@ -125,7 +125,7 @@ std::vector<std::byte> bytes_without_bodies(const WorldState& state) {
     return world.to_bytes();
 }
 
-/// Rank 0: divides its world, sends all other ranks their bodies, and drops those that it does not hold.
+/// Divides the world of rank 0, sends all other ranks their bodies, and drops those that rank 0 does not hold.
 std::vector<BodyExtent> send_parts(World& world, Ranks& ranks, const RankSettings& settings) {
     std::vector<BodyExtent> extents;
     RankMessage facts;
@@ -168,8 +168,8 @@ std::vector<BodyExtent> send_parts(World& world, Ranks& ranks, const RankSetting
     return extents;
 }
 
-/// Another rank: replaces its world by its part of the world of rank 0. Keeps the backend, the number of threads and
-/// the callback of the steps.
+/// Replaces the world of another rank by its part of the world of rank 0. Only the backend, the number of threads and
+/// the callback of the steps stay.
 std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSettings& settings) {
     const RankMessage facts = message_of_first(ranks, {});
     MailReader reader(facts);
@@ -178,7 +178,7 @@ std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSetti
     if (!refusal.empty()) throw SceneError(refusal);
     const Settings own = world.settings();
     std::function<void(const StepReport&)> step_watch = std::move(WorldAccess::state_of(world).record.step_watch);
-    world = World(own);  // frees the bodies
+    world = World(own);  // frees bodies that the caller has added
     std::vector<BodyRows> rows;
     for (Index batch = 0; batch < batches; ++batch) {
         constexpr int first = 0;

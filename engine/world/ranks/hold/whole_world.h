@@ -29,7 +29,7 @@ struct WholeWorld {
     // First place of the unit of the body. A *unit* is a set of bodies that rows other than contacts join. All bodies
     // of a unit have the same owner and the same holders.
     Column<Index> unit;
-    std::vector<BodyRecord> records;   // records of the bodies that this rank does not hold
+    std::vector<BodyRecord> records;   // of bodies that this rank does not hold: complete on rank 0, else names
     std::vector<Index> place_of_slot;  // by handle slot: place of the body, or no_index
     // Row in the undivided world of each row that joins bodies: by table of Model::for_each_joining and handle slot.
     // The last list is that of the attachments.
