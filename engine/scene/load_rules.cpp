@@ -1,36 +1,32 @@
 // Keys of loads and force fields in a scene file, and the keys that each kind accepts.
-#include <algorithm>
-
 #include "engine/scene/scene_rules.h"
 
 namespace skerry {
 
 namespace {
 
-struct KeysOfLoad {
-    std::vector<std::string> required, optional;
+struct KeysOfLoad : KeysOfKind {
     bool has_part = false;  // true if the load acts on a part of a body
 };
 
 KeysOfLoad keys_of_load(LoadKind kind) {
     switch (kind) {
         case LoadKind::force:
-            return {{"body", "force"}, {"scale"}, true};
+            return {{{"body", "force"}, {"scale"}}, true};
         case LoadKind::traction:
-            return {{"body", "traction"}, {"area", "scale"}, true};
+            return {{{"body", "traction"}, {"area", "scale"}}, true};
         case LoadKind::acceleration:
-            return {{"acceleration"}, {"body", "scale"}};
+            return {{{"acceleration"}, {"body", "scale"}}};
         case LoadKind::gravity:
-            return {{"scale"}, {"body"}};
+            return {{{"scale"}, {"body"}}};
         case LoadKind::drag:
-            return {{"rate"}, {"body", "wind", "scale"}};
+            return {{{"rate"}, {"body", "wind", "scale"}}};
     }
     return {};
 }
 
 void check_load_keys(const Place& place, const LoadEntry& load) {
     KeysOfLoad keys = keys_of_load(load.kind);
-    const std::string of = "a load of the kind " + in_quotes(name_of(load.kind));
     const std::vector<std::string> part{"set", "box", "nodes"};
     if (keys.has_part) keys.optional.insert(keys.optional.end(), part.begin(), part.end());
     const std::vector<std::pair<std::string, bool>> given{{"body", load.body.has_value()},
@@ -44,15 +40,7 @@ void check_load_keys(const Place& place, const LoadEntry& load) {
                                                           {"rate", load.rate.has_value()},
                                                           {"wind", load.wind.has_value()},
                                                           {"scale", load.scale.has_value()}};
-    for (const auto& [key, is_given] : given) {
-        const bool required = std::ranges::find(keys.required, key) != keys.required.end();
-        if (required && !is_given)
-            place.refuse("no key " + in_quotes(key), "the key " + in_quotes(key) + ", which " + of + " requires");
-        if (!is_given || required || std::ranges::find(keys.optional, key) != keys.optional.end()) continue;
-        std::vector<std::string> possible = keys.required;
-        possible.insert(possible.end(), keys.optional.begin(), keys.optional.end());
-        place.key(key).refuse("a key that is not used by " + of, "one of the keys " + listed(possible));
-    }
+    check_keys_of_kind(place, "a load of the kind " + in_quotes(name_of(load.kind)), keys, given);
     if (keys.has_part && !load.set && !load.box && load.nodes.empty())
         place.refuse("none of the keys " + listed(part), "one of them, to choose the part of the body that is loaded");
 }

@@ -7,11 +7,7 @@ namespace skerry {
 
 namespace {
 
-struct KeysOf {
-    std::vector<std::string> required, optional;
-};
-
-KeysOf keys_of(ProbeQuantity quantity) {
+KeysOfKind keys_of(ProbeQuantity quantity) {
     switch (quantity) {
         case ProbeQuantity::contacts:
             return {{"body"}, {"box", "set"}};
@@ -42,8 +38,6 @@ KeysOf keys_of(ProbeQuantity quantity) {
 }
 
 void check_keys(const Place& place, const ProbeEntry& probe) {
-    const KeysOf keys = keys_of(probe.quantity);
-    const std::string of = "the quantity " + in_quotes(name_of(probe.quantity));
     const std::vector<std::pair<std::string, bool>> given{
         {"body", probe.body.has_value()},     {"collider", probe.collider.has_value()},
         {"by", probe.by.has_value()},         {"box", probe.box.has_value()},
@@ -51,17 +45,8 @@ void check_keys(const Place& place, const ProbeEntry& probe) {
         {"joint", probe.joint.has_value()},   {"set", probe.set.has_value()},
         {"cable", probe.cable.has_value()},   {"cavity", probe.cavity.has_value()},
         {"spring", probe.spring.has_value()}, {"tie", probe.tie.has_value()}};
-    for (const auto& [key, is_given] : given) {
-        const bool required = std::ranges::find(keys.required, key) != keys.required.end();
-        if (required && !is_given)
-            place.refuse("no key " + in_quotes(key), "the key " + in_quotes(key) + ", which " + of + " requires");
-        if (!is_given || required || std::ranges::find(keys.optional, key) != keys.optional.end()) continue;
-        std::vector<std::string> possible = keys.required;
-        possible.insert(possible.end(), keys.optional.begin(), keys.optional.end());
-        place.key(key).refuse("a key that is not used by " + of, possible.empty()
-                                                                     ? "only the keys \"name\" and \"quantity\""
-                                                                     : "one of the keys " + listed(possible));
-    }
+    check_keys_of_kind(place, "the quantity " + in_quotes(name_of(probe.quantity)), keys_of(probe.quantity), given,
+                       "only the keys \"name\" and \"quantity\"");
     if (probe.quantity == ProbeQuantity::force && probe.body.has_value() == probe.collider.has_value())
         place.refuse(probe.body ? "both \"body\" and \"collider\"" : "neither \"body\" nor \"collider\"",
                      "exactly one of the two keys, which names the object on which the force acts");

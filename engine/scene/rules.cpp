@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/scene/scene_rules.h"
+
 namespace skerry {
 
 namespace {
@@ -148,6 +150,20 @@ Json RuleTable::schema(SchemaBook& book) const {
     for (const KeyGroup& group : groups_) all.push_back(group_schema(group));
     if (!all.empty()) schema["allOf"] = all;
     return schema;
+}
+
+void check_keys_of_kind(const Place& place, const std::string& kind, const KeysOfKind& keys,
+                        const std::vector<std::pair<std::string, bool>>& given, const char* no_keys) {
+    for (const auto& [key, is_given] : given) {
+        const bool required = std::ranges::find(keys.required, key) != keys.required.end();
+        if (required && !is_given)
+            place.refuse("no key " + in_quotes(key), "the key " + in_quotes(key) + ", which " + kind + " requires");
+        if (!is_given || required || std::ranges::find(keys.optional, key) != keys.optional.end()) continue;
+        std::vector<std::string> possible = keys.required;
+        possible.insert(possible.end(), keys.optional.begin(), keys.optional.end());
+        place.key(key).refuse("a key that is not used by " + kind,
+                              possible.empty() ? no_keys : "one of the keys " + listed(possible));
+    }
 }
 
 }  // namespace skerry

@@ -147,6 +147,16 @@ void add_surface_keys(Rule<Entry>& rule, const KeyDoc& friction, const KeyDoc& r
         });
 }
 
+/// Keys that an object of one kind must have, and further ones that it may have.
+struct KeysOfKind {
+    std::vector<std::string> required, optional;
+};
+/// Throws SceneError unless the keys of an object suit its kind. `given`: the keys that only some kinds use, and
+/// whether the object has them. `kind`: such as: the quantity "force". `no_keys`: expected if the kind uses none of
+/// them.
+void check_keys_of_kind(const Place& place, const std::string& kind, const KeysOfKind& keys,
+                        const std::vector<std::pair<std::string, bool>>& given, const char* no_keys = "");
+
 /// Documentation of the keys "set", "box" and "nodes" of an entry that derives from PartEntry.
 extern const KeyDoc part_set_doc, part_box_doc, part_nodes_doc;
 
