@@ -323,6 +323,7 @@ RunResult simulate(const RunOptions& asked, RunRanks& ranks) {
     if (!outputs) return result;
 
     result.report = world.report();
+    result.ranks.complete(result.report);
     result.thin_parts = thin_parts(plan, world, result.errors);
     result.contact_areas = contact_area_texts(plan, world, result.errors);
     result.broken_ties = broken_ties(plan, world);
@@ -357,8 +358,9 @@ int conclude(const RunResult& result, const RunOptions& options) {
 }  // namespace
 
 int run(const RunOptions& options) {
-    RunRanks ranks = RunRanks::join();
+    RunRanks ranks;
     try {
+        ranks = RunRanks::join();
         const RunResult result = simulate(options, ranks);
         const int code_of_signal = result.stopped_by != 0 ? exit_signal + result.stopped_by : exit_ok;
         return ranks.last_code(ranks.is_first() ? conclude(result, options) : code_of_signal);

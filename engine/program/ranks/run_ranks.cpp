@@ -73,6 +73,30 @@ std::vector<Json> gather_everywhere(Ranks& ranks, const Json& mine) {
     return all;
 }
 
+Json work_of(const WorldReport& report) {
+    Json stages = Json::object();
+    for (const StageReport& stage : report.stages) stages[stage.name] = {stage.seconds, stage.runs, stage.skipped};
+    return {{"stages", stages},
+            {"broad_searches", report.broad_searches},
+            {"pair_searches", report.pair_searches},
+            {"candidates", report.candidates},
+            {"inline_steps", report.inline_steps}};
+}
+
+void add_work(const Json& of_rank, RankWork& sum) {
+    for (const auto& [name, stage] : of_rank.at("stages").items()) {
+        auto known = std::ranges::find(sum.stages, name, &StageReport::name);
+        if (known == sum.stages.end()) known = sum.stages.insert(known, {.name = name});
+        known->seconds += stage[0].get<double>();
+        known->runs += stage[1].get<std::uint64_t>();
+        known->skipped += stage[2].get<std::uint64_t>();
+    }
+    sum.broad_searches += of_rank.at("broad_searches").get<std::uint64_t>();
+    sum.pair_searches += of_rank.at("pair_searches").get<std::uint64_t>();
+    sum.candidates += of_rank.at("candidates").get<std::uint64_t>();
+    sum.inline_steps += of_rank.at("inline_steps").get<std::uint64_t>();
+}
+
 void take_larger(std::byte* into, const std::byte* from) {
     int a = 0, b = 0;
     std::memcpy(&a, into, sizeof a);
@@ -110,6 +134,9 @@ void RunRanks::agree(const Json& mine) const {
         const std::string who = rank_name(static_cast<std::size_t>(first - all.begin()), first->at("host"));
         throw AgreedError(is_alike ? text : who + ": " + text, first->at("code"));
     }
+    for (const Json& rank : all)
+        if (const int number = rank.value("signal", 0); number != 0)
+            throw AgreedError("stopped by a signal before the start", exit_signal + number);
     for (std::size_t r = 1; r < all.size(); ++r)
         for (const auto& [fact, expected] : all[0].at("alike").items())
             if (const Json& found = all[r].at("alike").at(fact); found != expected)
@@ -129,6 +156,7 @@ void RunRanks::compare_starts(const World& world, const std::filesystem::path& s
                               std::span<const std::string> assignments) {
     if (!several()) return;
     agree({{"host", host_name()},
+           {"signal", static_cast<int>(caught_signal)},
            {"alike",
             {{"program", SKERRY_VERSION " with the hash " + hash_of_text(file_content("/proc/self/exe"))},
              {"command line", command_line()},
@@ -177,15 +205,25 @@ bool RunRanks::any(bool mine) const {
     return last_code(mine ? 1 : 0) != 0;
 }
 
+void RanksReport::complete(WorldReport& world) const {
+    if (count == 1) return;
+    world.stages = work.stages;
+    world.broad_searches = work.broad_searches;
+    world.pair_searches = work.pair_searches;
+    world.candidates = work.candidates;
+    world.inline_steps = work.inline_steps;
+}
+
 RanksReport RunRanks::report(double wall, double waiting, std::uint64_t steps) const {
-    if (!several() || steps == 0) return {};
+    if (!several()) return {};
     const RankTraffic& traffic = ranks_->traffic();
     const std::vector<Json> all = gather_everywhere(*ranks_, {{"host", host_name()},
                                                               {"messages", traffic.messages},
                                                               {"bytes", traffic.bytes},
                                                               {"wall", wall},
-                                                              {"waiting", waiting}});
-    const auto count = static_cast<double>(steps);
+                                                              {"waiting", waiting},
+                                                              {"work", work_of(part_->report())}});
+    const auto count = static_cast<double>(std::max<std::uint64_t>(steps, 1));
     RanksReport report{.count = ranks_->size(), .reductions = static_cast<double>(traffic.reductions) / count};
     std::set<std::string> hosts;
     double longest = 0, sum = 0;
@@ -197,6 +235,7 @@ RanksReport RunRanks::report(double wall, double waiting, std::uint64_t steps) c
         if (computed + waited > 0) report.waiting += waited / (computed + waited) / report.count;
         longest = std::max(longest, computed);
         sum += computed;
+        add_work(rank["work"], report.work);
     }
     report.hosts = static_cast<int>(hosts.size());
     if (sum > 0) report.imbalance = longest * report.count / sum;
@@ -212,6 +251,7 @@ void RunRanks::set_last_words(std::string text) {
 
 int RunRanks::fail(const std::exception& error) {
     const auto* agreed = dynamic_cast<const AgreedError*>(&error);
+    if (!several() && !is_first_process()) return exit_ok;
     if (!several() || agreed != nullptr) {
         if (is_first()) std::cerr << "skerry: " << error.what() << std::endl;
         return agreed != nullptr ? agreed->code : code_of(error);
@@ -233,9 +273,10 @@ int RunRanks::last_code(int mine) const {
     return mine;
 }
 
-bool is_one_process(const std::string& command) {
+void require_one_process(const std::string& command) {
+    if (command == "run" || command == "sweep") return;
     const Share tasks = task_share(std::getenv);
-    if (tasks.of > 1 && tasks.rank == 0)
+    if (tasks.of > 1)
         Complaint{.file = {},
                   .object = tasks.said_by,
                   .field = {},
@@ -243,7 +284,24 @@ bool is_one_process(const std::string& command) {
                   .expected = "one process",
                   .hint = "only `skerry run` and `skerry sweep` share their work among processes"}
             .raise();
-    return tasks.of == 1;
+}
+
+bool is_first_process() {
+    try {
+        return task_share(std::getenv).rank == 0;
+    } catch (const SceneError&) {
+        return true;  // the variables of the launcher are not readable, which is then the error to report
+    }
+}
+
+int fail_together(const SceneError& error) {
+    RunRanks ranks;
+    try {
+        ranks = RunRanks::join();
+    } catch (const std::exception&) {
+        // Processes that MPI does not connect cannot compare their errors. The first one reports its own.
+    }
+    return ranks.fail(error);
 }
 
 }  // namespace skerry

@@ -2,19 +2,29 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/program/commands.h"
 #include "engine/scene/place.h"
 #include "jobs/ranks/ranks.h"
+#include "skerry/error.h"
+#include "skerry/report.h"
 #include "skerry/scene.h"
 
 namespace skerry {
+
+/// Sums over the ranks of the values of WorldReport that each rank counts for itself.
+struct RankWork {
+    std::vector<StageReport> stages;
+    std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0, inline_steps = 0;
+};
 
 /// Comparison of the ranks of a run, for its report.
 struct RanksReport {
@@ -22,6 +32,10 @@ struct RanksReport {
     double messages = 0, bytes = 0, reductions = 0;  // per step; messages and bytes are sums over all ranks
     double waiting = 0;                              // share of the wall time of the steps, mean over the ranks
     double imbalance = 1;                            // longest time that a rank computes, over the mean of all ranks
+    RankWork work{};                                 // empty if there is one rank
+
+    /// Replaces the work of rank 0 in the report of the whole world by the work of all ranks.
+    void complete(WorldReport& world) const;
 };
 
 /// The ranks that make a run together. The world is divided among them. Rank 0 alone reports and writes files, for
@@ -38,7 +52,8 @@ public:
     bool is_first() const { return !several() || ranks_->rank() == 0; }
 
     /// Throws an error on all ranks unless all of them run the same program with the same options, and have read the
-    /// same files. `scene` and `assignments`: scene file with the changes by options.
+    /// same files. Does so, too, if a signal has reached one of them, whose world may then not be at rest. `scene` and
+    /// `assignments`: scene file with the changes by options.
     void compare_starts(const World& world, const std::filesystem::path& scene,
                         std::span<const std::string> assignments);
     /// Returns the options for this rank. Throws SceneError for outputs that several ranks cannot write.
@@ -64,7 +79,8 @@ public:
     /// Sets the text that rank 0 writes to standard error if the job is ended, because another rank has failed.
     void set_last_words(std::string text);
     /// Handles an error that ended the run of this rank, and returns the exit code. If the others cannot know the
-    /// error, this function ends them all.
+    /// error, this function ends them all. If MPI does not connect the processes, the first one reports its error, and
+    /// the others succeed: a launcher would end the first one when another fails.
     int fail(const std::exception& error);
     /// Collective. Returns the largest exit code of all ranks.
     int last_code(int mine) const;
@@ -81,8 +97,12 @@ private:
     std::array<std::string, 2> last_words_;  // the text in use, and that before it
 };
 
-/// Returns true unless mpirun or srun has started several processes. Then it returns false, and throws SceneError in
-/// one of them. `command`: name of a command that cannot share its work.
-bool is_one_process(const std::string& command);
+/// Throws SceneError if mpirun or srun has started several processes of a command that cannot share its work.
+void require_one_process(const std::string& command);
+/// Returns true in the process that prints for all processes that mpirun or srun has started.
+bool is_first_process();
+/// Handles an error that processes have before they join for a run. They compare it by MPI if they can, and report it
+/// once. Returns the exit code.
+int fail_together(const SceneError& error);
 
 }  // namespace skerry
