@@ -168,7 +168,8 @@ bool CheckpointWriter::due(double time) const {
 }
 
 std::string CheckpointWriter::last_words() const {
-    const std::string text = "skerry: the job was ended from outside, or by the failure of another rank; ";
+    const std::string text =
+        "skerry: the launcher ends the job, by order of the user or because another rank has failed; ";
     if (written_ == 0) return text + "there is no checkpoint of this run (--checkpoint FILE writes them)\n";
     return text + "to continue from the checkpoint at " + with_unit(last_, "s") + ": skerry run --restart " +
            file_.string() + "\n";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -301,13 +302,9 @@ void add_fill(CLI::App& app, FillOptions& options) {
                     "after scaling")
         ->check(positive_number)
         ->capture_default_str();
-    command
-        .add_option_function<Real>(
-            "--edge", [&options](const Real& edge) { options.settings.edge = edge; },
-            "edge length of the tetrahedra and of their surface [m]; default: the triangles of a surface without "
-            "faults "
-            "are kept, and other surfaces get a twentieth of the diagonal of the bounding box")
-        ->check(positive_number);
+    add_number(command, "--edge", options.settings.edge,
+               "edge length of the tetrahedra and of their surface [m]; default: the triangles of a surface without "
+               "faults are kept, and other surfaces get a twentieth of the diagonal of the bounding box");
     command
         .add_option("--tolerance", options.settings.tolerance,
                     "largest distance between the surface and the mesh, as a fraction of the diagonal of the bounding "
@@ -419,6 +416,15 @@ std::string version_text() {
            "; to use another one, set the environment variable SKERRY_INSTRUCTION_SET)";
 }
 
+/// Prints the help, or the error in the command line, once for all processes of a run. Returns the exit code.
+int end_reading(const CLI::App& app, const CLI::ParseError& error) {
+    std::ostringstream help, text;
+    if (app.exit(error, help, text) != 0)
+        return fail_together(SceneError(text.str().substr(0, text.str().find_last_not_of('\n') + 1)));
+    if (is_first_process()) std::cout << help.str();
+    return exit_ok;
+}
+
 int run_command_line(int argc, char** argv) {
     CLI::App app("Simulates deformable bodies in frictional contact", "skerry");
     app.footer(general_examples);
@@ -444,15 +450,17 @@ int run_command_line(int argc, char** argv) {
     bool materials_as_json = false;
     app.add_subcommand("materials", "List materials from the literature with their sources")
         ->add_flag("--json", materials_as_json, "print the list as JSON");
-    require_known_command(app, argc, argv);
     try {
+        require_known_command(app, argc, argv);
         app.parse(argc, argv);
+        require_one_process(app.get_subcommands().front()->get_name());
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? exit_ok : exit_bad_input;
+        return end_reading(app, error);
+    } catch (const SceneError& error) {
+        return fail_together(error);
     }
     if (app.got_subcommand("run")) return run(run_options);
     if (app.got_subcommand("sweep")) return sweep(sweep_options);
-    if (!is_one_process(app.get_subcommands().front()->get_name())) return exit_bad_input;
     if (app.got_subcommand("view")) return view(view_options);
     if (app.got_subcommand("solve")) return solve(solve_options);
     if (app.got_subcommand("inspect")) return inspect(inspect_options);
@@ -480,11 +488,8 @@ int main(int argc, char** argv) {
     keep_freed_memory();
     try {
         return run_command_line(argc, argv);
-    } catch (const SceneError& error) {
-        std::cerr << "skerry: " << error.what() << "\n";
-        return exit_bad_input;
     } catch (const std::exception& error) {
         std::cerr << "skerry: " << error.what() << "\n";
-        return exit_failed;
+        return dynamic_cast<const SceneError*>(&error) != nullptr ? exit_bad_input : exit_failed;
     }
 }

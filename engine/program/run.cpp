@@ -327,6 +327,7 @@ RunStart run_start(const RunBeginning& beginning, const World& world) {
 
 /// Collective. Gives all ranks the beginning that rank 0 has found, and notes it in the results.
 void share_beginning(const RunRanks& ranks, RunBeginning& beginning, RunResult& result) {
+    const SignalGuard guard;  // for ranks that wait here while rank 0 moves the bodies to a static equilibrium
     const RunPlan& plan = beginning.plan;
     const Json first = ranks.of_first({{"memory", to_json(beginning.memory)},
                                        {"plan", {plan.seconds, plan.frame_step, plan.samples, plan.probe_step}},
@@ -384,6 +385,7 @@ RunResult simulate(const RunOptions& asked, RunRanks& ranks) {
     if (!outputs) return result;
 
     result.report = world.report();
+    result.ranks.complete(result.report);
     result.thin_parts = thin_parts(plan, world, result.errors);
     result.contact_areas = contact_area_texts(plan, world, result.errors);
     result.broken_ties = broken_ties(plan, world);
@@ -418,8 +420,9 @@ int conclude(const RunResult& result, const RunOptions& options) {
 }  // namespace
 
 int run(const RunOptions& options) {
-    RunRanks ranks = RunRanks::join();
+    RunRanks ranks;
     try {
+        ranks = RunRanks::join();
         const RunResult result = simulate(options, ranks);
         const int code_of_signal = result.stopped_by != 0 ? exit_signal + result.stopped_by : exit_ok;
         return ranks.last_code(ranks.is_first() ? conclude(result, options) : code_of_signal);

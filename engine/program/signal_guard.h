@@ -10,7 +10,8 @@
 namespace skerry {
 
 inline volatile std::sig_atomic_t caught_signal = 0;
-// text that a signal writes to standard error at once; null: none
+// text that a signal of the launcher (mpirun or srun) writes to standard error at once, because the launcher may kill
+// the process soon; null: none
 inline std::atomic<const char*> signal_note = nullptr;
 
 /// Handles signals during a run. The first SIGINT or SIGTERM ends the run between two steps, and the second kills the
@@ -19,14 +20,17 @@ class SignalGuard {
 public:
     SignalGuard() {
         struct sigaction action = {};
-        action.sa_handler = [](int number) {
+        action.sa_sigaction = [](int number, siginfo_t* info, void*) {
             caught_signal = number;
             const char* const note = signal_note;
-            if (note != nullptr && ::write(STDERR_FILENO, note, std::strlen(note)) < 0) signal_note = nullptr;
+            const bool of_launcher = info->si_pid == getppid();
+            if (note != nullptr && of_launcher && ::write(STDERR_FILENO, note, std::strlen(note)) < 0)
+                signal_note = nullptr;
         };
-        action.sa_flags = static_cast<int>(SA_RESETHAND);
+        action.sa_flags = static_cast<int>(SA_RESETHAND | SA_SIGINFO);
         sigaction(SIGINT, &action, &old_interrupt_);
         sigaction(SIGTERM, &action, &old_terminate_);
+        action.sa_flags = 0;
         action.sa_handler = SIG_IGN;
         sigaction(SIGXFSZ, &action, &old_too_large_);
     }

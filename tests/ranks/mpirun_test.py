@@ -53,6 +53,13 @@ class MpirunTest(ProgramCase):
         return next(pid for pid in map(int, children.split()) if f"OMPI_COMM_WORLD_RANK={rank}".encode() in
                     pathlib.Path(f"/proc/{pid}/environ").read_bytes().split(b"\0"))
 
+    def status_of(self, job, rank):
+        """Content of /proc/PID/status; empty if the process has not started yet."""
+        try:
+            return pathlib.Path(f"/proc/{self.process_of(job, rank)}/status").read_text()
+        except (StopIteration, subprocess.CalledProcessError, OSError):
+            return ""
+
     def stats_of(self, run, *arguments):
         file = self.folder / "stats.json"
         run("run", *arguments, "--quiet", "--stats", file)
@@ -76,6 +83,13 @@ class MpirunTest(ProgramCase):
             self.assertEqual(shared[key], alone[key], key)
         self.assertEqual((alone["ranks"]["count"], shared["ranks"]["count"], shared["ranks"]["hosts"]), (1, 3, 1))
         self.assertGreater(shared["ranks"]["messages_per_step"], 0)
+        # stages and searches of all ranks are added up
+        stage = shared["stages"]["ranks/reduce_findings"]
+        self.assertGreaterEqual(stage["runs"], 3 * shared["steps"])
+        self.assertEqual(stage["runs"] % 3, 0)
+        self.assertGreater(stage["seconds"], 0)
+        self.assertGreaterEqual(shared["search"]["broad_searches"], 3)
+        self.assertGreaterEqual(shared["search"]["inline_steps"], 3 * alone["search"]["inline_steps"])
 
     def test_only_rank_0_needs_the_memory_of_the_whole_world(self):
         def peaks(run, balls):
@@ -95,6 +109,16 @@ class MpirunTest(ProgramCase):
         done = self.ranks(2, "run", self.scene)
         self.assertEqual(done.stdout.count("times real time"), 1)
         self.assertRegex(done.stdout, r"2 ranks on 1 host; [0-9.]+ messages with")
+        for command in (["--help"], ["run", "--help"], ["sweep", "--help"]):
+            self.assertEqual(self.ranks(3, *command).stdout.count("Usage:"), 1)
+        self.assertEqual(self.ranks(3, "--version").stdout.count("instruction set:"), 1)
+
+    def test_an_error_in_the_command_line_is_said_once(self):
+        for command, said in [(["run"], "SCENE is required"), (["run", self.scene, "--bogus"], "--bogus"),
+                              (["rum", self.scene], 'the command "rum"'), (["sweep", "--bogus"], "--bogus")]:
+            self.assertEqual(self.ranks(3, *command, code=2).stderr.count(said), 1)
+        done = self.ranks(1, "run", self.scene, code=2, apart=(PROGRAM, "run", self.scene, "--bogus"))
+        self.assertRegex(done.stderr, r"skerry: rank 1 on \S+: .*--bogus")
 
     def test_a_killed_run_goes_on_with_another_number_of_ranks_and_the_same_bits(self):
         expected = self.stats_of(self.skerry, self.scene, "--seconds", 1.2)
@@ -156,6 +180,23 @@ class MpirunTest(ProgramCase):
                 errors = job.communicate(timeout=60)[1]
             self.assertEqual(job.returncode, 143, errors)
             self.assertIn("stopped by a signal at", json.loads(stats.read_text())["status"])
+            self.assertNotIn("the launcher ends the job", errors)
+
+    def test_a_signal_to_one_rank_ends_all_before_the_start(self):
+        """The signal arrives while the ranks move the bodies to a static equilibrium."""
+        fine = dict(BLOCK, name="block_0", position=[0, 0, 0.11],
+                    mesh={"box": {"size": [0.2, 0.2, 0.2], "cells": [8, 8, 8]}})
+        soft = self.write("soft.json", SCENE_OF_FOUR | {"bodies": [fine]})
+        job = subprocess.Popen(self.command(2, "run", soft, "--quiet", "--from-rest"), stderr=subprocess.PIPE,
+                               text=True)
+        with job:
+            handles_signals = r"SigCgt:\s*[0-9a-f]*[4-7c-f][0-9a-f]{3}\n"  # bit 14: SIGTERM
+            while not re.search(handles_signals, self.status_of(job, 1)):
+                self.assertIsNone(job.poll())
+            os.kill(self.process_of(job, 1), signal.SIGTERM)
+            errors = job.communicate(timeout=60)[1]
+        self.assertEqual(job.returncode, 143, errors)
+        self.assertEqual(errors.count("stopped by a signal before the start"), 1)
 
 
 def without_regions(content):

@@ -82,6 +82,30 @@ std::vector<Json> gather_everywhere(Ranks& ranks, const Json& mine) {
     return all;
 }
 
+Json work_of(const WorldReport& report) {
+    Json stages = Json::object();
+    for (const StageReport& stage : report.stages) stages[stage.name] = {stage.seconds, stage.runs, stage.skipped};
+    return {{"stages", stages},
+            {"broad_searches", report.broad_searches},
+            {"pair_searches", report.pair_searches},
+            {"candidates", report.candidates},
+            {"inline_steps", report.inline_steps}};
+}
+
+void add_work(const Json& of_rank, RankWork& sum) {
+    for (const auto& [name, stage] : of_rank.at("stages").items()) {
+        auto known = std::ranges::find(sum.stages, name, &StageReport::name);
+        if (known == sum.stages.end()) known = sum.stages.insert(known, {.name = name});
+        known->seconds += stage[0].get<double>();
+        known->runs += stage[1].get<std::uint64_t>();
+        known->skipped += stage[2].get<std::uint64_t>();
+    }
+    sum.broad_searches += of_rank.at("broad_searches").get<std::uint64_t>();
+    sum.pair_searches += of_rank.at("pair_searches").get<std::uint64_t>();
+    sum.candidates += of_rank.at("candidates").get<std::uint64_t>();
+    sum.inline_steps += of_rank.at("inline_steps").get<std::uint64_t>();
+}
+
 void take_larger(std::byte* into, const std::byte* from) {
     int a = 0, b = 0;
     std::memcpy(&a, into, sizeof a);
@@ -119,6 +143,9 @@ std::vector<Json> RunRanks::agree(const Json& mine) const {
         const std::string who = rank_name(static_cast<std::size_t>(first - all.begin()), first->at("host"));
         throw AgreedError(is_alike ? text : who + ": " + text, first->at("code"));
     }
+    for (const Json& rank : all)
+        if (const int number = rank.value("signal", 0); number != 0)
+            throw AgreedError("stopped by a signal before the start", exit_signal + number);
     for (std::size_t r = 1; r < all.size(); ++r)
         for (const auto& [fact, expected] : all[0].at("alike").items())
             if (const Json& found = all[r].at("alike").at(fact); found != expected)
@@ -136,7 +163,12 @@ std::vector<Json> RunRanks::agree(const Json& mine) const {
 }
 
 Json RunRanks::of_first(const Json& mine) const {
-    return several() ? agree({{"alike", Json::object()}, {"value", mine}}).front().at("value") : mine;
+    if (!several()) return mine;
+    const std::vector<Json> all = agree({{"host", host_name()},
+                                         {"signal", static_cast<int>(caught_signal)},
+                                         {"alike", Json::object()},
+                                         {"value", mine}});
+    return all.front().at("value");
 }
 
 void RunRanks::compare_starts(const std::filesystem::path& scene, std::span<const std::string> assignments) {
@@ -209,6 +241,15 @@ bool RunRanks::any(bool mine) const {
     return last_code(mine ? 1 : 0) != 0;
 }
 
+void RanksReport::complete(WorldReport& world) const {
+    if (count == 1) return;
+    world.stages = work.stages;
+    world.broad_searches = work.broad_searches;
+    world.pair_searches = work.pair_searches;
+    world.candidates = work.candidates;
+    world.inline_steps = work.inline_steps;
+}
+
 RanksReport RunRanks::report(double wall, std::uint64_t steps) const {
     RanksReport report;
     if (!several()) {
@@ -220,7 +261,8 @@ RanksReport RunRanks::report(double wall, std::uint64_t steps) const {
                                                               {"messages", in_steps_.messages},
                                                               {"bytes", in_steps_.bytes},
                                                               {"wall", wall},
-                                                              {"waiting", in_steps_.seconds}});
+                                                              {"waiting", in_steps_.seconds},
+                                                              {"work", work_of(part_->report())}});
     report.count = ranks_->size();
     const auto count = static_cast<double>(std::max<std::uint64_t>(steps, 1));
     report.reductions = static_cast<double>(in_steps_.reductions) / count;
@@ -235,6 +277,7 @@ RanksReport RunRanks::report(double wall, std::uint64_t steps) const {
         if (computed + waited > 0) report.waiting += waited / (computed + waited) / report.count;
         longest = std::max(longest, computed);
         sum += computed;
+        add_work(rank["work"], report.work);
     }
     report.hosts = static_cast<int>(hosts.size());
     if (sum > 0) report.imbalance = longest * report.count / sum;
@@ -250,6 +293,7 @@ void RunRanks::set_last_words(std::string text) {
 
 int RunRanks::fail(const std::exception& error) {
     const auto* agreed = dynamic_cast<const AgreedError*>(&error);
+    if (!several() && !is_first_process()) return exit_ok;
     if (!several() || agreed != nullptr) {
         if (is_first()) std::cerr << "skerry: " << error.what() << std::endl;
         return agreed != nullptr ? agreed->code : code_of(error);
@@ -271,9 +315,10 @@ int RunRanks::last_code(int mine) const {
     return mine;
 }
 
-bool is_one_process(const std::string& command) {
+void require_one_process(const std::string& command) {
+    if (command == "run" || command == "sweep") return;
     const Share tasks = task_share(std::getenv);
-    if (tasks.of > 1 && tasks.rank == 0)
+    if (tasks.of > 1)
         Complaint{.file = {},
                   .object = tasks.said_by,
                   .field = {},
@@ -281,7 +326,24 @@ bool is_one_process(const std::string& command) {
                   .expected = "one process",
                   .hint = "only `skerry run` and `skerry sweep` share their work among processes"}
             .raise();
-    return tasks.of == 1;
+}
+
+bool is_first_process() {
+    try {
+        return task_share(std::getenv).rank == 0;
+    } catch (const SceneError&) {
+        return true;  // the variables of the launcher are not readable, which is then the error to report
+    }
+}
+
+int fail_together(const SceneError& error) {
+    RunRanks ranks;
+    try {
+        ranks = RunRanks::join();
+    } catch (const std::exception&) {
+        // Processes that MPI does not connect cannot compare their errors. The first one reports its own.
+    }
+    return ranks.fail(error);
 }
 
 }  // namespace skerry

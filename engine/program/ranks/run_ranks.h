@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <exception>
 #include <filesystem>
 #include <memory>
@@ -13,9 +14,17 @@
 #include "engine/program/commands.h"
 #include "engine/scene/place.h"
 #include "jobs/ranks/ranks.h"
+#include "skerry/error.h"
+#include "skerry/report.h"
 #include "skerry/scene.h"
 
 namespace skerry {
+
+/// Sums over the ranks of the values of WorldReport that each rank counts for itself.
+struct RankWork {
+    std::vector<StageReport> stages;
+    std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0, inline_steps = 0;
+};
 
 /// Comparison of the ranks of a run, for its report.
 struct RanksReport {
@@ -24,6 +33,10 @@ struct RanksReport {
     double messages = 0, bytes = 0, reductions = 0;  // per step; messages and bytes are sums over all ranks
     double waiting = 0;                              // share of the wall time of the steps, mean over the ranks
     double imbalance = 1;                            // longest time that a rank computes, over the mean of all ranks
+    RankWork work{};                                 // empty if there is one rank
+
+    /// Replaces the work of rank 0 in the report of the whole world by the work of all ranks.
+    void complete(WorldReport& world) const;
 };
 
 /// The ranks that make a run together. Rank 0 builds the world, which is then divided among them. Rank 0 alone reports
@@ -42,7 +55,8 @@ public:
     /// Throws an error on all ranks unless all of them run the same program with the same options, and have read the
     /// same files. `scene` and `assignments`: scene file with the changes by options.
     void compare_starts(const std::filesystem::path& scene, std::span<const std::string> assignments);
-    /// Collective. Returns the value of rank 0 on all ranks. Throws an error on all ranks if rank 0 has failed before.
+    /// Collective. Returns the value of rank 0 on all ranks. Throws an error on all ranks if rank 0 has failed before,
+    /// or if a signal has reached one of them, because the world may then not be at rest.
     Json of_first(const Json& mine) const;
     /// Returns the options for this rank. Throws SceneError for outputs that several ranks cannot write.
     RunOptions options_for(const RunOptions& asked) const;
@@ -65,7 +79,8 @@ public:
     /// Sets the text that rank 0 writes to standard error if the job is ended, because another rank has failed.
     void set_last_words(std::string text);
     /// Handles an error that ended the run of this rank, and returns the exit code. If the others cannot know the
-    /// error, this function ends them all.
+    /// error, this function ends them all. If MPI does not connect the processes, the first one reports its error, and
+    /// the others succeed: a launcher would end the first one when another fails.
     int fail(const std::exception& error);
     /// Collective. Returns the largest exit code of all ranks.
     int last_code(int mine) const;
@@ -83,8 +98,12 @@ private:
     std::array<std::string, 2> last_words_;  // the text in use, and that before it
 };
 
-/// Returns true unless mpirun or srun has started several processes. Then it returns false, and throws SceneError in
-/// one of them. `command`: name of a command that cannot share its work.
-bool is_one_process(const std::string& command);
+/// Throws SceneError if mpirun or srun has started several processes of a command that cannot share its work.
+void require_one_process(const std::string& command);
+/// Returns true in the process that prints for all processes that mpirun or srun has started.
+bool is_first_process();
+/// Handles an error that processes have before they join for a run. They compare it by MPI if they can, and report it
+/// once. Returns the exit code.
+int fail_together(const SceneError& error);
 
 }  // namespace skerry

@@ -260,7 +260,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         if (forces.on() && seconds != 0) forces.add_drift(model, seconds, world.scratch);
     };
     while (left > 0) {
-        if (go_on && !call_back([&] { return go_on(std::as_const(report)); })) stops = true;
+        if (go_on && !stops && !call_back([&] { return go_on(std::as_const(report)); })) stops = true;
         // Ranks learn in a step that one of them stops, and end the call together after it.
         if (world.ranks.on() ? world.ranks.all.stop : stops) {
             report.status = StepStatus::stopped;

@@ -21,12 +21,12 @@ struct KickInputs {
     std::span<const Real> mass, inverse_mass;
     Vec3 gravity = Vec3::Zero();
     std::span<const Vec3> load = {};  // applied force; empty if no node has one [N]
-    // Column of BodyTable; empty if no body is asleep. Sleeping bodies are skipped.
+    // Column of BodyTable; empty if no body is idle. Idle bodies are skipped.
     std::span<const std::uint8_t> body_idle = {};
     // BodyTable. Elements exert no force on nodes of unstrained bodies. Empty if no body is unstrained.
     std::span<const std::uint16_t> body_unstrained = {};
 
-    /// `forced`: true if the world has force elements. `any_asleep`: true if some body is asleep.
+    /// `forced`: true if the world has force elements. `any_idle`: true if some body is idle.
     static KickInputs bind(const Binder& binder, const NodeBlockTable& block, const ElementPatches& patches,
                            const NodeTable& node, const BodyTable& body, const Vec3& gravity, const bool& forced,
                            const bool& any_idle) {
