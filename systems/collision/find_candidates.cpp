@@ -115,9 +115,9 @@ bool is_valid(const CollisionInputs& inputs, const CollisionSettings& settings, 
     if (pairs.travel_bound[p] < pairs.valid_until[p]) return true;
     if (pairs.kind[p] != PairKind::self || !settings.use_budgets || !(pairs.valid_until[p] > -infinity)) return false;
     const SelfMotion motion = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], h);
-    const std::span<LeafPair> leaves = pairs.leaf_pairs[p].listed.span();
-    if (!update_spare(motion, leaves, pairs.self)) return false;
-    pairs.valid_until[p] = pair_travel_base(inputs, pairs, p) + least_spare(leaves);
+    const Real spare = update_spare(motion, pairs.leaf_pairs[p].listed.span(), pairs.self);
+    if (!(spare > 0)) return false;
+    pairs.valid_until[p] = pair_travel_base(inputs, pairs, p) + spare;
     return true;
 }
 

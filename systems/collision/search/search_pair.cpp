@@ -19,10 +19,20 @@ namespace skerry {
 
 namespace {
 
-// Number of leaves whose data is cached. Two bodies that lie on each other touch with about ten leaves.
-constexpr std::size_t kept_leaves = 16;
-template <class Features>
-using KeptLeaves = std::array<Features, kept_leaves>;
+// Numbers of leaves whose data is cached. Two bodies that lie on each other touch with about ten leaves. A body that is
+// paired with itself has many pairs of leaves, and the second leaf changes with each pair. The caches of 128 leaves fit
+// into the second-level cache of a processor.
+constexpr std::size_t kept_leaves = 16, kept_leaves_of_self = 128;
+template <class Features, std::size_t Count>
+using KeptLeaves = std::array<Features, Count>;
+
+/// Cached features of the leaves of one tree. The row of a leaf determines its place.
+template <std::size_t Count>
+struct KeptFeatures {
+    KeptLeaves<LeafPoints, Count> points;
+    KeptLeaves<LeafEdges, Count> edges;
+    KeptLeaves<LeafTriangleBoxes, Count> boxes;
+};
 
 // Number of pairs of leaves that are collected before their features are compared.
 constexpr std::size_t most_near = 32;
@@ -34,6 +44,8 @@ bool share_node(const std::array<Index, Size>& a, Index node) {
     return std::find(a.begin(), a.end(), node) != a.end();
 }
 
+/// `Self`: the body is paired with itself.
+template <bool Self>
 class BodySearch {
 public:
     BodySearch(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
@@ -43,7 +55,6 @@ public:
           pair_(pair),
           box_(box),
           found_(found),
-          self_(pair.kind == PairKind::self),
           first_is_point_(is_point(inputs.body.core_nodes[pair.first])),
           second_is_point_(is_point(inputs.body.core_nodes[pair.second])) {
         set_margin(pair.margin);
@@ -53,7 +64,7 @@ public:
         const Index root = inputs_.body.bvh_nodes[pair_.first].begin;
         for (const LeafPair& leaves : pair_.leaf_pairs)
             add_near({root + leaves.first, root + leaves.second, leaves.spare});
-        if (!self_) find_near_leaves();
+        if (!Self) find_near_leaves();
         compare_near();
         empty_queue(FeaturePair::point_triangle);
         empty_queue(FeaturePair::edge_edge);
@@ -111,7 +122,7 @@ private:
     void compare_near() {
         for (std::size_t i = 0; i < near_count_; ++i) {
             const auto [a, b, margin] = near_[i];
-            if (self_) set_margin(margin);
+            if (Self) set_margin(margin);
             if (a == b)
                 compare_within(a);
             else
@@ -126,7 +137,7 @@ private:
         // inside a flat surface does not obstruct the sphere. For two spheres, the first is tested against the second.
         if (!second_is_point_ || first_is_point_) compare_points(a, b, false);
         if (!first_is_point_) compare_points(b, a, true);
-        const LeafEdges &own = features_of(a, edges_[0]), &other = features_of(b, edges_[1]);
+        const LeafEdges &own = features_of(a, first_.edges), &other = features_of(b, second_.edges);
         std::array<unsigned, 3> near;
         if (!any_near(other, box_[a], near)) return;
         for (std::size_t group = 0; group < own.groups(); ++group)
@@ -138,7 +149,7 @@ private:
     /// Compares the features of a leaf with each other: all points with all triangles, and each pair of edges once.
     void compare_within(Index a) {
         compare_points(a, a, false);
-        const LeafEdges& own = features_of(a, edges_[0]);
+        const LeafEdges& own = features_of(a, first_.edges);
         for (std::size_t i = 0; i < own.count(); ++i) {
             std::array<unsigned, 3> later;
             for (unsigned group = 0; group < later.size(); ++group) {
@@ -150,10 +161,10 @@ private:
         }
     }
 
-    template <class Features>
-    const Features& features_of(Index a, KeptLeaves<Features>& kept) const {
+    template <class Features, std::size_t Count>
+    const Features& features_of(Index a, KeptLeaves<Features, Count>& kept) const {
         const Index leaf = node(a).leaf;
-        Features& features = kept[static_cast<std::size_t>(leaf) % kept_leaves];
+        Features& features = kept[static_cast<std::size_t>(leaf) % Count];
         if (features.leaf != leaf) features.fill(inputs_, leaf);
         return features;
     }
@@ -169,7 +180,7 @@ private:
 
     /// Compares the points of one leaf with the triangles of another leaf.
     void compare_points(Index owner, Index other, bool of_second) {
-        const LeafPoints& points = features_of(owner, points_[of_second]);
+        const LeafPoints& points = of_second ? features_of(owner, second_.points) : features_of(owner, first_.points);
         for (std::size_t group = 0; group < points.groups(); ++group)
             for_each_lane(
                 points.used(group) & lanes_below(distance_squared(points.at[group], box_[other]), radius_squared_),
@@ -181,15 +192,16 @@ private:
 
     /// Compares a point with the triangles of a leaf.
     void compare_point(Index n, Index vertex, Index other, bool of_second) {
-        const LeafBoxes& boxes = features_of(other, boxes_[!of_second]).box;
+        const LeafBoxes& boxes =
+            of_second ? features_of(other, first_.boxes).box : features_of(other, second_.boxes).box;
         const Vec3& at = position(n);
         const unsigned near =
             used_lanes(node(other).count, 0) & lanes_below(distance_squared(boxes, {at, at}), radius_squared_);
         for_each_lane(near, [&](std::size_t lane) {
             const Index triangle = leaf_triangle(other)[lane];
             const auto& corner = triangle_.node[triangle];
-            if (self_ && share_node(corner, n)) return;
-            put({point_triangle_feature(of_second && !self_, vertex - vertices(of_second).begin,
+            if (Self && share_node(corner, n)) return;
+            put({point_triangle_feature(of_second && !Self, vertex - vertices(of_second).begin,
                                         triangle - triangles(of_second).begin),
                  vertex, triangle},
                 {n, corner[0], corner[1], corner[2]});
@@ -206,14 +218,14 @@ private:
             for_each_lane(lanes, [&](std::size_t lane) {
                 const std::size_t j = leaf_lanes * group + lane;
                 const auto& other = b.node(j);
-                if (self_ && (share_node(other, own[0]) || share_node(other, own[1]))) return;
+                if (Self && (share_node(other, own[0]) || share_node(other, own[1]))) return;
                 put(edges_candidate(a.row(i), b.row(j)), {own[0], own[1], other[0], other[1]});
             });
         }
     }
 
     Candidate edges_candidate(Index a, Index b) const {
-        if (self_ && a > b) std::swap(a, b);
+        if (Self && a > b) std::swap(a, b);
         const Index first = a - inputs_.body.edges[pair_.first].begin,
                     second = b - inputs_.body.edges[pair_.second].begin;
         return {edge_edge_feature(first, second), a, b};
@@ -242,9 +254,9 @@ private:
             if (!(distance[lane] < queue.radius[lane])) continue;
             const auto node = [&](std::size_t i) { return queue.node[i][lane]; };
             const bool excluded =
-                self_ && (kind == FeaturePair::edge_edge
-                              ? touched_at_rest(std::array{node(0), node(1)}, std::array{node(2), node(3)})
-                              : touched_at_rest(node(0), std::array{node(1), node(2), node(3)}));
+                Self && (kind == FeaturePair::edge_edge
+                             ? touched_at_rest(std::array{node(0), node(1)}, std::array{node(2), node(3)})
+                             : touched_at_rest(node(0), std::array{node(1), node(2), node(3)}));
             if (!excluded)
                 found_.push_back({queue.candidate[lane], pair_.travel_base + distance[lane] - zone_of(kind)});
         }
@@ -279,14 +291,12 @@ private:
     // Squared search distance of points, and of edges, for which it is smaller [m^2].
     Real radius_squared_, edge_radius_squared_;
     Real margin_;  // margin of the list for the present pair of leaves [m]
-    const bool self_;
     // True for a sphere or a cylinder, whose core is a point in this search.
     const bool first_is_point_, second_is_point_;
     // Cached data of leaves that were recently read, for the first and the second tree. Each leaf is compared with
     // several leaves of the other tree.
-    std::array<KeptLeaves<LeafPoints>, 2> points_;
-    std::array<KeptLeaves<LeafEdges>, 2> edges_;
-    std::array<KeptLeaves<LeafTriangleBoxes>, 2> boxes_;
+    KeptFeatures<kept_leaves> first_;
+    KeptFeatures<Self ? kept_leaves_of_self : kept_leaves> second_;
     // Collected pairs of leaves whose features are not compared yet.
     std::array<NearLeaves, most_near> near_;
     std::size_t near_count_ = 0;
@@ -300,7 +310,10 @@ Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, std:
     const Real apart =
         std::max(pair.apart, std::sqrt(distance_squared(box[first.begin], box[second.begin]))) - pair.scale.zone;
     if (apart >= pair.margin) return pair.travel_base + apart;
-    BodySearch(inputs, pair, box, found).run();
+    if (pair.kind == PairKind::self)
+        BodySearch<true>(inputs, pair, box, found).run();
+    else
+        BodySearch<false>(inputs, pair, box, found).run();
     sort_by_feature(found);
     return pair.travel_base + pair.margin;
 }

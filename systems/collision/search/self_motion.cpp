@@ -1,12 +1,12 @@
 #include "systems/collision/search/self_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/narrow/candidate_lanes.h"
 #include "systems/collision/tree/bvh.h"
-#include "systems/collision/tree/leaf_pairs.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -66,7 +66,15 @@ void fit_motion(const CollisionInputs& inputs, Index body, SelfSearch& self, aut
 
 void store_origin(const SelfMotion& motion, SelfSearch& self) {
     for_each_node(motion.inputs, motion.body, [&](Index n) { self.origin[n] = motion.inputs.position[n]; });
+}
+
+void store_speeds(const SelfMotion& motion, SelfSearch& self) {
     fit(motion.inputs, motion.body, motion.inputs.velocity, self.speed_box);
+}
+
+/// Relative motion U(root, root) of all nodes of the body since the last update [m].
+Real greatest_motion(const SelfMotion& motion, const SelfSearch& self) {
+    return farthest(self.moved_box[motion.root()], self.moved_box[motion.root()]);
 }
 
 constexpr auto leaves_before = [](const LeafPair& a, const LeafPair& b) {
@@ -74,28 +82,33 @@ constexpr auto leaves_before = [](const LeafPair& a, const LeafPair& b) {
 };
 
 /// Lists the pairs of leaves that are close to each other. Pairs that were listed before keep their spare distance.
+/// Children follow their parent in the tree, so a forward search from each leaf finds the pairs in their order.
 void list_close(const SelfMotion& motion, std::span<const Aabb> box, const SelfSearch& self, LeafPairTable& pairs) {
-    const Index root = motion.root();
+    const Index root = motion.root(), end = motion.inputs.body.bvh_nodes[motion.body].end;
     const Real margin = std::max(listed_edges * motion.scale.edge, motion.margin_of(self, root, root)),
                distance = motion.scale.zone + margin;
     pairs.before.swap(pairs.listed);
     pairs.listed.clear();
     pairs.listed.push_back({0, 0, margin});
-    any_leaf_pair(
-        motion.inputs.bvh_node, root, root, true,
-        [&](Index a, Index b) { return !(distance_squared(box[a], box[b]) > distance * distance); },
-        [&](Index a, Index b) {
-            const Real apart = std::sqrt(distance_squared(box[a], box[b]));
-            pairs.listed.push_back({a - root, b - root, apart - motion.scale.zone});
-            return false;
-        });
-    std::sort(pairs.listed.begin() + 1, pairs.listed.end(), leaves_before);
     std::size_t old = 1;
-    for (std::size_t i = 1; i < pairs.listed.size(); ++i) {
-        LeafPair& pair = pairs.listed[i];
-        while (old < pairs.before.size() && leaves_before(pairs.before[old], pair)) ++old;
-        if (old < pairs.before.size() && !leaves_before(pair, pairs.before[old]))
-            pair.spare = std::max(pair.spare, pairs.before[old].spare);
+    for (Index a = root; a < end; ++a) {
+        if (motion.inputs.bvh_node[a].count == 0) continue;
+        for (Index b = a; b < end;) {
+            const BvhNode& other = motion.inputs.bvh_node[b];
+            const Real squared = distance_squared(box[a], box[b]);
+            if (squared > distance * distance) {
+                b = other.skip;
+                continue;
+            }
+            if (other.count > 0) {
+                LeafPair pair{a - root, b - root, std::sqrt(squared) - motion.scale.zone};
+                while (old < pairs.before.size() && leaves_before(pairs.before[old], pair)) ++old;
+                if (old < pairs.before.size() && !leaves_before(pair, pairs.before[old]))
+                    pair.spare = std::max(pair.spare, pairs.before[old].spare);
+                pairs.listed.push_back(pair);
+            }
+            ++b;
+        }
     }
 }
 
@@ -114,6 +127,36 @@ void find_leaves(const CollisionInputs& inputs, Index body, SelfSearch& self) {
             self.leaf_of_triangle[inputs.leaf_triangle[node.leaf][i]] = row;
     }
 }
+
+/// Finds pairs of leaves in a sorted list. The positions of the most recent first leaves are remembered, because
+/// consecutive candidates have few different leaves.
+class SortedLeafPairs {
+public:
+    explicit SortedLeafPairs(std::span<const LeafPair> pairs) : pairs_(pairs) {}
+
+    bool contains(Index first, Index second) {
+        Place& place = recent_[static_cast<std::size_t>(first) % recent_.size()];
+        if (place.first != first) place = place_of(first);
+        for (std::size_t i = place.begin; i < pairs_.size() && pairs_[i].first == first; ++i)
+            if (pairs_[i].second >= second) return pairs_[i].second == second;
+        return false;
+    }
+
+private:
+    /// Index of the first pair with this first leaf.
+    struct Place {
+        Index first = no_index;
+        std::size_t begin = 0;
+    };
+
+    Place place_of(Index first) const {
+        const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), LeafPair{first, 0, 0}, leaves_before);
+        return {first, static_cast<std::size_t>(at - pairs_.begin())};
+    }
+
+    std::span<const LeafPair> pairs_;
+    std::array<Place, 64> recent_;
+};
 
 /// Removes the candidates of pair p whose leaves satisfy is_gone(a, b).
 void remove_candidates(const SelfSearch& self, Index p, PairTable& pairs, auto&& is_gone) {
@@ -145,9 +188,12 @@ void resize(const CollisionInputs& inputs, SelfSearch& self) {
     self.is_searched.resize(inputs.bvh_node.size());
 }
 
-bool update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearch& self) {
+Real update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearch& self) {
     const CollisionInputs& inputs = motion.inputs;
     fit_motion(inputs, motion.body, self, [&](Index n) -> const Vec3& { return inputs.position[n]; });
+    store_speeds(motion, self);
+    const Real left = least_spare(pairs) - greatest_motion(motion, self);
+    if (left > motion.reach_of(self, motion.root(), motion.root())) return left;
     store_origin(motion, self);
     bool holds = true;
     for (LeafPair& pair : pairs) {
@@ -155,7 +201,7 @@ bool update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearc
         pair.spare -= farthest(self.moved_box[a], self.moved_box[b]);
         holds &= pair.spare > motion.reach_of(self, a, b);
     }
-    return holds;
+    return holds ? least_spare(pairs) : 0;
 }
 
 void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool anew, Index p, PairTable& pairs) {
@@ -164,6 +210,7 @@ void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool 
     LeafPairTable& leaves = pairs.leaf_pairs[p];
     if (anew) {
         store_origin(motion, self);
+        store_speeds(motion, self);
         leaves.listed.clear();
         pairs.candidates[p].clear();
         pairs.asleep_until[p].clear();
@@ -171,20 +218,22 @@ void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool 
     const bool lists = leaves.listed.empty() || !(leaves.listed[0].spare > motion.reach_of(self, root, root));
     if (lists) list_close(motion, box, self, leaves);
     leaves.searched.clear();
+    const Real greatest_reach = motion.reach_of(self, root, root);
     for (std::size_t i = 1; i < leaves.listed.size(); ++i) {
         LeafPair& pair = leaves.listed[i];
         const Index a = root + pair.first, b = root + pair.second;
-        const Real reach = motion.reach_of(self, a, b), margin = motion.margin_of(self, a, b);
-        if (pair.spare > (anew ? margin : std::max(reach, renewed_part * motion.skin))) continue;
+        if (!anew && pair.spare > std::max(greatest_reach, renewed_part * motion.skin)) continue;
+        const Real margin = motion.margin_of(self, a, b);
+        if (pair.spare > (anew ? margin : std::max(motion.reach_of(self, a, b), renewed_part * motion.skin))) continue;
         pair.spare = margin;
         leaves.searched.push_back(pair);
         self.is_searched[a] = self.is_searched[b] = 1;
     }
     const Real listed = motion.scale.zone + leaves.listed[0].spare;
+    SortedLeafPairs searched(leaves.searched.span());
     const auto is_gone = [&](Index a, Index b) {
         if (lists && distance_squared(box[a], box[b]) > listed * listed) return true;
-        return self.is_searched[a] && self.is_searched[b] &&
-               std::ranges::binary_search(leaves.searched, LeafPair{a - root, b - root, 0}, leaves_before);
+        return self.is_searched[a] && self.is_searched[b] && searched.contains(a - root, b - root);
     };
     find_leaves(motion.inputs, motion.body, self);
     remove_candidates(self, p, pairs, is_gone);
@@ -212,6 +261,7 @@ bool holds_for_motion(const SelfMotion& motion, const StepMotion& step, std::spa
                       SelfSearch& self) {
     const CollisionInputs& inputs = motion.inputs;
     fit_motion(inputs, motion.body, self, [&](Index n) { return Vec3(inputs.position[n] + step.of(n)); });
+    if (greatest_motion(motion, self) < least_spare(pairs)) return true;
     return std::ranges::all_of(pairs, [&](const LeafPair& pair) {
         return farthest(self.moved_box[motion.root() + pair.first], self.moved_box[motion.root() + pair.second]) <
                pair.spare;

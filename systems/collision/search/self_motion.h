@@ -14,7 +14,8 @@
 // R(a, b) >= reach (contact_reach.h) in the same way. Each pair of leaves has a spare distance M(a, b): features of the
 // pair that are not in the list satisfy D(s) >= zone + M(a, b).
 //
-// 1. An update for the time t subtracts U(a, b) from M(a, b). The next update counts from t.
+// 1. An update for the time t subtracts U(a, b) from M(a, b). The next update counts from t. No update is needed while
+//    U(root, root) + R(root, root) is below the smallest M.
 // 2. The list is complete for a step if M(a, b) > R(a, b) for all pairs of leaves. The features of other pairs are
 //    compared again, and those with D(t) < zone + max(m, k S, R) are listed. S(a, b) bounds the relative motion in one
 //    step, so fast pairs are not compared in every step. The new spare distance is this maximum.
@@ -83,9 +84,10 @@ inline SelfMotion self_motion_of(const CollisionInputs& inputs, const CollisionS
 /// Makes room for all nodes, features and trees.
 void resize(const CollisionInputs& inputs, SelfSearch& self);
 
-/// Subtracts the motion of the body since the last update from all spare distances, and stores the present positions
-/// and velocities. Returns true if the candidate list is complete for the step that begins.
-bool update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearch& self);
+/// If the candidate list is complete for the step that begins, returns a lower bound of the spare distances that are
+/// left [m], otherwise 0. Unless a bound for all leaves suffices, the motion of the body since the last update is
+/// subtracted from all spare distances, and the present positions are stored.
+Real update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearch& self);
 
 /// Lists the pairs of leaves whose features are compared in this step (LeafPairTable::searched), and sets their new
 /// spare distances. If `anew` is true, all close pairs of leaves are compared. Otherwise update_spare must have been
