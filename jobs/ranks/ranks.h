@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -51,11 +52,18 @@ protected:
     RankTraffic traffic_;
 };
 
-/// Reduces one record of a type without pointers.
-template <class Record>
-void reduce(Ranks& ranks, Record& record, void (*combine)(std::byte* into, const std::byte* from)) {
+/// Reduces one record of a type without pointers. combine(Record& into, const Record& from): see Ranks::reduce.
+template <auto combine, class Record>
+void reduce(Ranks& ranks, Record& record) {
     static_assert(std::is_trivially_copyable_v<Record>);
-    ranks.reduce(std::as_writable_bytes(std::span(&record, 1)), combine);
+    // The bytes of a message may be at any address, so the records are copied.
+    ranks.reduce(std::as_writable_bytes(std::span(&record, 1)), [](std::byte* into, const std::byte* from) {
+        Record all, other;
+        std::memcpy(static_cast<void*>(&all), into, sizeof all);
+        std::memcpy(static_cast<void*>(&other), from, sizeof other);
+        combine(all, other);
+        std::memcpy(into, &all, sizeof all);
+    });
 }
 
 }  // namespace skerry

@@ -115,7 +115,7 @@ class MpirunTest(ProgramCase):
 
     def test_an_error_in_the_command_line_is_said_once(self):
         for command, said in [(["run"], "SCENE is required"), (["run", self.scene, "--bogus"], "--bogus"),
-                              (["rum", self.scene], 'the command "rum"'), (["sweep", "--bogus"], "--bogus")]:
+                              (["rum", self.scene], 'the command "rum"'), (["sweep", "x", "--bogus"], "--bogus")]:
             self.assertEqual(self.ranks(3, *command, code=2).stderr.count(said), 1)
         done = self.ranks(1, "run", self.scene, code=2, apart=(PROGRAM, "run", self.scene, "--bogus"))
         self.assertRegex(done.stderr, r"skerry: rank 1 on \S+: .*--bogus")

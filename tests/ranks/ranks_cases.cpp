@@ -1,7 +1,6 @@
 #include "tests/ranks/ranks_cases.h"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -67,30 +66,22 @@ struct Extremes {
     std::int32_t most, count;
 };
 
-void combine_extremes(std::byte* into, const std::byte* from) {
-    Extremes a{}, b{};
-    std::memcpy(&a, into, sizeof a);
-    std::memcpy(&b, from, sizeof b);
-    a = {std::min(a.least, b.least), std::max(a.most, b.most), a.count + b.count};
-    std::memcpy(into, &a, sizeof a);
+void combine_extremes(Extremes& into, const Extremes& from) {
+    into = {std::min(into.least, from.least), std::max(into.most, from.most), into.count + from.count};
 }
 
-void add_counts(std::byte* into, const std::byte* from) {
-    std::uint64_t a = 0, b = 0;
-    std::memcpy(&a, into, sizeof a);
-    std::memcpy(&b, from, sizeof b);
-    a += b;
-    std::memcpy(into, &a, sizeof a);
+void add_counts(std::uint64_t& into, std::uint64_t from) {
+    into += from;
 }
 
 void reductions(Ranks& ranks) {
     const int size = ranks.size();
     for (int round = 0; round < 3; ++round) {
         std::uint64_t count = std::uint64_t{1} << 40;
-        reduce(ranks, count, add_counts);
+        reduce<add_counts>(ranks, count);
         require(count == static_cast<std::uint64_t>(size) << 40, "counts are added");
         Extremes mine{1.0 / (1 + ranks.rank()), ranks.rank(), 1};
-        reduce(ranks, mine, combine_extremes);
+        reduce<combine_extremes>(ranks, mine);
         require(mine.least == 1.0 / size && mine.most == size - 1 && mine.count == size,
                 "a record of several values, of another size, is reduced");
     }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
-#include <cstring>
 #include <exception>
 #include <functional>
 #include <string>
@@ -13,12 +12,8 @@ namespace skerry::test {
 namespace {
 namespace thread_ranks_test {
 
-void take_smaller(std::byte* into, const std::byte* from) {
-    double a = 0, b = 0;
-    std::memcpy(&a, into, sizeof a);
-    std::memcpy(&b, from, sizeof b);
-    a = std::min(a, b);
-    std::memcpy(into, &a, sizeof a);
+void take_smaller(double& into, double from) {
+    into = std::min(into, from);
 }
 
 TEST_CASE("ranks that are threads exchange messages and reduce records") {
@@ -45,7 +40,7 @@ TEST_CASE("ranks that are threads report calls that do not match, and deadlocks"
                   ranks.gather_everywhere({});
           }).find("which called gather") != std::string::npos);
     CHECK(message_of_run([&](Ranks& ranks) {
-              if (ranks.rank() == 0) reduce(ranks, value, take_smaller);
+              if (ranks.rank() == 0) reduce<take_smaller>(ranks, value);
           }).find("rank 0 for rank 1") != std::string::npos);
 }
 

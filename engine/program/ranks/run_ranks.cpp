@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -106,12 +105,8 @@ void add_work(const Json& of_rank, RankWork& sum) {
     sum.inline_steps += of_rank.at("inline_steps").get<std::uint64_t>();
 }
 
-void take_larger(std::byte* into, const std::byte* from) {
-    int a = 0, b = 0;
-    std::memcpy(&a, into, sizeof a);
-    std::memcpy(&b, from, sizeof b);
-    a = std::max(a, b);
-    std::memcpy(into, &a, sizeof a);
+void take_larger(int& into, int from) {
+    into = std::max(into, from);
 }
 
 }  // namespace
@@ -311,7 +306,7 @@ int RunRanks::fail(const std::exception& error) {
 }
 
 int RunRanks::last_code(int mine) const {
-    if (several()) reduce(*ranks_, mine, take_larger);
+    if (several()) reduce<take_larger>(*ranks_, mine);
     return mine;
 }
 

@@ -24,13 +24,6 @@ struct JoinedReport {
     Index crossed;
 };
 
-/// Calls take(value) with the value of each rank, in the order of the ranks.
-template <class T>
-void for_each_rank(Ranks& ranks, const T& mine, auto&& take) {
-    for (const RankMessage& message : ranks.gather_everywhere(std::as_bytes(std::span(&mine, 1))))
-        take(MailReader(message).take<T>());
-}
-
 }  // namespace
 
 void join_records(WorldState& world) {
@@ -53,7 +46,7 @@ void join_records(WorldState& world) {
     crossings.tested = share.tested;
     crossings.hits = share.hits;
     crossings.let_through = share.let_through;
-    for_each_rank(*world.ranks.ranks, mine, [&](const JoinedSums& of_rank) {
+    for_each_gathered<JoinedSums>(*world.ranks.ranks, std::span(&mine, 1), [&](const JoinedSums& of_rank) {
         counters.dissipated += of_rank.dissipated;
         counters.plastic_work += of_rank.plastic_work;
         balance.work += of_rank.work;
@@ -74,7 +67,7 @@ void join_reports(WorldState& world, StepReport& report) {
     join_records(world);
     const JoinedReport mine{report.held_penetration, world.record.held, report.crossed};
     report.crossed = 0;
-    for_each_rank(*world.ranks.ranks, mine, [&](const JoinedReport& of_rank) {
+    for_each_gathered<JoinedReport>(*world.ranks.ranks, std::span(&mine, 1), [&](const JoinedReport& of_rank) {
         report.held_penetration = std::max(report.held_penetration, of_rank.held_penetration);
         report.crossed += of_rank.crossed;
         world.record.held.take(of_rank.held);

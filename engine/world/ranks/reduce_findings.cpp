@@ -1,7 +1,6 @@
 // Stage in which all ranks combine their findings, so that all of them commit or abandon the attempt at a step.
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <span>
 
@@ -12,14 +11,6 @@
 namespace skerry {
 
 namespace {
-
-void combine_records(std::byte* into, const std::byte* from) {
-    RankFindings all, other;
-    std::memcpy(&all, into, sizeof all);
-    std::memcpy(&other, from, sizeof other);
-    combine(all, other);
-    std::memcpy(into, &all, sizeof all);
-}
 
 /// Columns by which bodies are named to other ranks.
 struct NamedBodies {
@@ -154,7 +145,7 @@ void reduce_findings(const NamedBodies& bodies, const ContactTable& contacts, co
     mine.pushed = regions.pushed;
     mine.counters = count_step(contacts, regions, found.measures, found.strained.newton, found.unstrained);
     all = mine;
-    reduce(*channel.ranks, all, combine_records);
+    reduce<combine>(*channel.ranks, all);
     all.counters.steps = 1;
     take_findings(all, found);
 }
@@ -188,7 +179,7 @@ void agree_to_start(WorldState& w) {
         ranks.all.fault_body = ranks.place_of(verdict.body);
         ranks.all.fault_value = verdict.value;
     }
-    reduce(*ranks.ranks, ranks.all, combine_records);
+    reduce<combine>(*ranks.ranks, ranks.all);
     left_out = !ranks.all.moves;
     verdict = {};
     if (!left_out && ranks.all.fault != StepFault::none)

@@ -1,17 +1,17 @@
 // Limits of the step length that depend on the bodies of all ranks.
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 
 #include "engine/world/step/step.h"
 
 namespace skerry {
 
-void reduce_limits(WorldState& world) {
-    if (!world.ranks.on()) return;
-    Model& model = world.model;
+namespace {
+
+/// Limits by the bodies that this rank owns. Model::of_ranks must have its initial value.
+LimitsOfRanks limits_of_rank(const WorldState& world) {
+    const Model& model = world.model;
     LimitsOfRanks limits;
-    model.of_ranks = limits;
     Index stiffest = no_index;
     limits.stable_step = stable_step(model, &stiffest);
     limits.stiffest = stiffest == no_index ? RankFindings::nobody : world.ranks.place_of(stiffest);
@@ -34,32 +34,44 @@ void reduce_limits(WorldState& world) {
     limits.follow_implicit = forces_follow_implicit_bodies(model);
     limits.clusters_grew = model.clusters_grew;
     limits.moves = model.force_rate_moves || model.joints.slot.size() > 0 || model.ties.size() > 0;
-    reduce(*world.ranks.ranks, limits, [](std::byte* into, const std::byte* from) {
-        LimitsOfRanks all, other;
-        std::memcpy(&all, into, sizeof all);
-        std::memcpy(&other, from, sizeof other);
-        if (other.stable_step < all.stable_step ||
-            (other.stable_step == all.stable_step && other.stiffest < all.stiffest)) {
-            all.stable_step = other.stable_step;
-            all.stiffest = other.stiffest;
-            all.strained = other.strained;
-        }
-        all.rest_step = std::min(all.rest_step, other.rest_step);
-        if (other.spin > all.spin || (other.spin == all.spin && other.spinning < all.spinning)) {
-            all.spin = other.spin;
-            all.spinning = other.spinning;
-        }
-        all.has_frames |= other.has_frames;
-        all.has_implicit |= other.has_implicit;
-        all.has_clusters |= other.has_clusters;
-        all.forced |= other.forced;
-        all.follow_implicit |= other.follow_implicit;
-        all.clusters_grew |= other.clusters_grew;
-        all.element_blocks += other.element_blocks;
-        all.cluster_entries += other.cluster_entries;
-        all.moves |= other.moves;
-        std::memcpy(into, &all, sizeof all);
-    });
+    return limits;
+}
+
+void combine_limits(LimitsOfRanks& into, const LimitsOfRanks& from) {
+    if (from.stable_step < into.stable_step ||
+        (from.stable_step == into.stable_step && from.stiffest < into.stiffest)) {
+        into.stable_step = from.stable_step;
+        into.stiffest = from.stiffest;
+        into.strained = from.strained;
+    }
+    into.rest_step = std::min(into.rest_step, from.rest_step);
+    if (from.spin > into.spin || (from.spin == into.spin && from.spinning < into.spinning)) {
+        into.spin = from.spin;
+        into.spinning = from.spinning;
+    }
+    into.has_frames |= from.has_frames;
+    into.has_implicit |= from.has_implicit;
+    into.has_clusters |= from.has_clusters;
+    into.forced |= from.forced;
+    into.follow_implicit |= from.follow_implicit;
+    into.clusters_grew |= from.clusters_grew;
+    into.element_blocks += from.element_blocks;
+    into.cluster_entries += from.cluster_entries;
+    into.moves |= from.moves;
+}
+
+void take_faster(StrainRate& into, const StrainRate& from) {
+    if (from.rate > into.rate || (from.rate == into.rate && from.body < into.body)) into = from;
+}
+
+}  // namespace
+
+void reduce_limits(WorldState& world) {
+    if (!world.ranks.on()) return;
+    Model& model = world.model;
+    model.of_ranks = {};
+    LimitsOfRanks limits = limits_of_rank(world);
+    reduce<combine_limits>(*world.ranks.ranks, limits);
     for (Index* place : {&limits.stiffest, &limits.spinning})
         if (*place == RankFindings::nobody) *place = no_index;
     model.of_ranks = limits;
@@ -72,13 +84,7 @@ void reduce_limits(WorldState& world) {
 StrainRate fastest_of_ranks(WorldState& world, const StrainRate& mine) {
     if (!world.ranks.on()) return mine;
     StrainRate all{mine.rate, mine.body == no_index ? RankFindings::nobody : world.ranks.place_of(mine.body)};
-    reduce(*world.ranks.ranks, all, [](std::byte* into, const std::byte* from) {
-        StrainRate fastest, other;
-        std::memcpy(&fastest, into, sizeof fastest);
-        std::memcpy(&other, from, sizeof other);
-        if (other.rate > fastest.rate || (other.rate == fastest.rate && other.body < fastest.body)) fastest = other;
-        std::memcpy(into, &fastest, sizeof fastest);
-    });
+    reduce<take_faster>(*world.ranks.ranks, all);
     return {all.rate, all.body == RankFindings::nobody ? no_index : all.body};
 }
 

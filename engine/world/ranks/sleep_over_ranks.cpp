@@ -72,11 +72,9 @@ void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<
 void join_wakes(const HeldBodies& bodies, const RankSleep& memory, Column<std::uint8_t>& pressed,
                 RankChannel& channel) {
     pressed.resize(bodies.place.size(), 0);
-    const std::span<const Index> woken = memory.woken;
-    for (const RankMessage& message : channel.ranks->gather_everywhere(std::as_bytes(woken)))
-        MailReader(message).take_all<Index>([&](Index place) {
-            if (const Index row = row_of_place(bodies.place, place); row != no_index) pressed[row] = 1;
-        });
+    for_each_gathered<Index>(*channel.ranks, memory.woken, [&](Index place) {
+        if (const Index row = row_of_place(bodies.place, place); row != no_index) pressed[row] = 1;
+    });
 }
 
 /// Joins sets of touching bodies that share a body, and marks the sets of this rank that must stay awake because of a

@@ -231,8 +231,8 @@ struct Model {
     /// Wakes one body, or all bodies.
     void wake(std::size_t body);
     void wake_all();
-    /// Must be called before a step: sets any_asleep, any_idle and
-    /// BodyTable::idle. Returns the mass of all bodies that are awake and no ghosts [kg].
+    /// Must be called before a step: sets any_asleep, any_idle and BodyTable::idle. Returns the mass of all bodies that
+    /// are awake and no ghosts [kg].
     Real note_rest();
     /// Must be called after the loads of a body were set. Updates loaded_bodies. `before`: true if the body already had
     /// loads.

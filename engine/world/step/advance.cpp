@@ -143,6 +143,15 @@ void note_limit(WorldState& world, StepReport& report) {
     report.limited_by = name_body(world, body).name;
 }
 
+/// Adds a committed step to the report of the call.
+void note_committed_step(WorldState& world, StepReport& report) {
+    report.step_size = world.scratch.parameters.h;
+    add_to_report(world.scratch.counters, report);
+    note_held(held_in_shapes(world, report.steps == 1), world, report);
+    note_inversions(world, report);
+    note_limit(world, report);
+}
+
 /// Limits the next attempt so that no body with a joint or tie rotates too far.
 void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     Index row = no_index;
@@ -295,15 +304,11 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             break;
         }
         if (outcome != StepOutcome::committed) continue;
-        report.crossed += static_cast<Index>(world.cache.crossings.let_through - let_through);
-        report.step_size = plan.h;
         world.drawn_behind = world.scratch.parameters.draws_late;
         if (world.scratch.findings.rest.bodies > 0) world.draw(true);
         if (world.scratch.findings.released_ties > 0) release_ties(world);
-        add_to_report(world.scratch.counters, report);
-        note_held(held_in_shapes(world, report.steps == 1), world, report);
-        note_inversions(world, report);
-        note_limit(world, report);
+        report.crossed += static_cast<Index>(world.cache.crossings.let_through - let_through);
+        note_committed_step(world, report);
         left = plan.steps > 1 || within < left ? left - plan.h : 0;
         move_on_in_long_step(plan, clock.long_step);
         balance.work += std::exchange(stiffened, Real(0));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
@@ -169,9 +170,9 @@ void check_balance(const WorldState& world, Real time, Real lag, Balance& balanc
     now.damps_held_body = !balance.open && damps_held_body(model);
     now.holds_implicit_element = holds_implicit_element(model);
     if (world.ranks.on()) {
-        const std::vector<RankMessage> all = world.ranks.ranks->gather_everywhere(std::as_bytes(std::span(&now, 1)));
-        now = {};
-        for (const RankMessage& message : all) now.add(MailReader(message).take<Present>());
+        const Present mine = std::exchange(now, {});
+        for_each_gathered<Present>(*world.ranks.ranks, std::span(&mine, 1),
+                                   [&](const Present& of_rank) { now.add(of_rank); });
     }
     const Real energy = now.kinetic + now.elastic + now.potential;
     const bool was_open = balance.open;

@@ -226,12 +226,11 @@ void gather_pieces(const Model& model, RankState& ranks) {
             mine.push_back(
                 {ranks.place[b], static_cast<std::uint32_t>(pieces_of_look(elements, model.bodies.blocks[b]))});
     ranks.pieces_before.clear();
-    for (const RankMessage& message : ranks.ranks->gather_everywhere(std::as_bytes(std::span(mine))))
-        MailReader(message).take_all<PiecesAtPlace>([&](const PiecesAtPlace& body) {
-            const auto place = static_cast<std::size_t>(body.place);
-            ranks.pieces_before.resize(std::max(ranks.pieces_before.size(), place + 2), 0);
-            ranks.pieces_before[place + 1] = body.pieces;
-        });
+    for_each_gathered<PiecesAtPlace>(*ranks.ranks, mine, [&](const PiecesAtPlace& body) {
+        const auto place = static_cast<std::size_t>(body.place);
+        ranks.pieces_before.resize(std::max(ranks.pieces_before.size(), place + 2), 0);
+        ranks.pieces_before[place + 1] = body.pieces;
+    });
     for (std::size_t place = 1; place < ranks.pieces_before.size(); ++place)
         ranks.pieces_before[place] += ranks.pieces_before[place - 1];
 }

@@ -64,4 +64,11 @@ private:
     std::span<const std::byte> rest_;
 };
 
+/// Collective. Calls visit(row) for the rows of all ranks, in the order of the ranks.
+template <class T>
+void for_each_gathered(Ranks& ranks, std::span<const T> mine, auto&& visit) {
+    for (const RankMessage& message : ranks.gather_everywhere(std::as_bytes(mine)))
+        MailReader(message).take_all<T>(visit);
+}
+
 }  // namespace skerry
