@@ -14,6 +14,7 @@ namespace skerry::test {
 void hold_everywhere(World& world, Ranks& ranks) {
     WorldState& state = WorldAccess::state_of(world);
     note_changed_seams(state.model);
+    settle_clusters(state.model, state.scratch.stiffness_sum);
     RankState& mine = state.ranks;
     mine.ranks = &ranks;
     mine.rank = ranks.rank();

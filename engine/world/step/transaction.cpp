@@ -302,7 +302,7 @@ Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable) {
 
 StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& attempt) {
     StepScratch& scratch = world.scratch;
-    const bool tried = attempt.with_longer_lists > 0 || attempt.with_crossings > 0;
+    const bool tried = attempt.with_longer_lists > 0 || attempt.with_crossings > 0 || attempt.over_ranks;
     scratch.parameters.forces_known = tried && scratch.parameters.h == plan.h;
     scratch.parameters.h = plan.h;
     scratch.parameters.longest = std::min(plan.stable, plan.h * fast_growth / strain_margin);
@@ -339,6 +339,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
             attempt = limits_of_next_attempt(scratch, plan, attempt);
             return outcome;
         case StepOutcome::again_over_ranks:
+            attempt.over_ranks = true;
+            break;
         case StepOutcome::again_with_longer_lists:
         case StepOutcome::again_with_crossings:
             break;

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "engine/mesh/visual/bound_visual.h"
+#include "engine/output/json_object.h"
 #include "engine/output/page/stream/pack.h"
 #include "engine/output/vtk/vtk_series.h"
 #include "output_sample.h"
@@ -14,7 +14,6 @@
 namespace {
 
 using namespace skerry;
-using Json = nlohmann::json;
 
 Json json_of(const Vec3& v) {
     return {v.x(), v.y(), v.z()};
