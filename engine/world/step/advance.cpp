@@ -161,11 +161,15 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.place_of(row);
 }
 
-/// Exchanges bodies with other ranks after an attempt that lacked some of them.
-void fetch_ghosts(WorldState& world) {
-    if (!world.ranks.all.bodies_missing && !world.ranks.all.ghosts_expired) return;
+/// Exchanges bodies with other ranks after an attempt that lacked some of them. Returns true if the next attempt then
+/// computes the forces anew, because new ghosts have none. It must find the clusters as the abandoned attempt has found
+/// them: the forces contain the impulses of clusters that become stiffer.
+bool fetch_ghosts(WorldState& world) {
+    if (!world.ranks.all.bodies_missing && !world.ranks.all.ghosts_expired) return false;
+    world.transaction.restore_stiffness(world.model);
     update_ghosts(world);
-    world.scratch.parameters.h = 0;  // the next attempt must not reuse forces, which new ghosts do not have
+    world.scratch.parameters.h = 0;
+    return true;
 }
 
 /// Throws SceneError if a call would need too many steps. Steps are counted with an int. Without this check, a call
@@ -241,7 +245,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     world.scratch.self_crossing_places.resize(model.bodies.slot.size());
     // force elements read all nodes in every step, so these nodes must be up to date
     world.scratch.parameters.draws_late = !model.forced;
-    Real stiffened = 0;  // energy that clusters have gained since the last committed step [J]
+    // Energy that clusters have gained since the last committed step, and the part of it from before the present forces
+    // were computed [J]
+    Real stiffened = 0, stiffened_before = 0;
     // With leapfrog, the balance is checked only at the end of the call, when positions and velocities belong to one
     // time.
     bool check_at_end = false;
@@ -296,9 +302,10 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const Real start = clock.time;
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, attempt);
+        if (!world.scratch.parameters.forces_known) stiffened_before = stiffened;
         stiffened += world.scratch.findings.stiffened;  // energy also counts if the attempt is not committed
         note_outcome(outcome, world.record.counters, report);
-        if (outcome == StepOutcome::again_over_ranks) fetch_ghosts(world);
+        if (outcome == StepOutcome::again_over_ranks && fetch_ghosts(world)) stiffened = stiffened_before;
         if (outcome == StepOutcome::refused) {
             blame(world, report);
             break;

@@ -102,6 +102,7 @@ bool run_stages(WorldState& world) {
         scratch.parameters.sleep.on() && (model.forced || model.joints.size() > 0 || model.ties.size() > 0);
     scratch.driven.assign(drivable ? model.bodies.slot.size() : 0, 0);
     world.transaction.begin_try(model);
+    if (world.ranks.on() && !scratch.parameters.forces_known) world.transaction.keep_stiffness(model);
     world.record.contact_view_is_current = false;
     if (scratch.left_out) {
         scratch.ran_inline = false;
@@ -379,6 +380,18 @@ void StepTransaction::roll_back_try(Model& model) const {
     if (model.any_asleep) keep_at_rest(model.bodies, model.nodes.velocity_next);
 }
 
+void StepTransaction::keep_stiffness(const Model& model) {
+    if (model.clusters.empty()) return;
+    modulus_ = model.elements.implicit_modulus;
+    inverse_ = model.clusters.inverse;
+}
+
+void StepTransaction::restore_stiffness(Model& model) const {
+    if (model.clusters.empty()) return;
+    model.elements.implicit_modulus = modulus_;
+    model.clusters.inverse = inverse_;
+}
+
 void StepTransaction::begin_call(const Model& model, const Clock& clock) {
     if (model.settings.integrator != Integrator::leapfrog) return;
     time_ = clock.time;
@@ -389,9 +402,7 @@ void StepTransaction::begin_call(const Model& model, const Clock& clock) {
     moments_ = model.rigid_bodies.moments;
     axes_ = model.rigid_bodies.axes;
     displacement_ = model.implicit_nodes.displacement;
-    if (model.clusters.empty()) return;
-    modulus_ = model.elements.implicit_modulus;
-    inverse_ = model.clusters.inverse;
+    keep_stiffness(model);
 }
 
 void StepTransaction::roll_back_call(Model& model, Clock& clock) const {
@@ -405,9 +416,7 @@ void StepTransaction::roll_back_call(Model& model, Clock& clock) const {
     model.implicit_nodes.displacement = displacement_;
     clock.time = time_;
     clock.offset = 0;
-    if (model.clusters.empty()) return;
-    model.elements.implicit_modulus = modulus_;
-    model.clusters.inverse = inverse_;
+    restore_stiffness(model);
 }
 
 }  // namespace skerry

@@ -79,7 +79,9 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
 ///     clusters.inverse                          stiffen_clusters       nothing: they follow the shapes at the start of
 ///                                                                      the attempt, as they do at the end of a call;
 ///                                                                      with leapfrog, whose shapes drift before, a
-///                                                                      copy from the start of the call
+///                                                                      copy from the start of the call; before bodies
+///                                                                      move between ranks, a copy from the attempt
+///                                                                      that computed the forces
 ///     pairs, their search                       find_candidates        nothing: results of a search for the positions
 ///                                                                      at the start of the step stay valid;
 ///     search.memory.body_unmeasured                                    bodies that no committed step has measured
@@ -91,6 +93,9 @@ class StepTransaction {
 public:
     void begin_try(const Model& model);
     void roll_back_try(Model& model) const;
+    /// keep_stiffness and restore_stiffness store and restore the assumed stiffness of clusters.
+    void keep_stiffness(const Model& model);
+    void restore_stiffness(Model& model) const;
     /// For each body, nonzero if it was asleep when the attempt began.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
 
