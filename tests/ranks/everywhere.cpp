@@ -13,6 +13,8 @@ namespace skerry::test {
 
 void hold_everywhere(World& world, Ranks& ranks) {
     WorldState& state = WorldAccess::state_of(world);
+    world.settle_start();  // as distribute() does
+    state.settle();
     note_changed_seams(state.model);
     settle_clusters(state.model, state.scratch.stiffness_sum);
     RankState& mine = state.ranks;
