@@ -18,6 +18,7 @@
 #include "engine/program/signal_guard.h"
 #include "engine/program/sweep/share.h"
 #include "engine/scene/case_hash.h"
+#include "engine/world/complaint.h"
 #include "jobs/ranks/mpi_ranks.h"
 #include "skerry/error.h"
 #include "skerry/instruction_set.h"
@@ -116,14 +117,10 @@ RunRanks RunRanks::join() {
     if (tasks.of == 1) return {};
     std::unique_ptr<Ranks> ranks = start_mpi();
     if (ranks->size() != tasks.of)
-        Complaint{.file = {},
-                  .object = tasks.said_by,
-                  .field = {},
-                  .found = std::to_string(tasks.of) + " processes, of which MPI has connected " +
-                           std::to_string(ranks->size()),
-                  .expected = "connections between all of them",
-                  .hint = "use the launcher of the MPI library that Skerry was built with; for srun try --mpi=pmix"}
-            .raise();
+        refuse(tasks.said_by, {},
+               std::to_string(tasks.of) + " processes, of which MPI has connected " + std::to_string(ranks->size()),
+               "connections between all of them",
+               "use the launcher of the MPI library that Skerry was built with; for srun try --mpi=pmix");
     return RunRanks(std::move(ranks));
 }
 
@@ -181,13 +178,8 @@ RunOptions RunRanks::options_for(const RunOptions& asked) const {
     if (!several()) return options;
     for (const char* option : {"--trace", "--export-problems"})
         if (const auto output = asked.outputs.find(option); output != asked.outputs.end() && !output->second.empty())
-            Complaint{.file = {},
-                      .object = option,
-                      .field = {},
-                      .found = std::to_string(ranks_->size()) + " ranks",
-                      .expected = "one process, because this output shows the steps of one process only",
-                      .hint = {}}
-                .raise();
+            refuse(option, {}, std::to_string(ranks_->size()) + " ranks",
+                   "one process, because this output shows the steps of one process only");
     if (!options.overrides.threads) options.overrides.threads = task_share(std::getenv).cores;
     if (!is_first()) options.quiet = true;
     return options;
@@ -314,13 +306,8 @@ void require_one_process(const std::string& command) {
     if (command == "run" || command == "sweep") return;
     const Share tasks = task_share(std::getenv);
     if (tasks.of > 1)
-        Complaint{.file = {},
-                  .object = tasks.said_by,
-                  .field = {},
-                  .found = std::to_string(tasks.of) + " processes of `skerry " + command + "`",
-                  .expected = "one process",
-                  .hint = "only `skerry run` and `skerry sweep` share their work among processes"}
-            .raise();
+        refuse(tasks.said_by, {}, std::to_string(tasks.of) + " processes of `skerry " + command + "`", "one process",
+               "only `skerry run` and `skerry sweep` share their work among processes");
 }
 
 bool is_first_process() {

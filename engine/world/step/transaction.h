@@ -48,7 +48,7 @@ struct AttemptLimits {
     Index fastest = no_index;      // body that causes this bound, by its place in the undivided world
     int with_longer_lists = 0;     // number of attempts at this step whose contact lists were incomplete
     int with_crossings = 0;        // number of attempts with this step length in which features crossed
-    bool over_ranks = false;       // true if ranks had to exchange something after an attempt at this step
+    bool over_ranks = false;       // true after an attempt at this step that all ranks have abandoned together
     bool letting_through = false;  // true if the next attempt is the last, which accepts crossings and inversions
     // Cause of the bound `longest`: the last cause for which an attempt was shortened, apart from speed.
     StepLimit limit = StepLimit::inversion;

@@ -20,8 +20,7 @@ namespace skerry {
 namespace {
 
 [[noreturn]] void refuse_division(const char* field, const char* found, const char* expected, const char* hint) {
-    Complaint{.file = {}, .object = "distribute", .field = field, .found = found, .expected = expected, .hint = hint}
-        .raise();
+    refuse("distribute", field, found, expected, hint);
 }
 
 /// Refuses worlds that ranks cannot divide.
