@@ -48,15 +48,17 @@ nb::tuple arrays_of(const SurfaceMesh& surface) {
                           array_of<Index>(std::span<const std::array<Index, 3>>(surface.triangles), {3}));
 }
 
-nb::tuple read(const std::string& path) {
+nb::tuple read(const std::string& path, Real scale) {
     Notes notes;
     Mesh mesh = without_gil([&] { return mesh::read(path, &notes); });
+    for (Vec3& node : mesh.nodes) node *= scale;
     return nb::make_tuple(std::move(mesh), notes);
 }
 
-nb::tuple read_surface(const std::string& path) {
+nb::tuple read_surface(const std::string& path, Real scale) {
     Notes notes;
-    const SurfaceMesh surface = without_gil([&] { return mesh::read_surface(path, &notes); });
+    SurfaceMesh surface = without_gil([&] { return mesh::read_surface(path, &notes); });
+    for (Vec3& node : surface.nodes) node *= scale;
     return nb::make_tuple(arrays_of(surface), notes);
 }
 

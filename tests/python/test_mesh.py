@@ -122,6 +122,18 @@ def test_a_written_mesh_is_read_back_equal(tmp_path: Path) -> None:
     assert sk.read_surface(str(tmp_path / "a.msh")) == mesh.boundary()
 
 
+def test_a_file_in_millimetres_is_read_in_metres(tmp_path: Path) -> None:
+    mesh = sk.Mesh(np.array(NODES) * 1000, TETRAHEDRA, labels=[7, 9])
+    mesh.write(tmp_path / "a.msh")
+    read = sk.Mesh.read(tmp_path / "a.msh", scale=0.001)
+    assert read.nodes == pytest.approx(np.array(NODES), rel=1e-15)
+    assert np.array_equal(read.labels, mesh.labels)
+    assert sk.read_surface(tmp_path / "a.msh", scale=0.001) == read.boundary()
+    for scale in (0, -1, np.nan, np.inf):
+        with pytest.raises(sk.SceneError, match="scale: found .*, expected a factor above 0"):
+            sk.Mesh.read(tmp_path / "a.msh", scale=scale)
+
+
 def test_a_file_that_cannot_be_read_is_named_in_the_error(tmp_path: Path) -> None:
     with pytest.raises(sk.SceneError, match=r"none\.msh") as caught:
         sk.Mesh.read(tmp_path / "none.msh")

@@ -255,22 +255,22 @@ def plain(value: Any) -> Any:
     return value.round(12).tolist() if hasattr(value, "tolist") else value
 
 
-@pytest.mark.parametrize(
-    ("make", "method"),
-    [
-        (spring, "add_spring"),
-        (cable, "add_cable"),
-        (cavity, "add_cavity"),
-        (balloon, "add_cavity"),
-        (pipe, "add_pipe"),
-        (tie, "add_tie"),
-        (load, "add_force"),
-        (traction, "add_traction"),
-        (drag, "add_drag"),
-        (acceleration, "add_acceleration"),
-        (fibres, "add_fibres"),
-    ],
-)
+ADDED: list[tuple[Callable[[sk.World], Any], str]] = [
+    (spring, "add_spring"),
+    (cable, "add_cable"),
+    (cavity, "add_cavity"),
+    (balloon, "add_cavity"),
+    (pipe, "add_pipe"),
+    (tie, "add_tie"),
+    (load, "add_force"),
+    (traction, "add_traction"),
+    (drag, "add_drag"),
+    (acceleration, "add_acceleration"),
+    (fibres, "add_fibres"),
+]
+
+
+@pytest.mark.parametrize(("make", "method"), ADDED)
 def test_settings_are_arguments_that_add_an_equal_object(make: Callable[[sk.World], Any], method: str) -> None:
     world = object_world()
     item = make(world)
@@ -279,6 +279,21 @@ def test_settings_are_arguments_that_add_an_equal_object(make: Callable[[sk.Worl
     assert {name: plain(value) for name, value in twin.settings.items()} == {
         name: plain(value) for name, value in item.settings.items()
     }
+
+
+@pytest.mark.parametrize(("make", "method"), [*ADDED, (weight, "add_gravity_scale"), (joint, "add_joint")])
+def test_an_object_is_named_when_it_is_added(make: Callable[[sk.World], Any], method: str) -> None:
+    world = object_world()
+    item = make(world)
+    given = item.settings
+    item.remove()
+    assert getattr(world, method)(**given, name="mine").name == "mine"
+    before = world.to_bytes()
+    for name in ("", "two\nlines"):
+        with pytest.raises(sk.SceneError, match="name: found '.*', expected a text of at least one character"):
+            getattr(world, method)(**given, name=name)
+    assert world.to_bytes() == before
+    assert world.add_surface_set(world.bodies["cube"], nodes=[0], name="sole").name == "sole"
 
 
 def test_settings_are_those_that_were_given() -> None:

@@ -172,6 +172,11 @@ def name_text(value: object, name: str) -> str:
     return value
 
 
+def optional_name(value: object) -> str | None:
+    """A text that can name something, or None."""
+    return None if value is None else name_text(value, "name")
+
+
 def seconds(value: SupportsFloat, object: str, name: str, *, zero: bool = True) -> float:
     """A finite time, >= 0 or > 0 [s]."""
     number = float(value) if isinstance(value, float) else real(value, f"{object}: {name}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import warnings
@@ -88,7 +89,7 @@ class Mesh:
     # Files.
 
     @staticmethod
-    def read(path: Path) -> Mesh:
+    def read(path: Path, *, scale: float = 1) -> Mesh:
         """Reads a mesh from Gmsh .msh (1, 2.2, 4.1), VTK .vtk or .vtu, TetGen .node and .ele, Medit .mesh and .meshb,
         or Abaqus .inp.
 
@@ -98,9 +99,9 @@ class Mesh:
         physical groups by name, or surface_N and the like without one (Gmsh); arrays NAME of zeros and ones, and NAME_N
         for each number N of other arrays of whole numbers (VTK); node_marker_N and face_marker_N (TetGen); node_ref_N
         and face_ref_N (Medit); sets and surfaces by name, after INSTANCE and a dot (Abaqus). Inverted tetrahedra are
-        turned. A warning Doubt tells what was divided, dropped or turned. SceneError: the file cannot be read, or has
-        no tetrahedra."""
-        core, notes = _core.read_mesh(path_text(path, "path"))
+        turned. A warning Doubt tells what was divided, dropped or turned. scale: factor for all coordinates, 0.001 for
+        a file in millimetres. SceneError: the file cannot be read, or has no tetrahedra."""
+        core, notes = _core.read_mesh(path_text(path, "path"), _scale(scale))
         _warn(notes)
         return Mesh._of(core)
 
@@ -373,12 +374,21 @@ class Mesh:
         return f"<skerry.Mesh {len(self.nodes):,} nodes, {len(self.tetrahedra):,} tetrahedra{labels}>"
 
 
-def read_surface(path: Path) -> SurfaceMesh:
+def read_surface(path: Path, *, scale: float = 1) -> SurfaceMesh:
     """Reads a triangle surface from a file in one of the formats of Mesh.read(), or from .obj, .ply or .stl. The
-    surface of a tetrahedral mesh is its boundary."""
-    (nodes, triangles), notes = _core.read_surface(path_text(path, "path"))
+    surface of a tetrahedral mesh is its boundary. scale: factor for all coordinates, 0.001 for a file in
+    millimetres."""
+    (nodes, triangles), notes = _core.read_surface(path_text(path, "path"), _scale(scale))
     _warn(notes)
     return SurfaceMesh(nodes=nodes, triangles=triangles)
+
+
+def _scale(given: float) -> float:
+    """A factor for coordinates."""
+    factor = real(given, "scale")
+    if not (math.isfinite(factor) and factor > 0):
+        raise scene_error("", "scale", str(factor), "a factor above 0")
+    return factor
 
 
 def _same_mesh(nodes: Any, tetrahedra: Any, labels: Any, file_number: Any, sets: SetsLike) -> Mesh:

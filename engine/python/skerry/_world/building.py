@@ -18,6 +18,7 @@ from .._arrays import (
     flag,
     index_array,
     name_text,
+    optional_name,
     read_only,
     real,
     real_array,
@@ -266,13 +267,15 @@ class Building(CavityBuilding):
         motor: Motor | None = None,
         passive: JointPassive | None = None,
         bodies_touch: bool = False,
+        name: str | None = None,
     ) -> Joint:
         """Joins two rigid bodies, or a rigid body and the world, in their present poses, and returns the joint.
 
         kind: "ball", "hinge", "slider" or "fixed". point: position of the joint (3,) [m]. axis: axis of a hinge or a
         slider (3,). coordinate: present coordinate; lower, upper: its limits [rad or m]. motor: motor on the axis.
-        passive: spring, damper and dry friction on the axis. bodies_touch: True: the two bodies may collide.
-        SceneError: a body is not rigid, or a value is out of range."""
+        passive: spring, damper and dry friction on the axis. bodies_touch: True: the two bodies may collide. name: see
+        Joint.name. SceneError: a body is not rigid, or a value is out of range."""
+        name = optional_name(name)
         given = Arguments(
             of="joint",
             kind=kind,
@@ -287,7 +290,7 @@ class Building(CavityBuilding):
         )
         one = self._own(first, "first", Body)
         other = None if second is None else self._own(second, "second", Body)
-        return self._joint(self._core.add_joint(one, other, given))
+        return self._joint(self._core.add_joint(one, other, given))._named(name)
 
     def add_tie(
         self,
@@ -299,6 +302,7 @@ class Building(CavityBuilding):
         break_force: float = math.inf,
         close_gap: bool = False,
         bodies_touch: bool = False,
+        name: str | None = None,
     ) -> Tie:
         """Ties nodes of a deformable body in their present places to the nearest points of another body or a collider,
         or to the world, and returns the tie.
@@ -306,8 +310,10 @@ class Building(CavityBuilding):
         nodes: numbers within the body (j,), or a truth value for each node (n,). kind: "weld", or "slide" for nodes
         that may move in the plane of the surface, or "ball": only the mean point of all nodes, weighted by their
         masses, is tied. break_force: force at which a node, or the ball, breaks off [N]. close_gap: True:
-        the nodes move to the surface. bodies_touch: True: the two objects may collide while nodes are tied. SceneError:
-        the body is rigid, or a value is out of range. BufferError: arrays of views() are in use."""
+        the nodes move to the surface. bodies_touch: True: the two objects may collide while nodes are tied. name: see
+        Tie.name. SceneError: the body is rigid, or a value is out of range. BufferError: arrays of views() are in
+        use."""
+        name = optional_name(name)
         given = Arguments(
             of="tie",
             kind=kind,
@@ -318,7 +324,8 @@ class Building(CavityBuilding):
         tied = self._own(body, "body", Body)
         other = None if to is None else self._own(to, "to", Body, Collider)
         to_body, to_collider = (None, other) if isinstance(to, Collider) else (other, None)
-        return self._tie(self._core.add_tie(tied, body._node_numbers(nodes), to_body, to_collider, given))
+        tie = self._tie(self._core.add_tie(tied, body._node_numbers(nodes), to_body, to_collider, given))
+        return tie._named(name)
 
     def add_cable(
         self,
@@ -328,16 +335,19 @@ class Building(CavityBuilding):
         length: TimeTableLike | None = None,
         rate: TimeTableLike | None = None,
         friction: float = 0.0,
+        name: str | None = None,
     ) -> Cable:
         """Adds a cable that runs straight from point to point and never pushes, and returns it.
 
         points: at least two, and at least one on a body. Exactly one of the following is given, as a number or as pairs
         (time, value). tension: tension of the first segment [N]. length: greatest length [m]. rate: rate of the
         greatest length, which is the length now [m/s]. friction: friction coefficient mu at the points between the
-        first and the last; tensions differ there by at most exp(mu theta) for a bend by the angle theta."""
+        first and the last; tensions differ there by at most exp(mu theta) for a bend by the angle theta. name: see
+        Cable.name."""
+        name = optional_name(name)
         given = [core_anchor(self._self, point, f"points[{number}]") for number, point in enumerate(points)]
         drive = drive_tables(tension, length, rate)
-        return self._cable(self._core.add_cable(given, *drive, real(friction, "friction")))
+        return self._cable(self._core.add_cable(given, *drive, real(friction, "friction")))._named(name)
 
     def add_spring(
         self,
@@ -349,12 +359,15 @@ class Building(CavityBuilding):
         rest_length: TimeTableLike | None = None,
         only: SpringSide = "both",
         strength: float = math.inf,
+        name: str | None = None,
     ) -> Spring:
         """Adds a spring, a damper, or both in parallel, between two anchors, and returns the spring.
 
         stiffness: [N/m]. damping: force per rate of the length [N s/m]. rest_length: a number, or pairs (time [s],
         length); None: the present length [m]. only: "both", "tension" (acts only while longer than the rest length) or
-        "compression". strength: largest force [N]. SceneError: no anchor is on a body, or a value is out of range."""
+        "compression". strength: largest force [N]. name: see Spring.name. SceneError: no anchor is on a body, or a
+        value is out of range."""
+        name = optional_name(name)
         given = Arguments(
             of="spring",
             stiffness=real(stiffness, "stiffness"),
@@ -364,7 +377,7 @@ class Building(CavityBuilding):
             strength=real(strength, "strength"),
         )
         one, other = core_anchor(self._self, first, "first"), core_anchor(self._self, second, "second")
-        return self._spring(self._core.add_spring(one, other, given))
+        return self._spring(self._core.add_spring(one, other, given))._named(name)
 
     def remove(self, removed: PosedObject | NamedObject) -> None:
         """Removes an object of any kind except a material. BufferError: arrays of views() are in use."""

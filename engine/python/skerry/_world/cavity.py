@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from numpy.typing import ArrayLike
 
-from .._arrays import TimeTableLike, Vector, checked, index_array, real, time_table
+from .._arrays import TimeTableLike, Vector, checked, index_array, optional_name, real, time_table
 from .._settings import CavityLaw, Gas, Liquid
 from .body import Body
 from .objects import NamedObject, ObjectList
@@ -148,13 +148,16 @@ class CavityBuilding:
         gas: Gas | None = None,
         liquid: Liquid | None = None,
         volume: float | None = None,
+        name: str | None = None,
     ) -> Cavity:
         """Puts faces of a body under a pressure and returns the cavity. Give one of `pressure`, `gas` and `liquid`.
 
         faces: rows of Body.surface, shape (n, 3); None: the walls of all hollows inside of the body, or the whole
         surface of a body without hollows. pressure: pressure above ambient, a number or pairs (time, value) [Pa]. gas,
         liquid: filling of the cavity. volume: volume of the filling at the start, only for faces that do not enclose a
-        volume, as those of a piston [m^3]. SceneError: a face does not exist, or a value is out of range."""
+        volume, as those of a piston [m^3]. name: see Cavity.name. SceneError: a face does not exist, or a value is out
+        of range."""
+        name = optional_name(name)
         given = [pressure, gas, liquid]
         if given.count(None) != 2:
             raise TypeError("add_cavity: expected exactly one of pressure, gas and liquid")
@@ -166,23 +169,30 @@ class CavityBuilding:
             None if liquid is None else checked(liquid, "liquid", Liquid),
             None if volume is None else real(volume, "volume"),
         )
-        return self._cavity(handle)
+        return self._cavity(handle)._named(name)
 
     def add_pipe(
-        self, first: Cavity, second: Cavity | None = None, *, conductance: float, pressure: TimeTableLike = 0.0
+        self,
+        first: Cavity,
+        second: Cavity | None = None,
+        *,
+        conductance: float,
+        pressure: TimeTableLike = 0.0,
+        name: str | None = None,
     ) -> Pipe:
         """Connects two cavities with the same gas, or a cavity and a reservoir of this gas, and returns the pipe.
 
         second: None: a reservoir. conductance: mass flow divided by the pressure difference, >= 0 [kg/(s Pa)].
-        pressure: pressure of the reservoir above ambient, a number or pairs (time, value) [Pa]. SceneError: a cavity
-        has no gas or another one, or a value is out of range."""
+        pressure: pressure of the reservoir above ambient, a number or pairs (time, value) [Pa]. name: see Pipe.name.
+        SceneError: a cavity has no gas or another one, or a value is out of range."""
+        name = optional_name(name)
         handle = self._core.add_pipe(
             self._own(first, "first", Cavity),
             None if second is None else self._own(second, "second", Cavity),
             real(conductance, "conductance"),
             time_table(pressure, "pressure"),
         )
-        return self._pipe(handle)
+        return self._pipe(handle)._named(name)
 
     @property
     def cavities(self) -> ObjectList[Cavity]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arrays import Reals, TimeTableLike, index_array, real, real_array, time_table
+from .._arrays import Reals, TimeTableLike, index_array, optional_name, real, real_array, time_table
 from .objects import NamedObject, ObjectList
 
 if TYPE_CHECKING:
@@ -78,15 +78,17 @@ class WorldFibres:
         stiffness: float = 0.0,
         exponent: float = 0.0,
         tension: TimeTableLike = 0.0,
+        name: str | None = None,
     ) -> FibreFamily:
         """Adds a family of fibres with the energy W = k_1/(2 k_2) (exp(k_2 E^2) - 1), E = max(stretch^2 - 1, 0).
 
         direction: in the mesh, (3,) for all tetrahedra or (n, 3). tetrahedra: their numbers, (n,); None: all.
         stiffness: k_1, >= 0 [Pa]. exponent: k_2, >= 0. tension: active tension, >= 0, as force along the fibres per
-        area at rest [Pa]: a number, or pairs (time [s], tension)."""
+        area at rest [Pa]: a number, or pairs (time [s], tension). name: see FibreFamily.name."""
         from .body import Body
 
-        return self._new_fibres(
+        name = optional_name(name)
+        family = self._new_fibres(
             self._core.add_fibres(
                 self._own(body, "body", Body),
                 index_array(() if tetrahedra is None else tetrahedra, "tetrahedra", ("n",)),
@@ -95,6 +97,7 @@ class WorldFibres:
                 time_table(tension, "tension"),
             )
         )
+        return family._named(name)
 
     @property
     def fibres(self) -> ObjectList[FibreFamily]:

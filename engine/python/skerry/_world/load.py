@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
 from numpy.typing import ArrayLike
 
-from .._arrays import TimeTableLike, Vector, VectorLike, flag, index_array, real, real_array, time_table
+from .._arrays import TimeTableLike, Vector, VectorLike, flag, index_array, optional_name, real, real_array, time_table
 from .objects import NamedObject, ObjectList
 
 if TYPE_CHECKING:
@@ -70,7 +70,8 @@ class Load(NamedObject):
 
 class WorldLoads:
     """The part of World that adds and finds loads. Every load has a `scale`: a number, or pairs (time [s], value). A
-    step uses the exact mean of the scale, so that the impulses add up to the integral of the force over time."""
+    step uses the exact mean of the scale, so that the impulses add up to the integral of the force over time. `name`:
+    see Load.name."""
 
     __slots__ = ()
 
@@ -78,10 +79,19 @@ class WorldLoads:
         _core: Any
         _own: Any
 
-    def add_force(self, body: Body, nodes: ArrayLike, force: VectorLike, *, scale: TimeTableLike = 1.0) -> Load:
+    def add_force(
+        self,
+        body: Body,
+        nodes: ArrayLike,
+        force: VectorLike,
+        *,
+        scale: TimeTableLike = 1.0,
+        name: str | None = None,
+    ) -> Load:
         """Adds a total force (3,) [N] on some nodes of a body, which share it in proportion to their masses. nodes:
         numbers within the body (j,), or a truth value for each node (n,)."""
-        return self._new_load(
+        name = optional_name(name)
+        load = self._new_load(
             self._core.add_force(
                 self._loaded(body),
                 body._node_numbers(nodes),
@@ -89,6 +99,7 @@ class WorldLoads:
                 time_table(scale, "scale"),
             )
         )
+        return load._named(name)
 
     def add_traction(
         self,
@@ -98,11 +109,13 @@ class WorldLoads:
         *,
         scale: TimeTableLike = 1.0,
         present_area: bool = False,
+        name: str | None = None,
     ) -> Load:
         """Adds a force per area (3,) [Pa] on some faces of a body, which are rows of body.surface, shape (n, 3). The
         direction is fixed in the world. present_area: True: per area of the deformed faces; False: per area of the
         faces in the rest shape."""
-        return self._new_load(
+        name = optional_name(name)
+        load = self._new_load(
             self._core.add_traction(
                 self._loaded(body),
                 index_array(faces, "faces", ("n", 3)),
@@ -111,22 +124,32 @@ class WorldLoads:
                 flag(present_area, "present_area"),
             )
         )
+        return load._named(name)
 
     def add_acceleration(
-        self, acceleration: VectorLike, *, body: Body | None = None, scale: TimeTableLike = 1.0
+        self,
+        acceleration: VectorLike,
+        *,
+        body: Body | None = None,
+        scale: TimeTableLike = 1.0,
+        name: str | None = None,
     ) -> Load:
         """Adds an acceleration (3,) [m/s^2] of a body, or of all bodies, to the gravity of the settings."""
-        return self._new_load(
+        name = optional_name(name)
+        load = self._new_load(
             self._core.add_acceleration(
                 self._body_or_all(body),
                 real_array(acceleration, "acceleration", (3,)),
                 time_table(scale, "scale"),
             )
         )
+        return load._named(name)
 
-    def add_gravity_scale(self, scale: TimeTableLike, *, body: Body | None = None) -> Load:
+    def add_gravity_scale(self, scale: TimeTableLike, *, body: Body | None = None, name: str | None = None) -> Load:
         """Multiplies the weight of a body, or of all bodies. A factor of one body replaces that of all bodies."""
-        return self._new_load(self._core.add_gravity_scale(self._body_or_all(body), time_table(scale, "scale")))
+        name = optional_name(name)
+        handle = self._core.add_gravity_scale(self._body_or_all(body), time_table(scale, "scale"))
+        return self._new_load(handle)._named(name)
 
     def add_drag(
         self,
@@ -135,12 +158,14 @@ class WorldLoads:
         wind: VectorLike = (0.0, 0.0, 0.0),
         body: Body | None = None,
         scale: TimeTableLike = 1.0,
+        name: str | None = None,
     ) -> Load:
         """Adds a drag on a body, or on all bodies: the force on a node of mass m and velocity v is m rate (wind - v).
 
         rate: > 0 [1/s]; steps are not longer than 1/rate. wind: velocity of the wind (3,) [m/s]. scale: factor of
         `wind`."""
-        return self._new_load(
+        name = optional_name(name)
+        load = self._new_load(
             self._core.add_drag(
                 self._body_or_all(body),
                 real(rate, "rate"),
@@ -148,6 +173,7 @@ class WorldLoads:
                 time_table(scale, "scale"),
             )
         )
+        return load._named(name)
 
     @property
     def loads(self) -> ObjectList[Load]:

@@ -8,7 +8,7 @@ import operator
 from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
 from typing import TYPE_CHECKING, Any, Generic, Self, SupportsIndex, TypeVar, Unpack, overload
 
-from .._arrays import Reals, VectorLike, checked, real, real_array, whole
+from .._arrays import Reals, VectorLike, checked, name_text, real, real_array, whole
 from .._errors import BusyError, SceneError
 from .._settings import Pose, Surface
 from .changes import SurfaceChanges
@@ -100,7 +100,13 @@ class NamedObject(WorldObject):
 
     @name.setter
     def name(self, name: str) -> None:
-        self._core.set_name(self._handle, checked(name, "name", str))
+        self._core.set_name(self._handle, name_text(name, "name"))
+
+    def _named(self, name: str | None) -> Self:
+        """This object, with a name unless it is None."""
+        if name is not None:
+            self.name = name
+        return self
 
     def remove(self) -> None:
         """Removes the object."""

@@ -7,7 +7,7 @@ from typing import Any, Unpack
 
 from numpy.typing import ArrayLike
 
-from .._arrays import Vector, VectorLike, checked, index_array, real, vector
+from .._arrays import Vector, VectorLike, checked, index_array, optional_name, real, vector
 from .._settings import Surface
 from .body import Body, Indices
 from .building import Building
@@ -121,14 +121,17 @@ class SurfaceRules(Building):
         faces: ArrayLike = (),
         friction_across: float | None = None,
         direction: VectorLike | None = None,
+        name: str | None = None,
         **values: Unpack[SurfaceChanges],
     ) -> SurfaceSet:
         """Gives a part of the surface of a body its own friction and restitution, and returns the part.
 
         nodes: numbers within the body (j,), or a truth value for each node (n,). faces: nodes (k, 3) of faces of the
         surface. friction_across: friction coefficient of sliding contacts across the direction; the friction in
-        `surface` then applies along it. direction: direction (3,) in the frame of the mesh. Where sets overlap, the
-        last one applies. SceneError: a face is not on the surface, or a value is out of range."""
+        `surface` then applies along it. direction: direction (3,) in the frame of the mesh. name: see SurfaceSet.name.
+        Where sets overlap, the last one applies. SceneError: a face is not on the surface, or a value is out of
+        range."""
+        name = optional_name(name)
         given = dataclasses.replace(checked(surface or Surface(), "surface", Surface), **values)
         handle = self._core.add_surface_set(
             self._own(body, "body", Body),
@@ -138,7 +141,7 @@ class SurfaceRules(Building):
             None if friction_across is None else real(friction_across, "friction_across"),
             None if direction is None else vector(direction, "direction"),
         )
-        return self._surface_set(handle)
+        return self._surface_set(handle)._named(name)
 
     @property
     def surface_sets(self) -> ObjectList[SurfaceSet]:
