@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/fill/best_mesh.h"
 #include "engine/fill/explicit_body.h"
 #include "engine/mesh/repair/surface_distance.h"
 #include "engine/mesh/repair/surface_measures.h"
 #include "engine/mesh/surface/check_shells.h"
-#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 

@@ -18,7 +18,7 @@
 #include <system_error>
 #include <utility>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry::mesh {
 

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <system_error>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/repair/surface_measures.h"
-#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 

@@ -1,6 +1,6 @@
 #include "engine/hdf5/hdf5_image.h"
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 namespace {

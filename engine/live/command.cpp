@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "skerry/error.h"
 
 namespace skerry {

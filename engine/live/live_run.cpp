@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "skerry/error.h"
 
 namespace skerry {

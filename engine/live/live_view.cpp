@@ -5,9 +5,9 @@
 #include <mutex>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/live/live_run.h"
 #include "engine/live/server/live_server.h"
-#include "engine/world/complaint.h"
 #include "skerry/live.h"
 
 namespace skerry {

@@ -5,11 +5,11 @@
 #include <span>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/formats/raw_mesh.h"
 #include "engine/mesh/sets.h"
 #include "engine/mesh/tetrahedron.h"
 #include "engine/mesh/used_nodes.h"
-#include "engine/world/complaint.h"
 #include "skerry/mesh.h"
 #include "systems/collision/build_surface.h"
 

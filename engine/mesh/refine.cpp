@@ -5,12 +5,12 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/formats/raw_mesh.h"
 #include "engine/mesh/sets.h"
 #include "engine/mesh/shapes/add_tetrahedron.h"
 #include "engine/mesh/subdivision.h"
 #include "engine/mesh/tetrahedron.h"
-#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 namespace {

@@ -1,7 +1,7 @@
 #include "engine/mesh/require_positive.h"
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/tetrahedron.h"
-#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 

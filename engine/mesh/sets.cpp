@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "systems/collision/build_surface.h"
 
 namespace skerry::mesh {

@@ -4,9 +4,9 @@
 #include <ostream>
 #include <string>
 
+#include "engine/base/complaint.h"
+#include "engine/base/write_file.h"
 #include "engine/mesh/tetrahedron.h"
-#include "engine/output/write_file.h"
-#include "engine/world/complaint.h"
 #include "skerry/mesh.h"
 
 namespace skerry::mesh {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 

@@ -1,7 +1,7 @@
 // Writer for a trace of the activities of all threads.
 #include <ostream>
 
-#include "engine/output/write_file.h"
+#include "engine/base/write_file.h"
 #include "engine/output/writer.h"
 
 namespace skerry {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "engine/base/complaint.h"
 #include "engine/problem/check_arrays.h"
-#include "engine/world/complaint.h"
 #include "systems/solver/operators/block_operator.h"
 
 namespace skerry {

@@ -1,8 +1,8 @@
 #include <vector>
 
 #include "components/types.h"
+#include "engine/base/complaint.h"
 #include "engine/problem/check_arrays.h"
-#include "engine/world/complaint.h"
 #include "skerry/problem.h"
 
 namespace skerry {

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/complaint.h"
 #include "engine/problem/condense_problem.h"
 #include "engine/problem/fclib_matrix.h"
 #include "engine/problem/gather_blocks.h"
-#include "engine/world/complaint.h"
 #include "skerry/problem.h"
 
 namespace skerry {

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "components/union_find.h"
+#include "engine/base/complaint.h"
 #include "engine/problem/check_arrays.h"
 #include "engine/problem/measure_problem.h"
 #include "engine/problem/solve_by_region.h"
-#include "engine/world/complaint.h"
 #include "skerry/problem.h"
 #include "systems/solver/methods/run_method.h"
 

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/complaint.h"
+#include "engine/base/write_file.h"
 #include "engine/hdf5/hdf5_image.h"
-#include "engine/output/write_file.h"
 #include "engine/problem/check_arrays.h"
-#include "engine/world/complaint.h"
 #include "skerry/problem.h"
 
 namespace skerry {

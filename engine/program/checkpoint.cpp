@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/output/number_text.h"
-#include "engine/world/complaint.h"
 #include "engine/world/save/world_file.h"
 
 namespace skerry {

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <iostream>
 
+#include "engine/base/complaint.h"
+#include "engine/base/write_file.h"
 #include "engine/mesh/repair/surface_measures.h"
 #include "engine/output/number_text.h"
-#include "engine/output/write_file.h"
 #include "engine/program/commands.h"
 #include "engine/program/inspect_mesh.h"
 #include "engine/program/progress.h"
 #include "engine/program/require_writable.h"
 #include "engine/scene/write_scene.h"
-#include "engine/world/complaint.h"
 #include "skerry/materials.h"
 
 namespace skerry {

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/output/number_text.h"
 #include "engine/program/cluster_text.h"
 #include "engine/program/commands.h"
@@ -18,7 +19,6 @@
 #include "engine/program/start_text.h"
 #include "engine/program/trial.h"
 #include "engine/scene/scene_plan.h"
-#include "engine/world/complaint.h"
 
 namespace skerry {
 

@@ -6,13 +6,13 @@
 #include <iostream>
 #include <optional>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/formats/raw_mesh.h"
 #include "engine/mesh/repair/surface_measures.h"
 #include "engine/output/number_text.h"
 #include "engine/program/inspect_repair.h"
 #include "engine/program/start_text.h"
 #include "engine/program/thin_part_text.h"
-#include "engine/world/complaint.h"
 #include "skerry/surface_check.h"
 #include "systems/collision/build_surface.h"
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/complaint.h"
 #include "engine/program/progress.h"
-#include "engine/world/complaint.h"
 #include "skerry/problem.h"
 
 namespace skerry {

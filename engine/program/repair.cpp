@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/fill/best_mesh.h"
 #include "engine/mesh/manifold_fault.h"
 #include "engine/mesh/repair/part_fans.h"
 #include "engine/mesh/repair/surface_distance.h"
 #include "engine/mesh/repair/surface_measures.h"
 #include "engine/output/number_text.h"
-#include "engine/world/complaint.h"
 #include "systems/collision/build_surface.h"
 
 namespace skerry {

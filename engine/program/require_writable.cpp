@@ -5,8 +5,8 @@
 #include <cerrno>
 #include <system_error>
 
-#include "engine/output/write_file.h"
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
+#include "engine/base/write_file.h"
 
 namespace skerry {
 

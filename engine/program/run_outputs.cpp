@@ -5,10 +5,10 @@
 #include <iostream>
 #include <system_error>
 
+#include "engine/base/complaint.h"
 #include "engine/program/output_formats.h"
 #include "engine/program/progress.h"
 #include "engine/program/require_writable.h"
-#include "engine/world/complaint.h"
 
 namespace skerry {
 

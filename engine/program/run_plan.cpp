@@ -1,6 +1,6 @@
 #include "engine/program/run_plan.h"
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 

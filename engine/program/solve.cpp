@@ -5,8 +5,8 @@
 #include <ostream>
 #include <string>
 
+#include "engine/base/write_file.h"
 #include "engine/output/number_text.h"
-#include "engine/output/write_file.h"
 #include "engine/program/commands.h"
 #include "engine/program/require_writable.h"
 #include "engine/scene/place.h"

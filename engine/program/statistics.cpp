@@ -1,8 +1,8 @@
 #include <cmath>
 #include <ostream>
 
+#include "engine/base/write_file.h"
 #include "engine/output/number_text.h"
-#include "engine/output/write_file.h"
 #include "engine/program/dynamics_text.h"
 #include "engine/program/run_result.h"
 #include "engine/program/start_text.h"

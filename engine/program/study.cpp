@@ -5,7 +5,7 @@
 #include <ostream>
 #include <system_error>
 
-#include "engine/output/write_file.h"
+#include "engine/base/write_file.h"
 #include "engine/program/commands.h"
 #include "engine/program/csv_text.h"
 #include "engine/program/require_writable.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/edit/objects.h"
 #include "engine/world/world_state.h"
 #include "skerry/cable.h"

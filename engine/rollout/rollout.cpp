@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/output/series/probe_columns.h"
 #include "engine/rollout/controls.h"
-#include "engine/world/complaint.h"
 #include "engine/world/contact_view.h"
 #include "engine/world/world_state.h"
 #include "jobs/run_tasks.h"

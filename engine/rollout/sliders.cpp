@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "components/key_lists.h"
+#include "engine/base/complaint.h"
 #include "engine/rollout/controls.h"
-#include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/objects.h"
 #include "engine/world/validate.h"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/surface/check_shells.h"
 #include "engine/scene/mesh_levels.h"
-#include "engine/world/complaint.h"
 
 namespace skerry {
 

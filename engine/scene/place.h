@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/complaint.h"
 #include "engine/output/json_object.h"
-#include "engine/world/complaint.h"
 #include "skerry/error.h"
 
 namespace skerry {

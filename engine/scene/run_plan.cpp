@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 

@@ -3,10 +3,10 @@
 #include <numbers>
 #include <set>
 
+#include "engine/base/complaint.h"
 #include "engine/rollout/controls.h"
 #include "engine/scene/scene_plan.h"
 #include "engine/scene/scene_rules.h"
-#include "engine/world/complaint.h"
 #include "skerry/cable.h"
 #include "skerry/cavity.h"
 #include "skerry/fibre.h"

@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-std::string shown(Real number) {
+std::string all_digits(Real number) {
     return Json(number).dump();
 }
 
@@ -22,7 +22,7 @@ std::string expected_number(const KeyDoc& doc, const std::string& kind) {
                 std::string(words) + " " +
                 (*bound == std::floor(*bound) && std::abs(*bound) < 1e15
                      ? std::to_string(static_cast<long long>(*bound))
-                     : shown(*bound));
+                     : all_digits(*bound));
     };
     add("of at least", doc.limits.at_least);
     add("above", doc.limits.above);
@@ -212,7 +212,7 @@ void Value<RotationRows>::read(const Json& json, const Place& place, const KeyDo
     }
     const Mat3 defect = matrix * matrix.transpose() - Mat3::Identity();
     if (!(defect.cwiseAbs().maxCoeff() <= rotation_tolerance))
-        place.refuse("rows that are not orthonormal: the largest error is " + shown(defect.cwiseAbs().maxCoeff()),
+        place.refuse("rows that are not orthonormal: the largest error is " + all_digits(defect.cwiseAbs().maxCoeff()),
                      "a rotation matrix with errors of at most 1e-6");
     if (matrix.determinant() < 0) place.refuse("a reflection (determinant -1)", "a rotation matrix (determinant 1)");
     const Eigen::AngleAxis<Real> turn(Eigen::Quaternion<Real>(matrix).normalized());
@@ -235,8 +235,8 @@ void Value<TimeTable>::read(const Json& json, const Place& place, const KeyDoc& 
         const TimeKey key{read_number(json[k][0], at.item(0), {.meaning = {}, .unit = "s"}),
                           read_number(json[k][1], at.item(1), doc)};
         if (!out.keys.empty() && !(key.time > out.keys.back().time))
-            at.item(0).refuse(shown(key.time) + " s",
-                              "a time after that of the pair before, " + shown(out.keys.back().time) + " s");
+            at.item(0).refuse(all_digits(key.time) + " s",
+                              "a time after that of the pair before, " + all_digits(out.keys.back().time) + " s");
         out.keys.push_back(key);
     }
     if (out.keys.empty()) place.refuse("an empty list", "a number, or a list of at least one pair [time, value]");

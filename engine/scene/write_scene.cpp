@@ -1,6 +1,6 @@
 #include "engine/scene/write_scene.h"
 
-#include "engine/output/write_file.h"
+#include "engine/base/write_file.h"
 #include "engine/scene/assign.h"
 #include "engine/scene/parse_json.h"
 #include "engine/scene/scene_file.h"

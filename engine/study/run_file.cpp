@@ -13,9 +13,9 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "engine/base/complaint.h"
+#include "engine/base/write_file.h"
 #include "engine/output/number_text.h"
-#include "engine/output/write_file.h"
-#include "engine/world/complaint.h"
 
 namespace skerry {
 

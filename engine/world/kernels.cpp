@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "skerry/instruction_set.h"
 
 namespace skerry {

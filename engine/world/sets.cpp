@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/sets.h"
-#include "engine/world/complaint.h"
 #include "engine/world/validate.h"
 #include "engine/world/world_state.h"
 

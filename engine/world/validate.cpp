@@ -122,18 +122,6 @@ void require_surface(const std::optional<Real>& friction, const std::optional<Re
 
 }  // namespace
 
-std::string shown(Real value) {
-    return short_text(value, 6);
-}
-
-std::string shown(const Vec3& value) {
-    return short_text(value, 6);
-}
-
-void require(bool good, std::string_view object, std::string_view field, Real found, std::string_view expected) {
-    if (!good || !std::isfinite(found)) refuse(object, field, shown(found), expected);
-}
-
 void require_table(const std::string& object, const std::string& field, const TimeTable& table) {
     if (table.keys.empty()) refuse(object, field, "no key", "at least one key");
     for (std::size_t k = 0; k < table.keys.size(); ++k) {
@@ -160,10 +148,6 @@ void require_different_nodes(const std::string& object, std::span<const Index> n
     std::ranges::sort(sorted);
     if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
         refuse(object, "nodes", "node " + std::to_string(*twice) + " twice", "each node at most once");
-}
-
-void require_finite(std::string_view object, std::string_view field, const Vec3& found) {
-    if (!found.allFinite()) refuse(object, field, shown(found), "three finite numbers");
 }
 
 void validate(const Settings& settings) {

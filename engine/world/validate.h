@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/state/model.h"
 #include "engine/world/tuning.h"
 #include "skerry/settings.h"
@@ -29,13 +29,6 @@ void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);
 void validate(const Motion& motion, const Vec3& pivot);
 void validate(const SurfaceSettings& surface, const std::string& object);
-/// Refuses a number that is not good or not finite.
-void require(bool good, std::string_view object, std::string_view field, Real found, std::string_view expected);
-/// Text of a number or a vector in messages.
-std::string shown(Real value);
-std::string shown(const Vec3& value);
-/// Checks that the three components of a field of `object` are finite.
-void require_finite(std::string_view object, std::string_view field, const Vec3& found);
 /// Checks that the keys of a field of `object` are finite and have ascending times, and that there is a key.
 void require_table(const std::string& object, const std::string& field, const TimeTable& table);
 /// Checks that the given local node numbers exist in `object`, which is a body with `count` nodes.

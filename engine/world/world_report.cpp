@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
 #include "engine/world/state_hash.h"
@@ -160,12 +160,12 @@ std::string StepReport::message() const {
 std::string StepReport::warning() const {
     std::string text;
     if (limited > 0)
-        text = "step_size exceeds the stable step of body '" + limited_by + "': " + std::to_string(limited) +
-               " steps were shortened to at most " + short_text(limited_step) + " s";
+        text = "step_size exceeds the stable step of body '" + limited_by +
+               "': steps that were shortened to at most " + short_text(limited_step) +
+               " s: " + std::to_string(limited);
     if (inverted > 0)
-        text += (text.empty() ? "" : "; ") + std::to_string(inverted) +
-                " elements were inverted, the first of them element " + std::to_string(inverted_element) +
-                " of body '" + inverted_name + "'";
+        text += (text.empty() ? "" : "; ") + std::string("inverted elements: ") + std::to_string(inverted) +
+                ", the first of them element " + std::to_string(inverted_element) + " of body '" + inverted_name + "'";
     return text;
 }
 

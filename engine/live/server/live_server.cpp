@@ -19,9 +19,9 @@
 #include <string_view>
 #include <thread>
 
+#include "engine/base/complaint.h"
 #include "engine/live/server/admission.h"
 #include "engine/output/page/page_document.h"
-#include "engine/world/complaint.h"
 
 namespace skerry {
 

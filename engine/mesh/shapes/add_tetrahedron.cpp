@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/tetrahedron.h"
-#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 

@@ -3,9 +3,9 @@
 #include <numeric>
 #include <string>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/shapes/add_tetrahedron.h"
 #include "engine/mesh/shapes/stack_discs.h"
-#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 namespace {

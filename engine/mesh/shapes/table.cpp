@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/shapes/add_tetrahedron.h"
 #include "engine/mesh/shapes/fill_grid.h"
-#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 namespace {

@@ -3,13 +3,13 @@
 #include <span>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/surface/add_fault.h"
 #include "engine/mesh/surface/check_shells.h"
 #include "engine/mesh/surface/connect.h"
 #include "engine/mesh/surface/crossings.h"
 #include "engine/mesh/surface/shells.h"
 #include "engine/mesh/tetrahedron.h"
-#include "engine/world/complaint.h"
 #include "systems/collision/tree/box.h"
 
 namespace skerry {

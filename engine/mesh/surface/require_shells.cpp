@@ -1,8 +1,8 @@
 #include <cmath>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/surface/check_shells.h"
 #include "engine/mesh/surface/crossings.h"
-#include "engine/world/complaint.h"
 
 namespace skerry::mesh {
 

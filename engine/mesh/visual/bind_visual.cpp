@@ -3,10 +3,10 @@
 #include <map>
 #include <utility>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/repair/surface_measures.h"
 #include "engine/mesh/repair/triangle_tree.h"
 #include "engine/mesh/visual/bound_visual.h"
-#include "engine/world/complaint.h"
 #include "systems/collision/build_surface.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/box_tree.h"

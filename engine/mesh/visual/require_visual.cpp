@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/visual/bound_visual.h"
-#include "engine/world/validate.h"
 
 namespace skerry {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "systems/dynamics/elements/element_energy.h"
 
 namespace skerry {

@@ -3,12 +3,12 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/complaint.h"
+#include "engine/base/write_file.h"
 #include "engine/output/collect_frame.h"
 #include "engine/output/film/drawn_surface.h"
 #include "engine/output/film/usd_film.h"
-#include "engine/output/write_file.h"
 #include "engine/output/writer.h"
-#include "engine/world/complaint.h"
 #include "skerry/output.h"
 
 namespace skerry {

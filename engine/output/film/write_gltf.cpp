@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/write_file.h"
 #include "engine/output/collect_frame.h"
 #include "engine/output/film/drawn_surface.h"
 #include "engine/output/json_object.h"
 #include "engine/output/shape_picture.h"
-#include "engine/output/write_file.h"
 #include "skerry/output.h"
 #include "systems/geometry/rotation.h"
 

@@ -8,11 +8,11 @@
 #include <sstream>
 #include <utility>
 
+#include "engine/base/complaint.h"
+#include "engine/base/write_file.h"
 #include "engine/output/escape_markup.h"
 #include "engine/output/page/page_assets.h"
 #include "engine/output/page/stream/pack.h"
-#include "engine/output/write_file.h"
-#include "engine/world/complaint.h"
 
 namespace skerry {
 namespace {

@@ -1,6 +1,6 @@
+#include "engine/base/write_file.h"
 #include "engine/output/collect_frame.h"
 #include "engine/output/page/page_document.h"
-#include "engine/output/write_file.h"
 #include "skerry/output.h"
 
 namespace skerry {

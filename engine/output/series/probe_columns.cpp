@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/world_state.h"
 #include "skerry/cable.h"

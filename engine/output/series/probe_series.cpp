@@ -2,8 +2,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/complaint.h"
 #include "engine/output/writer.h"
-#include "engine/world/complaint.h"
 #include "skerry/recorder.h"
 
 namespace skerry {

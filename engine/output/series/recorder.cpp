@@ -10,11 +10,11 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/base/complaint.h"
+#include "engine/base/write_file.h"
 #include "engine/output/series/follow_point.h"
 #include "engine/output/series/probe_columns.h"
 #include "engine/output/vtk/vtk_file.h"
-#include "engine/output/write_file.h"
-#include "engine/world/complaint.h"
 
 namespace skerry {
 

@@ -1,6 +1,6 @@
 // Writes time series to HDF5 files.
+#include "engine/base/write_file.h"
 #include "engine/hdf5/hdf5_image.h"
-#include "engine/output/write_file.h"
 #include "skerry/recorder.h"
 
 namespace skerry {

@@ -5,7 +5,7 @@
 #include <ostream>
 
 #include "components/check.h"
-#include "engine/output/write_file.h"
+#include "engine/base/write_file.h"
 
 namespace skerry {
 

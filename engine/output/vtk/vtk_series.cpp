@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "components/check.h"
+#include "engine/base/complaint.h"
+#include "engine/base/write_file.h"
 #include "engine/output/escape_markup.h"
 #include "engine/output/shape_picture.h"
 #include "engine/output/vtk/vtk_arrays.h"
 #include "engine/output/vtk/vtk_file.h"
 #include "engine/output/vtk/write_visuals.h"
-#include "engine/output/write_file.h"
-#include "engine/world/complaint.h"
 #include "systems/dynamics/elements/element_energy.h"
 
 namespace skerry {

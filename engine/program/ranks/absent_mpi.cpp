@@ -1,5 +1,5 @@
 // The function of jobs/ranks/mpi_ranks.h in a program without MPI.
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "jobs/ranks/mpi_ranks.h"
 
 namespace skerry {

@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "components/hash.h"
+#include "engine/base/complaint.h"
 #include "engine/output/number_text.h"
 #include "engine/program/commands.h"
 #include "engine/program/signal_guard.h"
 #include "engine/program/sweep/share.h"
 #include "engine/scene/case_hash.h"
-#include "engine/world/complaint.h"
 #include "jobs/ranks/mpi_ranks.h"
 #include "skerry/error.h"
 #include "skerry/instruction_set.h"

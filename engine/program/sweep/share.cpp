@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cstring>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 

@@ -10,8 +10,9 @@
 #include <iostream>
 #include <ostream>
 
+#include "engine/base/complaint.h"
+#include "engine/base/write_file.h"
 #include "engine/output/number_text.h"
-#include "engine/output/write_file.h"
 #include "engine/program/commands.h"
 #include "engine/program/require_writable.h"
 #include "engine/program/sweep/case_progress.h"
@@ -19,7 +20,6 @@
 #include "engine/program/sweep/results/sweep_table.h"
 #include "engine/program/sweep/share.h"
 #include "engine/program/sweep/sweep_plan.h"
-#include "engine/world/complaint.h"
 
 namespace skerry {
 

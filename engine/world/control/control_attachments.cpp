@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/validate.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/complaint.h"
 #include "engine/mesh/sets.h"
-#include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/objects.h"
 #include "engine/world/step/step.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/material_row.h"

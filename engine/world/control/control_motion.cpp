@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/validate.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/query/place_anchor.h"
 #include "engine/world/step/step.h"

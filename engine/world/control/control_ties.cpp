@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/objects.h"
 #include "engine/world/edit/rigid_bodies.h"

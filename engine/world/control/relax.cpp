@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "components/union_find.h"
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/step/step.h"

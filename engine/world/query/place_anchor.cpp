@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/query/fitted_tree.h"
 #include "engine/world/validate.h"
 #include "systems/dynamics/motion/move_colliders.h"

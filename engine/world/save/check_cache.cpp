@@ -1,7 +1,7 @@
 #include <functional>
 #include <limits>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/save/checks.h"
 #include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/inputs/contact_key.h"

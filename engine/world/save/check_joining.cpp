@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/save/checks.h"
 
 namespace skerry {

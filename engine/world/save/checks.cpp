@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 

@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/output/write_file.h"
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
+#include "engine/base/write_file.h"
 #include "engine/world/save/checks.h"
 #include "engine/world/save/list_state.h"
 #include "engine/world/save/saved_file.h"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "components/hash.h"
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "systems/collision/build_surface.h"
 #include "systems/collision/tree/bvh.h"
 #include "systems/dynamics/clusters/build_clusters.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/kernels.h"
 #include "engine/world/ranks/hold/ghosts.h"

@@ -1,7 +1,7 @@
 // Checks whether the surfaces of bodies cross themselves. Only bodies with self-contact are kept from doing so.
 #include <algorithm>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/step/step.h"
 #include "jobs/parallel_for.h"
 #include "systems/collision/search/search_pair.h"

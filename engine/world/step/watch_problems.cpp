@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/complaint.h"
 #include "engine/problem/step_problem.h"
-#include "engine/world/complaint.h"
 #include "engine/world/step/step.h"
 #include "systems/contact/keep_resting_contacts.h"
 

@@ -5,8 +5,8 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "engine/base/write_file.h"
 #include "engine/output/vtk/vtk_series.h"
-#include "engine/output/write_file.h"
 #include "output_sample.h"
 #include "skerry/error.h"
 #include "tests/support/message_of.h"

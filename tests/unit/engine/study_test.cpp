@@ -5,7 +5,7 @@
 #include <cmath>
 #include <ostream>
 
-#include "engine/output/write_file.h"
+#include "engine/base/write_file.h"
 #include "engine/scene/parse_json.h"
 #include "engine/scene/scene_plan.h"
 #include "engine/scene/write_scene.h"

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 

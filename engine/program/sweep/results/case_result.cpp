@@ -6,8 +6,8 @@
 #include <iterator>
 #include <ostream>
 
+#include "engine/base/write_file.h"
 #include "engine/output/number_text.h"
-#include "engine/output/write_file.h"
 
 namespace skerry {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 #include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/ranks/rows/body_rows.h"
 #include "engine/world/ranks/rows/put_record.h"

@@ -1,4 +1,4 @@
-// Parts of the messages of SceneError.
+// Refuses wrong values by a SceneError, and makes the parts of its message.
 #pragma once
 
 #include <cstddef>
@@ -18,6 +18,11 @@ namespace skerry {
 [[noreturn]] void refuse_in(std::string_view file, std::string_view object, std::string_view field,
                             std::string_view found, std::string_view expected, std::string_view hint = {});
 
+/// Refuses a number that is not good or not finite.
+void require(bool good, std::string_view object, std::string_view field, Real found, std::string_view expected);
+/// Refuses a vector with a component that is not finite.
+void require_finite(std::string_view object, std::string_view field, const Vec3& found);
+
 /// Returns an error whose text is that of `inner` with `place` in front. Its parts are those of `inner`. If `inner`
 /// names no file, they get the file and the object of the place, and its field in front of the field of `inner`.
 SceneError error_at(const Complaint& place, const SceneError& inner);
@@ -26,6 +31,9 @@ SceneError error_at(const Complaint& place, const SceneError& inner);
 std::string short_text(Real value, int digits = 3);
 /// Formats a vector as (x, y, z).
 std::string short_text(const Vec3& value, int digits = 3);
+/// Text of a number or a vector in messages, with six digits.
+std::string shown(Real value);
+std::string shown(const Vec3& value);
 
 /// Returns the name closest to `text`: the one with the fewest changed, missing, added or swapped letters. Empty if
 /// there are no names.

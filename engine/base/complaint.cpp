@@ -1,7 +1,8 @@
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 #include <vector>
@@ -41,6 +42,14 @@ void refuse_in(std::string_view file, std::string_view object, std::string_view 
         .raise();
 }
 
+void require(bool good, std::string_view object, std::string_view field, Real found, std::string_view expected) {
+    if (!good || !std::isfinite(found)) refuse(object, field, shown(found), expected);
+}
+
+void require_finite(std::string_view object, std::string_view field, const Vec3& found) {
+    if (!found.allFinite()) refuse(object, field, shown(found), "three finite numbers");
+}
+
 SceneError error_at(const Complaint& place, const SceneError& inner) {
     Complaint parts = inner.complaint();
     if (parts.file.empty()) {
@@ -60,6 +69,14 @@ std::string short_text(Real value, int digits) {
 std::string short_text(const Vec3& value, int digits) {
     return "(" + short_text(value.x(), digits) + ", " + short_text(value.y(), digits) + ", " +
            short_text(value.z(), digits) + ")";
+}
+
+std::string shown(Real value) {
+    return short_text(value, 6);
+}
+
+std::string shown(const Vec3& value) {
+    return short_text(value, 6);
 }
 
 namespace {

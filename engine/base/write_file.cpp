@@ -1,4 +1,4 @@
-#include "engine/output/write_file.h"
+#include "engine/base/write_file.h"
 
 #include <unistd.h>
 
@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "engine/world/complaint.h"
+#include "engine/base/complaint.h"
 
 namespace skerry {
 namespace {
