@@ -36,7 +36,7 @@ std::uint64_t LiveHub::join(LiveLink& link) {
     Client& client = clients_.emplace_back();
     client.number = ++last_client_;
     client.link = &link;
-    client.snapshot = last_snapshot_;  // a snapshot from before it came may be old
+    client.snapshot = last_snapshot_;  // earlier snapshots may be outdated
     if (!failure_.empty()) put_text(client, problem_text(failure_));
     client.thread = std::thread([this, &client] { serve(client); });
     note_busy();
@@ -77,7 +77,7 @@ void LiveHub::receive(std::uint64_t number, std::string_view text) {
         if (command.number <= client->sent) client->seen = std::max(client->seen, command.number);
     } else if (problem.empty() && command.action == LiveAction::fields) {
         client->content = command.content;
-        client->version = 0;  // the present state is shown again, with the values that it now wants
+        client->version = 0;  // the present state is sent again, with the fields that the browser now requests
     } else if (problem.empty()) {
         if (command.action == LiveAction::pull) {
             if (command.body_number < client->bodies.size())

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-// The C++ interface that MPI has removed needs another library.
+// Excludes the C++ interface of MPI, which newer versions of MPI do not have and which needs another library.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
@@ -18,7 +18,7 @@ namespace skerry {
 
 namespace {
 
-/// Adds the wall time of its own life to a sum.
+/// Adds the wall time from its construction to its destruction to a sum.
 class Stopclock {
 public:
     explicit Stopclock(double& seconds) : seconds_(seconds) {}

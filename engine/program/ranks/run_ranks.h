@@ -95,7 +95,7 @@ private:
     Scene* scene_ = nullptr;
     std::optional<World> part_;
     RankTraffic before_, in_steps_;          // at the last call of before_advance; sums over all calls of advance
-    std::array<std::string, 2> last_words_;  // the text in use, and that before it
+    std::array<std::string, 2> last_words_;  // current text, and the previous one
 };
 
 /// Throws SceneError if mpirun or srun has started several processes of a command that cannot share its work.

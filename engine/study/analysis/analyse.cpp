@@ -90,7 +90,7 @@ StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings) {
 }
 
 OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& settings) {
-    // A part that is smaller than these shares of the wanted error, or of the error bar, does not matter.
+    // A part that is smaller than these fractions of the wanted error, or of the error bar, is ignored.
     constexpr Real noise_share = 0.01, step_share = 0.1, share_of_bar = 0.1;
     const StudyFamily family(runs);
     const Measured measured = measure_all(family, settings);

@@ -1,4 +1,4 @@
-// Which bodies the ranks of a divided world own and hold, and the moves of bodies between them.
+// Owners and holders of the bodies of a divided world, and the transfer of bodies between ranks.
 #pragma once
 
 #include <span>

@@ -31,7 +31,8 @@ struct RegionLabel {
 };
 
 /// A contact in a message, with its friction axis and the impulse with which the solver starts. Bodies are named by
-/// their places. A node of the stencil has twice its number within its body, plus 1 if it belongs to the second body.
+/// their places. A node of the stencil is encoded as twice its number within its body, plus 1 if it belongs to the
+/// second body.
 struct MailedContact {
     ContactRow row;
     FrictionAxis friction_axis;

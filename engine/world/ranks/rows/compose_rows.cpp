@@ -279,7 +279,8 @@ private:
         return *found;
     }
 
-    /// Rows that join a body that the source gives. The world itself also gives the rows that join no body.
+    /// Rows to copy from a source: those that connect a body that is copied from this source. The world itself also
+    /// provides the rows that connect no body.
     template <class Table>
     static std::vector<std::size_t> rows_given(Table& table, const RowSource& source) {
         std::vector<std::uint8_t> gives(table.slot.size(), source.gives_common ? 1 : 0);
