@@ -221,7 +221,7 @@ std::vector<std::string> thin_parts(const ScenePlan& plan, const World& world, s
 }
 
 /// Returns one text for each mesh whose boundary is not a closed manifold. The text names one body with this mesh.
-/// Where the boundary is not a manifold, a contact cannot tell the inside of a body from the outside.
+/// Where the boundary is not a manifold, contacts cannot distinguish the inside of a body from the outside.
 std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& world) {
     std::vector<std::string> found;
     const std::vector<BodyHandle> bodies = bodies_in_order(world);

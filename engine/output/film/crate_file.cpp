@@ -164,7 +164,8 @@ CrateValue CrateFile::times(std::span<const double> times) {
 CrateValue CrateFile::time_samples(CrateValue times, std::span<const CrateValue> values) {
     align();
     const CrateValue value = stored(CrateType::time_samples, size_);
-    // Each of the two offsets leads over the values that the times and the samples might need, which are elsewhere.
+    // Each of the two offsets skips data that the format allows at this place. Here these data are stored elsewhere, so
+    // nothing is skipped.
     constexpr auto next = static_cast<std::int64_t>(sizeof(std::int64_t));
     put(next);
     put(times);

@@ -35,9 +35,9 @@ struct GltfMesh {
     Mat3 rotation = Mat3::Identity();
     std::vector<Vec3f> points;
     std::vector<std::array<Index, 3>> triangles;
-    std::vector<float> values;              // of the coloured quantity, by vertex; empty if there is none
-    const VisualSurface* visual = nullptr;  // with texture coordinates and materials; nullptr if there is none
-    Color color{};                          // of triangles without another colour
+    std::vector<float> values;              // values of the coloured quantity by vertex; empty if there is none
+    const VisualSurface* visual = nullptr;  // surface with texture coordinates and materials; nullptr if there is none
+    Color color{};                          // colour of triangles without another colour
 };
 
 /// Mean normal of the triangles at each vertex, weighted by area.

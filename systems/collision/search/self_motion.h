@@ -35,7 +35,7 @@
 
 namespace skerry {
 
-// Number k of steps for which a spare distance allows, if the parts of the body keep their velocities. With a larger
+// Number k of steps for which a spare distance suffices if the parts of the body keep their velocities. With a larger
 // number there are fewer comparisons, but each comparison finds more candidates.
 inline constexpr Real steps_ahead = 4;
 // Pairs of leaves are listed up to this distance, as a multiple of the mean edge length. With a larger number the list
