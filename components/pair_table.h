@@ -65,7 +65,7 @@ struct MembersOf<LeafPair> {
 
 /// Close leaves of a body that is paired with itself.
 struct LeafPairTable {
-    // The first row is the pair of the root with itself. It stands for all pairs of leaves that are not listed. The
+    // The first row is the pair of the root with itself. It represents all pairs of leaves that are not listed. The
     // other rows are sorted by `first` and `second`. The column is saved with the role `memory`.
     Column<LeafPair> listed;
     Column<LeafPair> before;    // working memory: the earlier list

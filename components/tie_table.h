@@ -95,8 +95,7 @@ inline void TieTable::erase_keys_of(std::size_t tie) {
         if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
 }
 
-/// Rows of ties in the contact problem of a step. They stand behind the contacts in ContactTable while regions are
-/// solved.
+/// Rows of ties in the contact problem of a step. They follow the contacts in ContactTable while regions are solved.
 struct TieRowTable {
     Column<Index> tie;   // row of TieTable
     Column<Index> node;  // row of the columns by tied node

@@ -66,7 +66,8 @@ public:
     FilledMesh run() {
         const bool nested = shells_.has_regions() && !crossing();
         for (const SurfaceFault& fault : result_.surface.faults)
-            if (!nested || fault.kind != SurfaceFaultKind::doubled_volumes)  // the notes on regions say this
+            // the notes on regions already contain this
+            if (!nested || fault.kind != SurfaceFaultKind::doubled_volumes)
                 result_.notes.push_back(fault_text(fault));
         check_edge();
         const bool clean = result_.surface.can_be_filled();

@@ -106,7 +106,7 @@ public:
             for (const auto& of_b : b.nodes) sum += of_a.along.dot(of_nodes(of_a.node, of_b.node, of_b.along));
         return sum;
     }
-    /// Calls visit(leader) for each node and frame of a row. The leader is a node that stands for all nodes whose
+    /// Calls visit(leader) for each node and frame of a row. The leader is a node that represents all nodes whose
     /// masses are coupled.
     void for_each_leader(const VelocityRow& row, auto&& visit) const {
         for (const auto& of : row.frames) visit(leader_of_frame(of.frame));

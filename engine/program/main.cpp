@@ -396,7 +396,7 @@ void add_study(CLI::App& app, StudyOptions& options) {
     command.add_flag("--quiet", options.quiet, "print no progress and no report");
 }
 
-/// Throws SceneError that names an unknown command. CLI11 only says that a command is required.
+/// Throws SceneError that names an unknown command. CLI11 only reports that a command is required.
 void require_known_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return;
     const std::string found = argv[1];
@@ -472,7 +472,7 @@ int run_command_line(int argc, char** argv) {
 }
 
 /// Makes the allocator keep freed memory instead of returning it to the system. Loading a scene frees and allocates
-/// much memory, and the system would have to clear every page that it hands out again.
+/// much memory, and the system would have to clear every page before it is used again.
 void keep_freed_memory() {
 #ifdef __GLIBC__
     // Sizes in bytes. The C library would adapt these two limits by itself, but later.

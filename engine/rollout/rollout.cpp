@@ -47,7 +47,7 @@ WorldState& source_of(const World* world, std::size_t number, Real dt) {
         refuse("rollout", "dt", short_text(dt),
                "a time that is not lost when it is added to " + short_text(state.clock.time) +
                    " s, the time of world " + std::to_string(number));
-    // A later look at the contacts then writes nothing.
+    // A later evaluation of the contacts then writes nothing.
     view_contacts(state);
     return state;
 }

@@ -321,7 +321,7 @@ std::size_t leader_of(const JointPlan& joint, const ScenePlan& plan) {
 
 namespace {
 
-/// Adds a note if a joint does not start where its mimic wants it.
+/// Adds a note if a joint does not start at the coordinate that its mimic prescribes.
 void note_start_of_mimic(const JointPlan& joint, ScenePlan& plan) {
     const JointPlan& leader = plan.joints[leader_of(joint, plan)];
     const Real found = joint.settings.coordinate,

@@ -347,7 +347,7 @@ struct SliderEntry {
 /// A scene file that a scene includes. Without a name its content becomes a part of the scene as it is.
 struct IncludeEntry {
     FilePath scene;
-    std::string name;              // stands in front of the names of all objects: NAME/OBJECT
+    std::string name;              // prefix of the names of all objects: NAME/OBJECT
     Vec3 position = Vec3::Zero();  // pose of the frame of the included scene [m]
     Rotation rotation;
     Place place;

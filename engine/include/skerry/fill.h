@@ -69,7 +69,7 @@ struct FilledMesh {
 using FillProgress = std::function<void(const std::string&)>;
 
 /// Fills surfaces with tetrahedra. Nodes are first merged as by check_surface. Clean surfaces (closed manifolds that do
-/// not cross) are filled by Netgen, which keeps them bitwise, unless `edge` asks for other triangles. Other surfaces
+/// not cross) are filled by Netgen, which keeps them bitwise, unless `edge` requests other triangles. Other surfaces
 /// are filled by fTetWild (Hu et al., Fast tetrahedral meshing in the wild, 2020) within the tolerance: holes are
 /// closed, and crossing shells are united; repeated runs give slightly different meshes. Each mesher runs in its own
 /// process. Of several meshes the one with the longest stable step is returned
@@ -84,7 +84,7 @@ using FillProgress = std::function<void(const std::string&)>;
 FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSettings& settings = {},
                 const FillProgress& progress = {});
 
-/// Fills a surface from memory. `name` stands for the file in messages.
+/// Fills a surface from memory. Messages use `name` in place of a file name.
 FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillSettings& settings = {},
                 const FillProgress& progress = {});
 

@@ -28,9 +28,9 @@ struct LiveSettings {
 /// the token of address(), a new random number for each view. Requests with another Host, Origin or token are refused.
 ///
 /// One thread advances the world and calls the functions of the view. Other threads encode and send the frames. The
-/// simulation never waits for a browser: a browser that is slow gets fewer frames. A browser that only looks changes no
-/// bit of the world. In a process made by fork() the view can only be closed, which leaves its server to
-/// the first process. The first view makes the process ignore the signal SIGPIPE from then on.
+/// simulation never waits for a browser: a browser that is slow gets fewer frames. A browser that only displays the
+/// world changes no bit of it. In a process made by fork() the view can only be closed, which leaves its server to the
+/// first process. The first view makes the process ignore the signal SIGPIPE from then on.
 class LiveView {
 public:
     /// Starts the server, and stores the present state of the world for a reset. Throws SceneError if a setting is out

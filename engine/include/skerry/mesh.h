@@ -152,8 +152,8 @@ Mesh read_rigid(const std::string& path, std::vector<std::string>* notes = nullp
 /// that share their first corner. `notes` as for `read`. Throws SceneError.
 SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes = nullptr);
 
-/// Turns the inverted tetrahedra of a mesh that was not read from a file, as `read` does. `name` stands for the file in
-/// `notes` and in errors. Sorts the numbers of sets, and gives faces of sets the orientation of the boundary. Throws
+/// Turns the inverted tetrahedra of a mesh that was not read from a file, as `read` does. `notes` and errors use `name`
+/// in place of a file name. Sorts the numbers of sets, and gives faces of sets the orientation of the boundary. Throws
 /// SceneError if a tetrahedron uses a node twice or a node that does not exist, if a position is not finite, or if a
 /// set has a number that is out of range or a face that is not one of the tetrahedra.
 void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>* notes = nullptr);

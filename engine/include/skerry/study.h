@@ -189,7 +189,7 @@ struct StudySettings {
 
 /// Runs a scene with several meshes, steps, tolerances and element kinds, and determines the error of each probe. The
 /// runs and their order of importance are listed in docs/study.md. The numbers do not depend on the number of threads,
-/// except through the budget, which decides which runs fit. A run that fails is a result, and the study goes on.
+/// except through the budget, which decides which runs fit. A run that fails is a result, and the study continues.
 ///
 /// Throws SceneError if the scene cannot be run as it is, a setting or the name of a probe is invalid, or the folder
 /// holds runs of another scene.

@@ -86,8 +86,8 @@ public:
     /// Adds a rigid cylinder with flat ends and sharp rims. The rules for a sphere apply, see add_body() above. The
     /// axis is z of the cylinder's frame, and the first node is the centre (mesh::cylinder_picture).
     BodyHandle add_body(const Cylinder& cylinder, const BodySettings& body);
-    /// Adds a collider: a rigid shape that stands still or moves as prescribed, and that no force moves. A collider has
-    /// no mass. It touches bodies, and no other collider.
+    /// Adds a collider: a rigid shape that does not move or moves as prescribed, whatever forces act on it. A collider
+    /// has no mass. It touches bodies, and no other collider.
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Prescribes the motion of some nodes of a body (numbers within the body). From now on the nodes stay in place or
     /// follow `motion`. Constant angular velocities rotate the nodes about `pivot`. Keys of a motion are poses at

@@ -52,7 +52,8 @@ struct CrateFile::Tables {
 };
 
 CrateFile::CrateFile(std::iostream& file) : file_(file) {
-    token_index("");  // the sign of a token number tells properties from prims, so no property may have the number 0
+    // the sign of a token number distinguishes properties from prims, so no property may have the number 0
+    token_index("");
     write(std::as_bytes(std::span(header)));
     write(std::vector<std::byte>(sizeof(std::int64_t) + header_reserved));
 }

@@ -52,7 +52,7 @@ std::vector<Vec3f> vertex_normals(const GltfMesh& mesh) {
     }
     std::vector<Vec3f> normals;
     for (const Eigen::Vector3f& total : sum) {
-        // glTF wants unit vectors, also at vertices of triangles without area.
+        // glTF requires unit vectors, also at vertices of triangles without area.
         const Eigen::Vector3f unit =
             total.norm() > 0 ? Eigen::Vector3f(total / total.norm()) : Eigen::Vector3f::UnitZ();
         normals.push_back({unit.x(), unit.y(), unit.z()});

@@ -26,8 +26,8 @@ _CONTROLS: dict[type, dict[str, tuple[int, ...]]] = {
     World: {"gravity": (3,)},
     **{kind: {"value": ()} for kind in (Cable, Cavity, Pipe, Spring, Load, FibreFamily)},
 }
-"""Quantities that a rollout can control, by the class of the object, with the shape of one value; -1 stands for the
-number of nodes. The first quantity is the default."""
+"""Quantities that a rollout can control, by the class of the object, with the shape of one value; -1 means the number
+of nodes. The first quantity is the default."""
 
 
 class RolloutResult(dict[str, NDArray[Any]]):

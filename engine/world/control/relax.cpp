@@ -167,7 +167,7 @@ public:
             if (moves(b)) stop_body(state_.model, b);
     }
 
-    /// Adds the steps to the report. Returns whether the bodies came into equilibrium.
+    /// Adds the steps to the report. Returns true if the bodies have reached equilibrium.
     bool run(const std::function<bool(const RelaxReport&)>& go_on, RelaxReport& report) {
         bool balanced = false;
         int calm = 0;

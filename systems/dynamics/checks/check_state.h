@@ -58,7 +58,7 @@ struct CheckInputs {
     std::span<const ElementGradient> element_gradient = {};
     std::span<const ElementLane> element_implicit_modulus = {};
     std::span<const ElementPart> element_part = {};  // empty if no element is an inversion barrier
-    std::span<const MovingFrame> body_frame = {};    // from BodyTable; empty if the frames of all bodies stand still
+    std::span<const MovingFrame> body_frame = {};    // from BodyTable; empty if the frames of all bodies are at rest
     GhostMarks ghosts = {};                          // the deformation rates of their elements are not checked
 
     /// `pushed`: true if a contact pushes nodes out of penetration in this step.

@@ -25,8 +25,8 @@ struct ImplicitGoal {
     Real stable;
     Real headroom;     // ratio of the assumed to the present stiffness of an implicit element
     Real most_moment;  // largest allowed ImplicitShare::moment; the search fails above it
-    // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. With a limit, inverse
-    // masses tell which nodes move; by row of NodeTable [1/kg].
+    // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. With a limit, the inverse
+    // masses show which nodes move; by row of NodeTable [1/kg].
     std::size_t most_nodes = 0;
     std::span<const Real> inverse_mass{};
 };

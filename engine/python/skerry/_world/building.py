@@ -464,7 +464,7 @@ class Building(CavityBuilding):
         return self._materials[material]
 
     def _forget_material(self, changed: Any) -> None:
-        """Must be called after a material was changed: its record no longer stands for it."""
+        """Must be called after a material was changed, because its record is then outdated."""
         self._materials = {record: handle for record, handle in self._materials.items() if handle != changed}
 
     def _new_name(self, name: str | None, kind: str, objects: Objects[Any]) -> str:

@@ -160,7 +160,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
 
         robot: the result of load_robot(), or a file for it. material: of the surfaces. position, rotation: pose of the
         robot (3,) [m, rad]. coordinates: coordinates of joints by name; default: RobotJoint.rest, or the nearest value
-        within the limits [rad or m]. fixed: True: the base does not move; False: it is free; None: as the file says.
+        within the limits [rad or m]. fixed: True: the base does not move; False: it is free; None: as in the file.
         motors: False: without motors. With True they hold the coordinates, or have the speed or the force 0.
         self_collision: False: links do not collide with each other. With True, only links that a joint joins, and pairs
         that the file excludes, do not. name: names of bodies and joints are NAME/LINK and NAME/JOINT; default: the
