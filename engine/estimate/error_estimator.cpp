@@ -86,8 +86,8 @@ private:
 struct Pace {
     // number of steps of which the first sample of all meshes takes 0.6 % of the computing time
     std::uint64_t first_mesh;
-    std::uint64_t mesh;        // number of steps between samples of meshes
-    std::uint64_t motion;      // number of steps between samples of motion and contacts
+    std::uint64_t mesh;    // number of steps between samples of meshes
+    std::uint64_t motion;  // number of steps between samples of motion and contacts
 };
 Pace pace_of(const World& world) {
     constexpr Pace explicit_pace{8000, 2000, 200}, implicit_pace{250, 100, 20};

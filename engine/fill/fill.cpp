@@ -67,8 +67,7 @@ public:
         const bool nested = shells_.has_regions() && !crossing();
         for (const SurfaceFault& fault : result_.surface.faults)
             // the notes on regions already contain this
-            if (!nested || fault.kind != SurfaceFaultKind::doubled_volumes)
-                result_.notes.push_back(fault_text(fault));
+            if (!nested || fault.kind != SurfaceFaultKind::doubled_volumes) result_.notes.push_back(fault_text(fault));
         check_edge();
         const bool clean = result_.surface.can_be_filled();
         if (!clean || !keeps_triangles() || !fill_exactly()) fill_within_tolerance(clean);

@@ -311,9 +311,10 @@ void add_fill(CLI::App& app, FillOptions& options) {
                     "box; 0: keep all triangles, and refuse surfaces with faults")
         ->check(share)
         ->capture_default_str();
-    command.add_flag("--cavities", options.settings.cavities,
-                     "leave the inside of inner shells empty; default: only of shells whose triangles are clockwise as "
-                     "seen from outside, and the other inner shells bound regions with labels of their own");
+    command.add_flag(
+        "--cavities", options.settings.cavities,
+        "leave the inside of all inner shells empty; default: only the inside of shells whose triangles are "
+        "clockwise as seen from outside, and all other inner shells bound regions with their own labels");
     command.add_option("--material", options.material,
                        "material for which the stable step is computed; `skerry materials` lists the names");
     command.add_option("--scene", options.scene, "also write a scene in which the body falls on a floor");

@@ -177,7 +177,7 @@ void start_from_rest(World& world, RunResult& result) {
     const RelaxReport report = relax(world, settings, [](const RelaxReport&) { return caught_signal == 0; });
     const std::string steps = grouped(static_cast<std::size_t>(report.steps)) + " steps";
     if (report.converged)
-        result.notes.push_back("the run starts from rest, found in " + steps + " and " +
+        result.notes.push_back("the run starts from a static equilibrium, which took " + steps + " and " +
                                with_unit(watch.seconds(), "s") + " of wall time");
     else if (caught_signal != 0)
         result.status = "stopped by a signal before the start";

@@ -137,7 +137,7 @@ std::vector<FlatBody> flat_bodies(const SceneFile& file, const World& world) {
 std::string flat_text(const FlatBody& body) {
     constexpr Real degrees = 180 / std::numbers::pi;
     return "Body '" + body.name + "': refined meshes keep the flat faces of the file, which turn by up to " +
-           short_text(body.faces.angle * degrees, 2) + " degrees and are off a smooth surface by " +
+           short_text(body.faces.angle * degrees, 2) + " degrees and deviate from a smooth surface by " +
            percent(body.faces.share) + " of its radius. " +
            (body.is_held ? "The mesh errors of this body contain three times that share of each value"
                          : "The error bars leave out this error of the shape") +

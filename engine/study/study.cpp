@@ -289,7 +289,7 @@ private:
             write_run(settings_.folder, inputs_[i], runs_[i]);
         } catch (const SceneError& error) {
             if (!is_lost_.exchange(true))
-                lost_ = std::string("Not all runs could be kept in the folder: ") + error.what() + ".";
+                lost_ = std::string("Not all runs could be stored in the folder: ") + error.what() + ".";
         }
     }
 

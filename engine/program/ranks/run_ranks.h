@@ -34,7 +34,7 @@ struct RanksReport {
     double waiting = 0;                              // share of the wall time of the steps, mean over the ranks
     // longest computing time of a rank, divided by the mean of all ranks
     double imbalance = 1;
-    RankWork work{};                                 // empty if there is one rank
+    RankWork work{};  // empty if there is one rank
 
     /// Replaces the work of rank 0 in the report of the whole world by the work of all ranks.
     void complete(WorldReport& world) const;

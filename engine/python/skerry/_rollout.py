@@ -103,7 +103,7 @@ def rollout(
     count = _common(given, "number of worlds", 0, None if isinstance(worlds, World) else len(copies))
     intervals = _common(given, "number of intervals", 1, None if steps is None else counted(steps, "rollout: steps"))
     if intervals is None or intervals < 1:
-        raise scene_error("rollout", "steps", str(intervals), "a number of intervals >= 1, or a control that has it")
+        raise scene_error("rollout", "steps", str(intervals), "a number of intervals >= 1, or a control array that defines it")
     if isinstance(worlds, World):
         copies *= 1 if count is None else count
     probes = record or {}
@@ -217,7 +217,7 @@ def _object_named(world: World, name: str) -> Body | Collider:
         return found[0]
     if found:
         raise scene_error(
-            "controls", "", f"a body and a collider of the name '{name}'", "the object in place of the name"
+            "controls", "", f"a body and a collider of the name '{name}'", "the object itself instead of the name"
         )
     names = ", ".join(f"'{known}'" for known in [*world.colliders, *world.bodies])
     raise KeyError(f"controls: no collider or body has the name '{name}'; the names are {names}")

@@ -15,7 +15,8 @@ std::string chaos_text(const StudyResult& result) {
     if (result.growth_rate > 0)
         text += "; small differences grow tenfold every " + duration_text(std::log(10) / result.growth_rate);
     return text +
-           ". After that, no run predicts the place of a single body, however fine its mesh and steps: use the values "
+           ". After that, no run predicts the position of a single body, however fine its mesh and steps: use the "
+           "values "
            "named _agreed, and the statistics of all bodies.";
 }
 

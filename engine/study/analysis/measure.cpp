@@ -116,8 +116,8 @@ std::string irregular_text(const char* part, ConvergenceShape shape) {
         return std::string("two levels of the ") + part +
                " differ by more than 30 % of the value: both are too coarse, and the error may exceed the error bar";
     const char* behaviour = shape == ConvergenceShape::oscillating ? "changes its sign"
-                            : shape == ConvergenceShape::fast      ? "falls faster than the theory says"
-                                                                   : "does not fall as it should";
+                            : shape == ConvergenceShape::fast      ? "decreases faster than the theory predicts"
+                                                                   : "does not decrease as the theory predicts";
     return std::string("the ") + part + " error " + behaviour +
            ", so the value is not extrapolated; the error bar is a multiple of the largest difference and can be used";
 }
@@ -168,8 +168,9 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     const StudyColumn& scene = family.scene->columns[column];
     if (figure != StudyFigure::agreed && !scene.is_statistic && quantity.noise > agreement_share * r.scale) {
         r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
-        return decide(StudyVerdict::chaotic,
-                      "runs whose starts differ by 1e-12 m end with different values, so this value is accidental");
+        return decide(
+            StudyVerdict::chaotic,
+            "runs whose starts differ by 1e-12 m end with different values, so this value depends on rounding errors");
     }
     if (const std::string text = singular_text(family, column, figure); !text.empty()) {
         r.error = r.mesh = infinity;

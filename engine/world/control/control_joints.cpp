@@ -209,11 +209,11 @@ void require_common_position(const JointTable& table, std::size_t joint, const c
     }
     constexpr Real rounding = 1e-9;
     if (lower - upper > rounding * std::max({Real(1), std::abs(lower), std::abs(upper)}))
-        refuse_joint(field,
-                     "limits of this joint and of those that it mimics or that mimic it, by which its coordinate is at "
-                     "least " +
-                         short_text(lower) + " and at most " + short_text(upper),
-                     "limits that a common position of these joints satisfies");
+        refuse_joint(
+            field,
+            "limits of joints coupled by mimics, which together require a coordinate of this joint of at least " +
+                short_text(lower) + " and at most " + short_text(upper),
+            "limits that the coupled joints can satisfy together");
 }
 
 }  // namespace

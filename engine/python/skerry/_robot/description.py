@@ -199,7 +199,7 @@ class Robot:
             known = [name for name in waiting if name in found]
             if not known:
                 raise scene_error(
-                    f"robot '{self.name}'", "mimic", f"a circle of mimics with '{waiting[0]}'", "joints without circles"
+                    f"robot '{self.name}'", "mimic", f"a cycle of mimics with '{waiting[0]}'", "joints without cycles"
                 )
             waiting = [name for name in waiting if name not in found]
         return found

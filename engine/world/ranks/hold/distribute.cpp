@@ -28,7 +28,7 @@ void require_divisible(const WorldState& world) {
     const Settings& settings = world.model.settings;
     if (settings.integrator == Integrator::leapfrog)
         refuse_division("settings.integrator", "leapfrog", "symplectic_euler",
-                        "several ranks have only this integrator");
+                        "several ranks support only this integrator");
     if (settings.contact_regions == ContactRegions::global)
         refuse_division("settings.contact_regions", "global", "separate", "ranks solve regions concurrently");
     if (world.record.forces.on())
@@ -220,7 +220,8 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
     WorldState& undivided = WorldAccess::state_of(world);
     undivided.require_between_steps("distribute");
     if (undivided.ranks.on())
-        refuse_division("world", "a world that is already divided", "an undivided world", "call it once");
+        refuse_division("world", "a world that is already divided", "an undivided world",
+                        "call distribute() only once");
     if (ranks.size() == 1) return require_divisible(undivided);
     const ArithmeticScope arithmetic;  // same rounding as in advance(), because clusters may be chosen here
     const std::vector<BodyExtent> extents =
