@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Tells whether a body is a ghost. If the span is empty, the world is not divided among ranks.
+/// Shows which bodies are ghosts. If the span is empty, the world is not divided among ranks.
 struct GhostMarks {
     std::span<const GhostKind> body_ghost = {};  // column BodyTable::ghost
 

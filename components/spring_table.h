@@ -24,7 +24,7 @@ struct AnchorMass {
 
 /// Force of a spring in the present step.
 struct SpringForce {
-    Vec3 force = Vec3::Zero();    // on the first anchor [N]
+    Vec3 force = Vec3::Zero();    // force on the first anchor [N]
     Vec3 damping = Vec3::Zero();  // part of `force` that the damper exerts [N]
     Real tension = 0;             // force that pulls the anchors together; negative if it pushes them apart [N]
     Real elastic = 0;             // part of `tension` that the spring exerts [N]
@@ -40,7 +40,7 @@ struct SpringTable {
     Column<Real> strength;      // largest force [N]
     Column<Range> rest_length;  // range of rows in the column `key`
     // The next four columns describe the last step. They affect reports and the energy balance, but no later step.
-    Column<Vec3> force;                            // on the first anchor [N]
+    Column<Vec3> force;                            // force on the first anchor [N]
     Column<Real> tension, elastic;                 // all of the tension, and the part of the spring [N]
     Column<Real> rest_rate;                        // rate of the rest length [m/s]
     Column<AnchorMass> first_mass, second_mass;    // written by weigh_springs

@@ -20,7 +20,7 @@ struct TieTable {
     Column<std::uint32_t> slot;
     Column<TieKind> kind;
     Column<std::uint8_t> parts;                    // 1: the tie switches off collisions between its two bodies
-    Column<std::uint8_t> close_gap, bodies_touch;  // as the user gave them
+    Column<std::uint8_t> close_gap, bodies_touch;  // values that the user gave
     Column<Index> first;                           // row of BodyTable; the deformable body whose nodes are tied
     Column<Index> second;                          // row of BodyTable, or no_index
     Column<Index> collider;      // row of ColliderTable, or no_index; without body and collider: the world

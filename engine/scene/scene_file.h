@@ -79,12 +79,12 @@ struct PartEntry {
     Place place;
 };
 struct SphereRegion {
-    Vec3 center = Vec3::Zero();  // in the mesh's own frame [m]
+    Vec3 center = Vec3::Zero();  // centre in the mesh's own frame [m]
     Real radius = 0;             // [m]
 };
 /// The side of a plane to which the normal points, including the plane.
 struct HalfSpaceRegion {
-    Vec3 point = Vec3::Zero();  // in the mesh's own frame [m]
+    Vec3 point = Vec3::Zero();  // point in the mesh's own frame [m]
     Vec3 normal = {0, 0, 1};
 };
 /// A named set of a body: the part of the body that meets all given conditions.

@@ -53,7 +53,7 @@ Mat3 mesh_axes(const TieInputs& ties, Index frame) {
 struct FrameMotion {
     Vec3 turning = Vec3::Zero();       // part of the velocity that stems from the spin [m/s]
     Vec3 velocity = Vec3::Zero();      // [m/s]
-    Vec3 acceleration = Vec3::Zero();  // of the free rotation [m/s^2]
+    Vec3 acceleration = Vec3::Zero();  // acceleration by the free rotation [m/s^2]
 };
 
 /// `node`: row of NodeTable of a node at the point if the body is implicit, else no_index.
@@ -95,7 +95,7 @@ Vec3 led_velocity(const RigidMotion& motion, const Vec3& point, Real h) {
 /// A point of the first body of a tie: one of its nodes, or the mean point of all.
 struct TiedPoint {
     Vec3 position = Vec3::Zero();  // [m]
-    FrameMotion of_frame;          // of the frame of its body
+    FrameMotion of_frame;          // motion of the frame of its body
 };
 
 TiedPoint tied_point(const TieInputs& ties, std::size_t t, Index node) {

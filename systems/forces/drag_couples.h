@@ -18,7 +18,7 @@ struct DraggedBodies {
     // Columns of BodyTable and NodeTable:
     std::span<const Range> body_nodes, body_implicit;
     std::span<const Real> mass;                // [kg]
-    std::span<const Vec3> position, velocity;  // at the start of the step [m, m/s]
+    std::span<const Vec3> position, velocity;  // state at the start of the step [m, m/s]
 
     static DraggedBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& body,
                               const NodeTable& node) {

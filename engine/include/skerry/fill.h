@@ -55,7 +55,7 @@ struct FilledMesh {
     std::string mesher;          // "Netgen", "fTetWild", or "fTetWild and Netgen"
     bool exact = false;          // true if the new surface is SurfaceReport::cleaned, bitwise
     SurfaceReport surface;       // check of the given surface
-    SurfaceDistance distance{};  // from SurfaceReport::cleaned (first) to the new surface (second)
+    SurfaceDistance distance{};  // distance from SurfaceReport::cleaned (first) to the new surface (second)
     Real tolerance = 0;          // largest distance that was allowed [m]
     // Volume inside the given surface; empty if it is not closed or if its shells cross each other [m^3].
     std::optional<Real> surface_volume{};

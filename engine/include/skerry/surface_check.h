@@ -83,14 +83,16 @@ struct SurfaceReport {
     Real tolerance = 0;                               // nodes up to this distance apart were merged; negative: none [m]
     std::size_t merged = 0;                           // number of nodes that were merged into another node
     Real min_edge = 0, mean_edge = 0, max_edge = 0;   // edge lengths of the cleaned surface [m]
-    Real area = 0, volume = 0;                        // of the cleaned surface; volume of the closed shells [m^2, m^3]
-    std::vector<SurfaceFault> faults{};               // at most one entry of each kind, in the order of the kinds
+    // area of the cleaned surface; volume of the closed shells [m^2, m^3]
+    Real area = 0, volume = 0;
+    // faults, at most one entry of each kind, in the order of the kinds
+    std::vector<SurfaceFault> faults{};
     // Welded surface without flat and duplicate triangles and duplicate shells. Connected triangles have the same
     // orientation, and closed shells that lie in no other shell enclose a positive volume. Holes and crossings remain.
     SurfaceMesh cleaned{};
     std::vector<Index> number{};         // number in the given surface of each triangle of `cleaned`
     std::vector<Index> shell{};          // row in `shells` of each triangle of `cleaned`
-    std::vector<SurfaceShell> shells{};  // in the order of their first triangles
+    std::vector<SurfaceShell> shells{};  // shells in the order of their first triangles
 
     /// The faults of a kind; nullptr if there are none.
     const SurfaceFault* find(SurfaceFaultKind kind) const {

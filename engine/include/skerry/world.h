@@ -197,7 +197,7 @@ public:
     /// Shape of a collider in its own frame.
     const Shape& shape(ColliderHandle collider) const;
     const std::string& name(ColliderHandle collider) const;       // name in messages and output
-    std::vector<AttachmentHandle> attachments() const;            // in the order added
+    std::vector<AttachmentHandle> attachments() const;            // handles in the order added
     BodyHandle body(AttachmentHandle attachment) const;           // body of the attached nodes
     std::vector<Index> nodes(AttachmentHandle attachment) const;  // numbers of the attached nodes within the body
     // unit vectors along which the nodes are held; empty if they are held completely
@@ -271,7 +271,7 @@ public:
     MaterialSettings material(MaterialHandle material) const;
     /// Replaces the settings of a material, with the effects and errors above.
     void set_material(MaterialHandle material, const MaterialSettings& settings);
-    std::vector<MaterialHandle> materials() const;   // in the order added
+    std::vector<MaterialHandle> materials() const;   // handles in the order added
     MaterialHandle material(BodyHandle body) const;  // BodySettings::material
     /// Returns the values that were set for the object. Other values are missing.
     SurfaceSettings surface_properties(BodyHandle body) const;

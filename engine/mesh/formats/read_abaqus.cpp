@@ -53,7 +53,7 @@ struct AbaqusScope {
 
 struct AbaqusElement {
     std::size_t nodes;       // 4, 10, 3, 6, or 0 if the element is not read
-    Index row;               // of the tetrahedron or triangle
+    Index row;               // row of the tetrahedron or triangle
     std::size_t first, end;  // range of its nodes in the list of the nodes of all elements
 };
 

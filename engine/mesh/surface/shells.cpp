@@ -139,7 +139,7 @@ public:
 private:
     const SurfaceReport& report_;
     BoxTree shells_, triangles_;
-    std::vector<int> winding_;   // of each shell around the point
+    std::vector<int> winding_;   // winding number of each shell around the point
     std::vector<Index> passed_;  // shells that the ray passes through
 };
 

@@ -28,7 +28,7 @@ public:
 
 private:
     const BoundVisual* visual_;  // visual surface in the first frame, only for comparison
-    std::vector<Index> node_;    // without visual surface: node of the body at each vertex
+    std::vector<Index> node_;    // node of the body at each vertex if there is no visual surface
     std::vector<std::array<Index, 3>> triangles_;
 };
 

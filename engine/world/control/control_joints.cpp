@@ -198,7 +198,7 @@ OfHead of_head(const JointTable& table, Index joint) {
 /// limits. `joint`: one of them, whose `field` is to be changed. `table`: the joints after the change.
 void require_common_position(const JointTable& table, std::size_t joint, const char* field) {
     const OfHead own = of_head(table, static_cast<Index>(joint));
-    Real lower = -infinity, upper = infinity;  // of the coordinate of `joint`
+    Real lower = -infinity, upper = infinity;  // limits of the coordinate of `joint`
     for (std::size_t j = 0; j < table.size(); ++j) {
         const OfHead other = of_head(table, static_cast<Index>(j));
         if (other.head != own.head) continue;

@@ -101,7 +101,8 @@ private:
     /// need() is at least least_need_. Elements whose nodes all belong to implicit elements are candidates as well,
     /// because they enlarge no cluster. If there is no candidate, the function lowers least_need_.
     void give_up(Real step);
-    /// Writes the assumed moduli of the implicit elements, and returns their share.
+    /// Writes the assumed moduli of the implicit elements. Returns their share of the volume and of the moment of
+    /// inertia.
     ImplicitShare add_implicit(const ImplicitGoal& goal);
 
     const ElementInputs elements_;

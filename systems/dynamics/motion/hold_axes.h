@@ -24,7 +24,7 @@ struct AxisHoldInputs {
     std::span<const Index> node;   // rows of NodeTable
     std::span<const Vec3> anchor;  // position in the frame of the attachment [m]
     // by node
-    std::span<const Vec3> position, velocity;  // at the start of the step
+    std::span<const Vec3> position, velocity;  // state at the start of the step
     std::span<const Vec3> load;                // applied force; empty if there are none [N]
     std::span<const Real> mass, inverse_mass;
     std::span<const Index> body;  // row of BodyTable

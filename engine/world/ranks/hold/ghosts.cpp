@@ -23,7 +23,7 @@ constexpr std::uint64_t steps_between_searches = 1000;
 constexpr Real steps_of_margin = 20;
 /// Cost of a contact, in units of the cost of an explicit element. The solver visits a contact several times.
 constexpr Real contact_cost = 10;
-/// Cost of a body without elements, in the same units.
+/// Cost of a body without elements, in units of the cost of an explicit element.
 constexpr Real body_cost = 20;
 
 /// Distance by which a body may move before its holders are found again [m]. `speed`: greatest speed of a node [m/s].
@@ -72,7 +72,7 @@ struct SearchHeader {
 
 /// Facts about the bodies of all ranks.
 struct RankSearch {
-    std::vector<BodyExtent> extents;  // in the order of the places
+    std::vector<BodyExtent> extents;  // bodies in the order of their places
     std::vector<FetchedUnit> requests;
     std::vector<Index> stale;  // places
     bool keeps_owners = false;
@@ -256,7 +256,7 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
 /// Motion of bodies since their holders were found, by row of BodyTable.
 struct GhostMotion {
     std::span<const Real> margin, moved;  // RankState [m]
-    std::span<const Real> max_speed;      // in this attempt [m/s]
+    std::span<const Real> max_speed;      // greatest speed in this attempt [m/s]
 
     static GhostMotion bind(const Binder& binder, const RankState& ranks, const BodyTable& bodies) {
         return {.margin = binder.read(ranks.margin),

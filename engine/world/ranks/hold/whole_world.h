@@ -29,7 +29,8 @@ struct WholeWorld {
     // First place of the unit of the body. A *unit* is a set of bodies that joints, ties, cables, springs and other
     // rows connect. All bodies of a unit have the same owner and the same holders.
     Column<Index> unit;
-    std::vector<BodyRecord> records;   // of bodies that this rank does not hold: complete on rank 0, else names
+    // records of bodies that this rank does not hold: complete on rank 0, else only names
+    std::vector<BodyRecord> records;
     std::vector<Index> place_of_slot;  // by handle slot: place of the body, or no_index
     // Row in the undivided world of each row that connects bodies. Index: table, in the order of
     // Model::for_each_joining, then handle slot of the row. The last list is for attachments.

@@ -144,7 +144,7 @@ private:
             total += parts.back().size();
         }
         const AnyColumn to = columns_[table][c];
-        to.resize(total / to.type().bytes);  // at once, so that the column does not grow in steps
+        to.resize(total / to.type().bytes);  // resized at once, so that the column does not grow in steps
         std::byte* end = to.write();
         for (const std::span<const std::byte> part : parts) {
             if (!part.empty()) std::memcpy(end, part.data(), part.size());
