@@ -78,9 +78,9 @@ using FillProgress = std::function<void(const std::string&)>;
 /// If shells are nested, regions have the labels 1, 2, ..., beginning with the region of the largest shell. The faces
 /// of each shell are a set: with the name of the file if each file has one shell, otherwise shell_1, shell_2, ...
 ///
-/// Shells that repeat another shell are dropped, with a note. Another note says so if the new surface is farther from
-/// the given one than the tolerance, as where a hole was closed. Throws SceneError that names the file if a file cannot
-/// be read, a mesher is not installed, or no mesher fills the surface within the limits.
+/// Shells that repeat another shell are dropped, with a note. A note also reports if the new surface is farther from
+/// the given one than the tolerance, for example where a hole was closed. Throws SceneError that names the file if a
+/// file cannot be read, a mesher is not installed, or no mesher fills the surface within the limits.
 FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSettings& settings = {},
                 const FillProgress& progress = {});
 

@@ -72,7 +72,7 @@ public:
     /// For a callback of World::advance. Shows the world between two steps of a long call, and returns false if
     /// commands wait, so that the call ends and they are carried out soon.
     bool between_steps(const World& world);
-    /// Pauses the view, and shows the text to all browsers. For steps that failed.
+    /// Pauses the view, and shows the text to all browsers. Call it after a step that failed.
     void fail(const std::string& text);
     /// Refuses resets by browsers with this text, for example while a recorder could not continue at an earlier time.
     /// An empty text allows them again.

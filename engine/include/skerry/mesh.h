@@ -143,8 +143,8 @@ Mesh table(const TableShape& shape);
 /// Throws SceneError that names the file, the place in the file, and the found and the expected text.
 Mesh read(const std::string& path, std::vector<std::string>* notes = nullptr);
 
-/// Reads the mesh of a rigid body: as `read`, but from a file without tetrahedra only the surface (Mesh::triangles), as
-/// `read_surface`. Throws SceneError.
+/// Reads the mesh of a rigid body like `read`. From a file without tetrahedra it reads only the surface
+/// (Mesh::triangles), like `read_surface`. Throws SceneError.
 Mesh read_rigid(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 /// Reads a triangle surface from a file in one of the formats of `read`, or in Wavefront .obj, .ply (ASCII

@@ -81,7 +81,7 @@ public:
     }
 
 private:
-    /// Blocks of a scope and the motion that puts it into its place.
+    /// Blocks of a part or of the file outside of parts (a scope), and the motion by which *INSTANCE places its nodes.
     struct Instance {
         std::string prefix{};
         std::vector<const AbaqusBlock*> blocks{};

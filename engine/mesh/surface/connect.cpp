@@ -94,7 +94,7 @@ bool for_each_solid(const SurfaceMesh& surface, std::span<const Side> edge, auto
         return arm - along.dot(arm) * along;
     };
     struct Place {
-        long angle;  // around the edge from its first triangle, in steps of 1e-6 rad
+        long angle;  // angle around the edge from its first triangle, in units of 1e-6 rad
         bool opens;  // true: the volume behind the triangle is on the side of larger angles
         std::size_t side;
     };

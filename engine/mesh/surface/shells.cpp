@@ -143,7 +143,7 @@ private:
     std::vector<Index> passed_;  // shells that the ray passes through
 };
 
-/// Triangles of a shell with the same other shells around the volume behind them.
+/// A group of triangles of a shell: the volume behind each of them is inside of the same set of other shells.
 struct Surrounded {
     std::size_t count = 0;
     Index first = no_index;

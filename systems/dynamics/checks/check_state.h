@@ -60,7 +60,7 @@ struct CheckInputs {
     std::span<const ElementPart> element_part = {};  // empty if no element is an inversion barrier
     // column of BodyTable; empty if the frames of all bodies are at rest
     std::span<const MovingFrame> body_frame = {};
-    GhostMarks ghosts = {};                          // the deformation rates of their elements are not checked
+    GhostMarks ghosts = {};  // the deformation rates of their elements are not checked
 
     /// `pushed`: true if a contact pushes nodes out of penetration in this step.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,

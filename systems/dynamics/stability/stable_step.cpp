@@ -41,7 +41,7 @@ struct PieceRun {
     std::uint64_t end;  // number of the piece after the last one
 };
 
-/// Run of pieces that starts at piece `from` and ends at piece `until` or before.
+/// Run of consecutive pieces of the same work, from piece `from` up to `until` or before.
 PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t until) {
     const Index sums = sums_of(blocks);
     const auto place = static_cast<Index>(from);
