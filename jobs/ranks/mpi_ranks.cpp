@@ -51,7 +51,7 @@ public:
         if (level < MPI_THREAD_SERIALIZED)
             throw std::runtime_error("MPI: found the thread level " + std::to_string(level) + ", expected at least " +
                                      std::to_string(MPI_THREAD_SERIALIZED) +
-                                     " (MPI_THREAD_SERIALIZED); ask MPI_Init_thread for it");
+                                     " (MPI_THREAD_SERIALIZED); call MPI_Init_thread with this level");
         MPI_Comm_dup(world, &world_);
         MPI_Comm_rank(world_, &rank_);
         MPI_Comm_size(world_, &size_);

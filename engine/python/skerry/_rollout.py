@@ -103,7 +103,8 @@ def rollout(
     count = _common(given, "number of worlds", 0, None if isinstance(worlds, World) else len(copies))
     intervals = _common(given, "number of intervals", 1, None if steps is None else counted(steps, "rollout: steps"))
     if intervals is None or intervals < 1:
-        raise scene_error("rollout", "steps", str(intervals), "a number of intervals >= 1, or a control array that defines it")
+        expected = "a number of intervals >= 1, or a control array that defines it"
+        raise scene_error("rollout", "steps", str(intervals), expected)
     if isinstance(worlds, World):
         copies *= 1 if count is None else count
     probes = record or {}

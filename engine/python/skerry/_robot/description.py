@@ -150,8 +150,8 @@ class Robot:
     """A robot of a file, see load_robot().
 
     name: name of the robot.
-    links: by name, parents first.
-    joints: by name, in the order of the links.
+    links: the links by name, parents first.
+    joints: the joints by name, in the order of the links.
     apart: pairs of links that do not collide, in addition to links that a joint joins.
     warnings: parts of the file that are not simulated, each with its element and name.
     """

@@ -338,7 +338,7 @@ class Body(TouchingObject):
 
     @property
     def loads(self) -> Reals:
-        """External forces on the nodes that were set, a copy of shape (n, 3) [N]."""
+        """External forces that were set on the nodes, a copy of shape (n, 3) [N]."""
         loads: Reals = self._core.loads(self._handle)
         return loads
 
