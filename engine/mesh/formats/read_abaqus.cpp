@@ -105,7 +105,7 @@ private:
     }
 
     /// Lists the instances in the order of the file, then everything outside of parts and instances. In a file without
-    /// instances each part stands for one.
+    /// instances, each part counts as an instance.
     std::vector<Instance> instances() {
         std::map<std::string, Instance> parts;  // by name in lower case
         std::vector<std::string> part_order;

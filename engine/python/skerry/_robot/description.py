@@ -28,7 +28,7 @@ class Frame:
         return Frame(self.rotation @ other.position + self.position, self.rotation @ other.rotation)
 
     def points(self, points: Reals) -> Reals:
-        """Points of the frame, shape (n, 3), outside the frame."""
+        """Converts points of the frame, shape (n, 3), to coordinates outside of the frame."""
         result: Reals = points @ self.rotation.T + self.position
         return result
 

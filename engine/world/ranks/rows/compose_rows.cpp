@@ -29,7 +29,7 @@ void append_rows(AnyColumn from, Range rows, AnyColumn to) {
     if (!added.empty()) std::memcpy(to.write() + first * bytes, added.data(), added.size());
 }
 
-/// Appends a row with its lists of entries (lists_of).
+/// Appends a row of a table, and the lists of entries that belong to it (lists_of).
 template <class Table>
 void append_row_with_lists(Table& from, std::size_t row, Table& to) {
     append_row(from, row, to);
