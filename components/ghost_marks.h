@@ -1,4 +1,4 @@
-// Marks of ghosts, which sums over bodies leave out, because the owner of the body counts it.
+// Marks of ghosts. Sums over bodies leave out ghosts, because the rank that owns the body counts it.
 #pragma once
 
 #include <span>

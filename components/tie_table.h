@@ -34,9 +34,9 @@ struct TieTable {
     // Triangle of the second body, and weights of its corners. Used only if the second body deforms.
     Column<std::array<Index, 3>> corner;
     Column<Vec3> weight;
-    // Place of the node [m]. On a deformable body: relative to the point on the triangle, in the frame of the triangle
-    // (explicit body) or in the frame of the mesh (implicit body). Otherwise: in the frame of the mesh of the rigid
-    // body, in the frame of the collider, or in the world.
+    // Position of the node relative to the other object [m]. On a deformable body: relative to the point on the
+    // triangle, in the frame of the triangle (explicit body) or in the frame of the mesh (implicit body). Otherwise: in
+    // the frame of the mesh of the rigid body, in the frame of the collider, or in the world.
     Column<Vec3> place;
     // Unit normal of the surface in the same frame. Deformable bodies use the normal of the triangle instead.
     Column<Vec3> normal;
@@ -100,7 +100,7 @@ struct TieRowTable {
     Column<Index> tie;   // row of TieTable
     Column<Index> node;  // row of the columns by tied node
     Column<Stencil> stencil;
-    Column<Vec3> point;    // place of the tied node at the start of the step [m]
+    Column<Vec3> point;    // position of the tied node at the start of the step [m]
     Column<Vec3> impulse;  // impulse on the node; before the solve: the warm start [N s]
     // One row per tie: 1 if its bodies are asleep. The tie then keeps its last impulses.
     Column<std::uint8_t> rests;

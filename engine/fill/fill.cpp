@@ -100,7 +100,7 @@ private:
         require(settings_.limits.bytes > 0, "memory limit", settings_.limits.bytes, "a number of bytes above 0");
     }
 
-    /// Refuses an edge length that does not fit the size of the surface, as in another unit.
+    /// Refuses an edge length that does not fit the size of the surface, for example because it is in another unit.
     void check_edge() const {
         if (!settings_.edge) return;
         const Real edge = *settings_.edge, diagonal = box_diagonal(surface());

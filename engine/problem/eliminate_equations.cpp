@@ -39,7 +39,8 @@ struct VelocityRow {
     }
 };
 
-/// The value of the step that a row keeps. `held`: keeps its velocity, and the impulse is not known.
+/// The quantity that a row keeps from the step: its velocity, or its impulse. `held`: the row keeps its velocity, and
+/// its impulse is not known.
 enum class Keeps { velocity, impulse, held };
 
 struct EquationRow {
@@ -247,7 +248,7 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
     return half * half.transpose();
 }
 
-/// Normal velocity of each contact by its own normal impulse [1/kg].
+/// Normal velocity of each contact per unit of its own normal impulse [1/kg].
 std::vector<Real> normal_mobilities(const ContactProblem& problem) {
     std::vector<Real> mobilities(problem.q.size());
     for (std::size_t i = 0; i < mobilities.size(); ++i)

@@ -14,8 +14,8 @@ namespace skerry {
 /// Value of an error that was not estimated.
 inline constexpr Real not_estimated = std::numeric_limits<Real>::quiet_NaN();
 
-/// Estimated relative errors of one body. A value is `not_estimated` if the error does not exist for the body, as the
-/// error of the mesh of a rigid body.
+/// Estimated relative errors of one body. A value is `not_estimated` if the error does not exist for the body, for
+/// example the error of the mesh for a rigid body.
 struct ErrorEstimate {
     BodyHandle body{};  // the body
     std::string name;   // name of the body
@@ -23,10 +23,10 @@ struct ErrorEstimate {
     // and the next three values are those at the sample with the largest elastic energy of the body.
     Real mesh = not_estimated;
     // Error of a displacement under given loads, due to the mesh. Positive if the mesh is too stiff, negative if it is
-    // too soft. Times `deformation` it is the error of the motion.
+    // too soft. Multiplied by `deformation` it is the error of the motion.
     Real deflection = not_estimated;
-    // Error of the displacement of a single node besides `deflection`, due to the mesh: root mean square of the error
-    // of linear interpolation along the edges [m].
+    // Error of the displacement of a single node in addition to `deflection`, due to the mesh: root mean square of the
+    // error of linear interpolation along the edges [m].
     Real interpolation = not_estimated;
     Real stress = not_estimated;  // error of the largest von Mises stress at the nodes, due to the mesh
     // Error of the motion, due to the length of the steps: largest distance of the nodes from their positions with

@@ -63,7 +63,7 @@ public:
     /// Carries out the commands that browsers have sent, and shows the world to browsers that are ready for a frame, at
     /// most 30 times a second of wall time. Commands that fail are reported to the browser that sent them, and change
     /// nothing. While the view is paused the call then waits for the next command, at most 20 ms. Otherwise it never
-    /// waits, and costs two comparisons without a browser.
+    /// waits, and without a browser it costs two comparisons.
     void sync(World& world);
     /// Calls sync() and returns the simulated time that is to be advanced now [s]; 0 if the view is paused or the world
     /// is ahead of the wall clock. With the result 0 it waits for commands, at most 20 ms. The caller must advance the

@@ -116,7 +116,7 @@ inline constexpr Real no_weld = -1;
 /// Checks a surface. Nodes up to `tolerance` * (diagonal of the bounding box) apart are first merged, also in chains; 0
 /// merges equal nodes only. Triangles cross if they overlap by more than this distance in every direction (at least
 /// default_weld times the diagonal). The order of the nodes and triangles does not change. Throws SceneError if a node
-/// is not finite or a triangle has a node that does not exist; The error uses `name` as the name of the surface.
+/// is not finite or a triangle has a node that does not exist. The error uses `name` as the name of the surface.
 SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance = default_weld,
                             const std::string& name = "surface");
 

@@ -192,8 +192,8 @@ std::uint64_t pieces_of_check(const ElementInputs& elements, Range blocks) {
 }
 
 void continue_check(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
-                   StepEvaluation& check) {
+                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
+                    StepEvaluation& check) {
     // `least`: number of blocks in a chunk, some 20 us of work. `most_chunks`: number of chunks whose results fit on
     // the stack.
     constexpr Index least = 8, most_chunks = 64;
@@ -238,8 +238,8 @@ StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<co
     clear_stiffness(elements, blocks, stiffness_sum);
     StepEvaluation check;
     run_pieces({elements, position, mass, stiffness_sum}, without_guards(elements, blocks),
-            pieces_of_check(elements, blocks), check,
-            [&](const PieceRun& run, auto&& body) { body(0, run.blocks.size(), check); });
+               pieces_of_check(elements, blocks), check,
+               [&](const PieceRun& run, auto&& body) { body(0, run.blocks.size(), check); });
     return result_of(check);
 }
 

@@ -34,8 +34,8 @@ std::uint64_t pieces_of_check(const ElementInputs& elements, Range blocks);
 /// body before the first piece. All inputs must stay the same until the last piece. The result does not depend on where
 /// the check is interrupted.
 void continue_check(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
-                   StepEvaluation& check);
+                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
+                    StepEvaluation& check);
 /// Result of a stable-step check, available when all of its pieces are done.
 StableStep result_of(const StepEvaluation& check);
 

@@ -28,7 +28,7 @@ void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<Wa
             WatchPart& part = parts[p];
             const auto b = static_cast<std::size_t>(part.body);
             continue_check(executor, inputs.elements, inputs.body_blocks[b], watch.position, inputs.mass,
-                          watch.stiffness_sum, part.until, part.look);
+                           watch.stiffness_sum, part.until, part.look);
         }
     });
     for (const WatchPart& part : parts) {
