@@ -146,7 +146,7 @@ struct PlannedBodies {
     std::map<std::tuple<std::filesystem::path, bool, bool, Real, std::optional<Real>, std::optional<Real>, bool, int>,
              std::size_t>
         mesh_of_file;
-    // by path and scale of the file, and index in ScenePlan::meshes
+    // Visual surfaces by path and scale of their file, and by index of their mesh in ScenePlan::meshes.
     std::map<std::tuple<std::filesystem::path, Real, std::size_t>, std::shared_ptr<const BoundVisual>> visuals;
     const SurfaceFilling& filling;
 };

@@ -383,7 +383,7 @@ struct SceneFile {
 /// first. Throws SceneError.
 SceneFile read_scene_file(const std::filesystem::path& file, std::span<const std::string> assignments = {});
 
-/// Stands for the name of the file in messages about a scene that is in no file.
+/// Used in place of the name of the file in messages about a scene that is in no file.
 inline constexpr const char* scene_text_name = "scene";
 /// Reads the text of a scene file. Relative paths start at `folder`.
 SceneFile read_scene_text(const std::string& json, const std::filesystem::path& folder,

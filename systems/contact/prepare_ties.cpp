@@ -141,7 +141,7 @@ public:
     const Vec3& point() const { return point_.position; }
     const Vec3& normal() const { return place_.normal; }
 
-    /// Velocity that the row demands of the node relative to the nodes of the other object [m/s]
+    /// Velocity that the row prescribes for the node relative to the nodes of the other object [m/s]
     Vec3 demanded() const {
         const TieTable& tie = ties_.tie;
         const Index second = tie.second[t_], frame = ties_.frame(second);

@@ -37,7 +37,8 @@ struct RawMesh {
     std::size_t curved_triangles = 0;                   // number of triangles of third or higher order
     std::map<std::string, MeshSet> sets;                // faces are the corners of triangles of any order
     std::map<std::string, std::vector<Vec3>> vectors;   // of the tetrahedra
-    VisualSurface visual;  // for an .obj or .ply file: texture coordinates, names of materials, and both by triangle
+    // for an .obj or .ply file: texture coordinates, names of materials, and their indices by triangle
+    VisualSurface visual;
     std::size_t flat_triangles = 0;  // number of triangles of an .obj or .ply file that were dropped, as they use a
                                      // node twice
     std::vector<std::string> material_files;  // for an .obj file: names of its .mtl files

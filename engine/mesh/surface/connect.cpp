@@ -14,7 +14,7 @@
 namespace skerry::mesh {
 namespace {
 
-/// Finds patches of the given triangles at a common edge of which an odd number of triangles meet, and marks all
+/// Finds patches of the given triangles with a common edge at which an odd number of triangles meet, and marks all
 /// triangles of these patches. Triangles that are `dropped` do not count.
 std::vector<bool> with_odd_edge(Triangles triangles, const std::vector<bool>& given, const std::vector<bool>& dropped) {
     UnionFind patches;
