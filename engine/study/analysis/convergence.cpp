@@ -90,7 +90,8 @@ Real Convergence::error_at(Real h) const {
     if (shape_ == ConvergenceShape::unmeasured) return unknown;
     const Real finest = levels_.back().h;
     if (h < finest) return std::max(least_error_, safety * remainder_ * std::pow(h / finest, used_order_));
-    // A coarse level that is near the limit by accident has at least the error of the finer levels.
+    // The value of a coarse level can be near the limit by accident. Its error counts as at least that of each finer
+    // level.
     Real error = 0;
     for (const ConvergenceLevel& level : levels_)
         if (level.h <= h) error = std::max(error, error_of(level.value));
