@@ -74,7 +74,7 @@ struct SearchHeader {
 struct RankSearch {
     std::vector<BodyExtent> extents;  // bodies in the order of their places
     std::vector<FetchedUnit> requests;
-    std::vector<Index> stale;  // places
+    std::vector<Index> stale;  // places of bodies whose copies are outdated
     bool keeps_owners = false;
 };
 
