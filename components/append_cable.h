@@ -5,7 +5,8 @@
 
 namespace skerry {
 
-/// Appends a point without segment, friction and impulse to the columns by point. `velocity`: of the collider [m/s]
+/// Appends a point without segment, friction and impulse to the columns by point. `velocity`: velocity of the collider
+/// [m/s]
 inline void append_point(const Stencil& stencil, const Vec3& velocity, CableBlockTable& blocks) {
     blocks.stencil.push_back(stencil);
     blocks.velocity.push_back(velocity);

@@ -93,8 +93,8 @@ struct CableBlock {
     // For a tie: place at which its impulse acts on the other object, which has the last point [m].
     Vec3 acts_at = Vec3::Zero();
 
-    /// Number of the impulses of the block: of the segments of a cable, or the three components of that of a tie. They
-    /// are the first rows of CableBlockTable::impulse.
+    /// Number of impulses of the block: one per segment of a cable, or the three components of the impulse of a tie.
+    /// They are the first rows of CableBlockTable::impulse.
     Index impulses() const { return is_tie ? 3 : points.size() - 1; }
     /// Place at which the impulse of point `p` acts on rigid and implicit bodies. nullptr: the nodes of the point.
     const Vec3* acting_point(Index p) const { return is_tie && p + 1 == points.end ? &acts_at : nullptr; }

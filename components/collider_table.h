@@ -1,4 +1,4 @@
-// One row per collider: a rigid shape that stands still or moves by a script. The user may change scripts between
+// One row per collider: a rigid shape that does not move or follows a script. The user may change scripts between
 // steps.
 #pragma once
 

@@ -22,7 +22,7 @@ inline constexpr std::uint64_t value_count<ContactState> = 3;
 
 /// Identifies the two touching features across steps. Bits 63..62 of `pair` are the kind of the pair (0: two bodies, 1:
 /// body and collider); then follow the two handle slots (31 bits each). Bit 63 of `feature` is set for an edge-edge
-/// contact. Bit 62 tells which of the two bodies owns the point or first edge. Then follow the feature numbers local to
+/// contact. Bit 62 shows which of the two bodies owns the point or first edge. Then follow the feature numbers local to
 /// the two bodies (31 bits each). For a contact with an analytic collider, bit 63 marks an edge and bit 62 a face of
 /// the body (contact_key.h). Keys are unique in a world and stay valid when other bodies are removed.
 struct ContactKey {

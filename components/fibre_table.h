@@ -19,7 +19,7 @@ namespace skerry {
 /// fibres in the rest shape [Pa].
 struct FibrePull {
     Vec3 passive = Vec3::Zero();  // part that depends on the stretch
-    Vec3 whole = Vec3::Zero();    // with the active tension
+    Vec3 whole = Vec3::Zero();    // stress with the active tension
 };
 
 /// One row per family of fibres.

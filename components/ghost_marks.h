@@ -1,4 +1,4 @@
-// Marks of ghosts, which sums over bodies leave out, because the owner of the body counts it.
+// Marks of ghosts. Sums over bodies leave out ghosts, because the rank that owns the body counts it.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Tells whether a body is a ghost. If the span is empty, the world is not divided among ranks.
+/// Shows which bodies are ghosts. If the span is empty, the world is not divided among ranks.
 struct GhostMarks {
     std::span<const GhostKind> body_ghost = {};  // column BodyTable::ghost
 

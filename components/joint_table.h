@@ -45,7 +45,7 @@ struct NumbersOf<JointPassiveRow> : Reals<4> {};
 
 /// Linear relation between the coordinates of two joints: q = ratio q_leader + offset.
 struct MimicRow {
-    Real ratio = 1;   // without unit, or [m/rad] or [rad/m] if a hinge and a slider are coupled
+    Real ratio = 1;   // unit: none, or [m/rad] or [rad/m] if a hinge and a slider are coupled
     Real offset = 0;  // [rad or m]
 
     bool operator==(const MimicRow&) const = default;

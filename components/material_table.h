@@ -34,7 +34,8 @@ struct MaterialConstants {
         return modes;
     }();
 
-    // von Mises stress at which the material yields first, 0 if it never does, and its slope by plastic strain [Pa]
+    // `yield_stress`: von Mises stress at which the material first yields; 0: it never yields. `hardening`: increase of
+    // this stress per plastic strain [Pa].
     Real yield_stress = 0, hardening = 0;
 
     bool relaxes() const { return loss_factor > 0 || bulk_viscosity > 0; }

@@ -224,7 +224,7 @@ constexpr std::optional<Enum> from_name(std::string_view name) {
     return std::nullopt;
 }
 
-/// The hint that tells the replacement of a removed name; empty if `name` is not a removed name.
+/// Hint about the replacement of a removed name; empty if `name` is not a removed name.
 template <class Enum>
 constexpr std::string_view hint_for_removed(std::string_view name) {
     for (const auto& [removed, hint] : RemovedNames<Enum>::table)

@@ -65,7 +65,7 @@ struct MembersOf<LeafPair> {
 
 /// Close leaves of a body that is paired with itself.
 struct LeafPairTable {
-    // The first row is the pair of the root with itself. It stands for all pairs of leaves that are not listed. The
+    // The first row is the pair of the root with itself. It represents all pairs of leaves that are not listed. The
     // other rows are sorted by `first` and `second`. The column is saved with the role `memory`.
     Column<LeafPair> listed;
     Column<LeafPair> before;    // working memory: the earlier list
@@ -267,7 +267,7 @@ struct SearchState {
 
     // For each body: the set of pairs is complete while body_travel_bound of every body is below this value [m].
     Column<Real> body_valid_until;
-    // For each collider: limit of collider_travel_bound, as body_valid_until is for body_travel_bound [m].
+    // For each collider: limit of collider_travel_bound. It has the same purpose as body_valid_until for bodies [m].
     Column<Real> collider_valid_until;
     std::uint64_t broad_searches = 0;
     std::uint64_t pair_searches = 0;

@@ -15,8 +15,8 @@ namespace skerry {
 
 /// Response of an anchor to forces: the change of its velocity per unit impulse.
 struct AnchorMass {
-    Real inverse = 0;  // part of the nodes of deformable bodies, as lumped masses [1/kg]
-    // This part if every node divides its mass among the dampers that act on it [1/kg].
+    Real inverse = 0;  // response of the nodes of deformable bodies, as lumped masses [1/kg]
+    // This response if every node divides its mass among the dampers that act on it [1/kg].
     Real divided = 0;
     // Number of dampers that act on the frame of the rigid or implicit body; 0 for other anchors.
     Index dampers = 0;
@@ -24,7 +24,7 @@ struct AnchorMass {
 
 /// Force of a spring in the present step.
 struct SpringForce {
-    Vec3 force = Vec3::Zero();    // on the first anchor [N]
+    Vec3 force = Vec3::Zero();    // force on the first anchor [N]
     Vec3 damping = Vec3::Zero();  // part of `force` that the damper exerts [N]
     Real tension = 0;             // force that pulls the anchors together; negative if it pushes them apart [N]
     Real elastic = 0;             // part of `tension` that the spring exerts [N]
@@ -40,8 +40,9 @@ struct SpringTable {
     Column<Real> strength;      // largest force [N]
     Column<Range> rest_length;  // range of rows in the column `key`
     // The next four columns describe the last step. They affect reports and the energy balance, but no later step.
-    Column<Vec3> force;                            // on the first anchor [N]
-    Column<Real> tension, elastic;                 // all of the tension, and the part of the spring [N]
+    Column<Vec3> force;  // force on the first anchor [N]
+    // tension of spring and damper together, and the part of the spring [N]
+    Column<Real> tension, elastic;
     Column<Real> rest_rate;                        // rate of the rest length [m/s]
     Column<AnchorMass> first_mass, second_mass;    // written by weigh_springs
     Column<Mat3> first_response, second_response;  // written by respond_at_anchors [1/kg]

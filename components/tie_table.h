@@ -20,7 +20,7 @@ struct TieTable {
     Column<std::uint32_t> slot;
     Column<TieKind> kind;
     Column<std::uint8_t> parts;                    // 1: the tie switches off collisions between its two bodies
-    Column<std::uint8_t> close_gap, bodies_touch;  // as the user gave them
+    Column<std::uint8_t> close_gap, bodies_touch;  // values that the user gave
     Column<Index> first;                           // row of BodyTable; the deformable body whose nodes are tied
     Column<Index> second;                          // row of BodyTable, or no_index
     Column<Index> collider;      // row of ColliderTable, or no_index; without body and collider: the world
@@ -34,9 +34,9 @@ struct TieTable {
     // Triangle of the second body, and weights of its corners. Used only if the second body deforms.
     Column<std::array<Index, 3>> corner;
     Column<Vec3> weight;
-    // Place of the node [m]. On a deformable body: relative to the point on the triangle, in the frame of the triangle
-    // (explicit body) or in the frame of the mesh (implicit body). Otherwise: in the frame of the mesh of the rigid
-    // body, in the frame of the collider, or in the world.
+    // Position of the node relative to the other object [m]. On a deformable body: relative to the point on the
+    // triangle, in the frame of the triangle (explicit body) or in the frame of the mesh (implicit body). Otherwise: in
+    // the frame of the mesh of the rigid body, in the frame of the collider, or in the world.
     Column<Vec3> place;
     // Unit normal of the surface in the same frame. Deformable bodies use the normal of the triangle instead.
     Column<Vec3> normal;
@@ -95,13 +95,12 @@ inline void TieTable::erase_keys_of(std::size_t tie) {
         if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
 }
 
-/// Rows of ties in the contact problem of a step. They stand behind the contacts in ContactTable while regions are
-/// solved.
+/// Rows of ties in the contact problem of a step. They follow the contacts in ContactTable while regions are solved.
 struct TieRowTable {
     Column<Index> tie;   // row of TieTable
     Column<Index> node;  // row of the columns by tied node
     Column<Stencil> stencil;
-    Column<Vec3> point;    // place of the tied node at the start of the step [m]
+    Column<Vec3> point;    // position of the tied node at the start of the step [m]
     Column<Vec3> impulse;  // impulse on the node; before the solve: the warm start [N s]
     // One row per tie: 1 if its bodies are asleep. The tie then keeps its last impulses.
     Column<std::uint8_t> rests;

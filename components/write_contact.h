@@ -30,7 +30,7 @@ inline void write_contact(const ContactRow& row, std::size_t c, ContactTable& co
     contacts.state[c] = ContactState::open;
 }
 
-/// Appends a row. `impulse`: start of the solver [N s]
+/// Appends a row. `impulse`: initial impulse for the solver [N s]
 inline void append_row(const ContactRow& row, const Vec3& impulse, ContactTable& contacts) {
     const std::size_t c = contacts.size();
     contacts.resize(c + 1);

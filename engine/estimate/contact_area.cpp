@@ -40,7 +40,7 @@ Real mean_of_nodes(const Contact& contact, bool first, std::span<const Real> of_
     return sum;
 }
 
-/// Sums over the contacts of a body with one object, weighted by force.
+/// Force-weighted sums over the contacts of a body with one object.
 struct Patch {
     Real force = 0;                // [N]
     Real curvature = 0, edge = 0;  // [N/m, N m]

@@ -21,13 +21,13 @@ private:
     /// Surface of a body at rest. Inner nodes have zeros.
     struct Surface {
         std::vector<Real> curvature;  // mean curvature by node, positive if convex [1/m]
-        std::vector<Real> edge;       // mean length of the edges of a node [m]
+        std::vector<Real> edge;       // mean length of the edges at a node [m]
         std::vector<Real> tilt;       // largest angle between the normal of a node and those of its faces [rad]
     };
     struct Area {
         Real force = 0;   // largest contact force with one object at a sample [N]
         Real radius = 0;  // [m]
-        Real edge = 0;    // mean edge length there [m]
+        Real edge = 0;    // mean edge length at the contacts with this force [m]
     };
 
     const Surface& surface_of(const World& world, BodyHandle body);

@@ -9,8 +9,8 @@ namespace {
 
 using Vec6 = Eigen::Matrix<Real, 6, 1>;
 
-/// Entries of a symmetric matrix, off the diagonal times the root of two, so that products of matrices and of vectors
-/// are equal.
+/// Entries of a symmetric matrix in Mandel notation: off-diagonal entries are multiplied by the root of two, so that
+/// the scalar product of two vectors equals the double contraction of the matrices.
 Vec6 entries_of(const Mat3& symmetric) {
     constexpr Real root = std::numbers::sqrt2;
     return {symmetric(0, 0),        symmetric(1, 1),        symmetric(2, 2),
@@ -22,8 +22,8 @@ Vec6 entries_of(const Mat3& symmetric) {
 EnergyNorm::EnergyNorm(const MaterialConstants& material, bool splits)
     : is_anisotropic_(material.model == MaterialModel::orthotropic) {
     const Real mu = material.shear_modulus, lambda = material.lame_lambda;
-    // Without elements of single parts, the parts are the deviator and the mean stress, which both store energy for
-    // all Poisson ratios.
+    // Without elements that have only one part of the stress, the stress is divided into deviator and mean stress,
+    // because both have positive stiffness for all Poisson ratios.
     const MaterialConstants volumetric = part_of(material, ElementPart::volume);
     const Real bulk = lambda + 2 * mu / 3, modulus = splits ? volumetric.lame_lambda : bulk;
     of_shear_ = 1 / std::sqrt(2 * mu);

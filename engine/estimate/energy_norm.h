@@ -18,12 +18,13 @@ public:
     /// `splits`: true if some elements have only one part of the stress (ElementPart).
     EnergyNorm(const MaterialConstants& material, bool splits);
 
-    /// Coordinates of a part of a stress. `turn`: rotation of the material; used if it is anisotropic.
+    /// Coordinates of one part of a stress. `turn`: rotation of the material axes, used for anisotropic materials.
     StressCoordinates of(const Mat3& stress, ElementPart part, const Mat3& turn) const;
 
 private:
     bool is_anisotropic_;
-    // Roots of the compliances of both parts [Pa^(-1/2)], and the pressure of the volumetric part over the trace.
+    // Square roots of the compliances of the deviatoric and the volumetric part [Pa^(-1/2)]; ratio of the volumetric
+    // pressure to the trace of the stress.
     Real of_shear_ = 0, of_volume_ = 0, pressure_ = 0;
     // Inverse of the Cholesky factor of the stiffness of an anisotropic material, for the entries xx, yy, zz, xy, yz,
     // zx.

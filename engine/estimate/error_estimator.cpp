@@ -18,8 +18,8 @@ namespace {
 /// Errors of the meshes of all bodies, each at the sample with the largest elastic energy of the body.
 class MeshErrors {
 public:
-    /// Takes a sample of the bodies with the most elastic energy, at least of one. `share`: of all tetrahedra. `last`:
-    /// also samples sleeping bodies that were not sampled before.
+    /// Takes a sample of the bodies with the most elastic energy, at least of one. `share`: fraction of all tetrahedra
+    /// that are sampled. `last`: also samples sleeping bodies that were not sampled before.
     void sample(const World& world, Real share, bool last) {
         const Model& model = WorldAccess::state_of(world).model;
         struct Strained {
@@ -81,12 +81,13 @@ private:
     std::map<BodyHandle, Found> found_;
 };
 
-/// Computing times in steps of the world, and numbers of steps between samples. All samples together take less than 2 %
-/// of the computing time of the steps.
+/// Intervals between samples. The unit is one step of the world. All samples together take less than 2 % of the
+/// computing time of the steps.
 struct Pace {
-    std::uint64_t first_mesh;  // steps in which the first sample of all meshes, with its plans, takes 0.6 %
-    std::uint64_t mesh;        // steps between samples of meshes
-    std::uint64_t motion;      // steps between samples of motion and contacts
+    // number of steps of which the first sample of all meshes takes 0.6 % of the computing time
+    std::uint64_t first_mesh;
+    std::uint64_t mesh;    // number of steps between samples of meshes
+    std::uint64_t motion;  // number of steps between samples of motion and contacts
 };
 Pace pace_of(const World& world) {
     constexpr Pace explicit_pace{8000, 2000, 200}, implicit_pace{250, 100, 20};
@@ -103,11 +104,12 @@ struct ErrorEstimator::Impl {
     ContactError contact;
     ContactArea area;
     std::vector<ErrorEstimate> bodies;
-    // Steps in which something moved: at the start, and at the last samples of meshes and of motion and contacts.
+    // Numbers of steps in which something had moved: at the start, at the last sample of meshes, and at the last sample
+    // of motion and contacts.
     std::uint64_t start = 0, mesh_steps = 0, motion_steps = 0;
     bool has_moved = false;  // true after the first sample with motion
 
-    /// Steps in which something moved, since the world was made.
+    /// Number of steps in which something moved, since the world was made.
     static std::uint64_t steps_of(const World& world) {
         const RunCounters& counters = WorldAccess::state_of(world).record.counters;
         return counters.steps - counters.resting_steps;

@@ -78,7 +78,7 @@ private:
 
     const BodyRecord& record_;
     const NodeFields& nodes_;
-    std::vector<Index> materials_;  // of the body, ascending; empty if there is one
+    std::vector<Index> materials_;  // materials of the body, ascending; empty if there is only one
     std::vector<Sum> sums_;         // by material and node
 };
 
@@ -86,7 +86,8 @@ Real sum(std::span<const Real> values) {
     return std::accumulate(values.begin(), values.end(), Real{0});
 }
 
-/// Square of a relative error (Zienkiewicz and Zhu 1987, equation 30). `energy`: of the stress with this error.
+/// Square of a relative error (Zienkiewicz and Zhu 1987, equation 30). `energy`: energy of the stress that has this
+/// error.
 Real share_of(Real error, Real energy) {
     return error > 0 ? error / (error + energy) : 0;
 }
@@ -96,8 +97,8 @@ Real share_of(Real error, Real energy) {
 /// Smoothed elements solve for a stress s that is constant in each element and for displacements with the strain e in
 /// the tetrahedra. Both are stationary for the functional of Hellinger and Reissner, so its error is of second order:
 /// the missing energy is 2 (S - e) : (s* - s) + (s* - s) : (S* - S), summed over the body, with the exact stress s* and
-/// the strains S and S* of both stresses. The recovered stress stands for the exact one. For linear tetrahedra S = e,
-/// and the missing energy is the squared norm of the error.
+/// the strains S and S* of both stresses. The recovered stress is used in place of the exact one. For linear tetrahedra
+/// S = e, and the missing energy is the squared norm of the error.
 class MeshErrorSum {
 public:
     MeshErrorSum(const Model& model, std::size_t body)
@@ -172,7 +173,7 @@ private:
             Real count = 0;
         };
         std::array<std::vector<Mean>, 2>
-            means;  // of the elements with strain, and of those with volumetric stress only
+            means;  // mean stresses of the elements with strain, and of those with volumetric stress only
         for (std::vector<Mean>& of : means) of.resize(error_.volume.size());
         Real stiffness = 0;
         for (std::size_t place = 0; place < body_.cover.tetrahedra.size(); ++place) {
@@ -250,7 +251,7 @@ private:
     }
 
     /// At the centroids of the tetrahedra their stress and the recovered stress both have errors of second order in the
-    /// length of the edges. The difference of the two stresses there, over the tetrahedra around the node, stands for
+    /// length of the edges. The difference of the two stresses there, over the tetrahedra around the node, estimates
     /// the error of the recovered stress.
     void find_peak(std::span<const Mat3> of_tetrahedra, const CornerStress& recovered) {
         Index peak = 0;

@@ -11,11 +11,11 @@ namespace skerry {
 /// Comparison of the stress of a deformable body with the stress that is recovered at its nodes. Energies are twice the
 /// elastic energy, for small strain from the rest shape.
 struct MeshError {
-    std::vector<Real> volume;  // of the tetrahedra, at rest [m^3]
+    std::vector<Real> volume;  // volumes of the tetrahedra at rest [m^3]
     // Energies of the stress of each tetrahedron, and of its difference from the recovered stress [J].
     std::vector<Real> energy, error;
     Real stored = 0;  // energy of the elements [J]
-    // Energy that the body would store in addition under the same loads, if its mesh were infinitely fine [J].
+    // Additional energy that the body would store under the same loads, if its mesh were infinitely fine [J].
     Real missing = 0;
     // Root mean square of the error of linear interpolation of the displacements along the edges [m].
     Real interpolation = 0;

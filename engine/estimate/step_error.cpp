@@ -81,7 +81,8 @@ Real frequency_error(Real z, bool implicit, Real theta) {
     return z * z * (implicit ? 1.0 / 12 + (theta - 0.5) * (theta - 0.5) : 1.0 / 24);
 }
 
-/// Time by which symplectic Euler takes given velocities for older than they are [s].
+/// Time by which given initial velocities are older than the start: symplectic Euler takes them for those in the middle
+/// of the step before [s].
 Real start_shift(const World& world, Real first_step) {
     return world.settings().integrator == Integrator::leapfrog ? 0 : first_step / 2;
 }
@@ -178,9 +179,9 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
     return motion;
 }
 
-/// With symplectic Euler, given velocities count as those of half a step before the start, and rigid motion has an
-/// error of the same size: the change of the velocity since the start times half a step. Collisions of bodies turn an
-/// error of the place into an error of the direction in which a body continues.
+/// Symplectic Euler treats given velocities as those of half a step before the start. Rigid motion has an error of the
+/// same size: half a step times the change of the velocity since the start. In a collision, an error of the position
+/// also becomes an error of the direction in which the body continues.
 Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
                             Motion& motion) {
     if (motion.holder) return 0;
@@ -194,7 +195,7 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
                  : (now.angular_velocity - start.angular_velocity).norm();
     const Real change = std::hypot((now.velocity - start.velocity).norm(), radius * turned);
     if (motion.acceleration < 0) motion.acceleration = change / interval.seconds;
-    // Impacts change the velocity without such an error.
+    // Free rotation has errors of second order only. At the start, only torques therefore count.
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
     const Real start_error = std::min(change, accelerated) * start_shift(world, motion.first_step);
     if (is_rigid) motion.tumbled += interval.seconds * radius * tumbling_error(world, body, interval.step);
@@ -202,7 +203,7 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
     const Vec3 sudden = now.velocity - motion.velocity;
     if (interval.collided.contains(body))
         motion.deflection_rate += sudden.norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
-    // Restitution reverses the velocity at the end of a step instead of at the time of touch.
+    // Restitution reverses the velocity at the end of a step instead of at the time of impact.
     if (interval.rebounds) {
         const Real kick = (sudden - interval.seconds * world.settings().gravity).norm();
         motion.deflected += std::min(sudden.norm(), kick) * interval.step / 2;
@@ -231,7 +232,7 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     if (!implicit) {
         return (motion.lead + start_shift(world, motion.first_step)) * speed;
     }
-    // The part of the change between the samples that the velocities at the samples do not explain belongs to
+    // The part of the change between the samples that the velocities at the samples do not explain is attributed to
     // vibrations that began in between.
     const Real begun = mean_size(world, body, [&](std::size_t n) {
         return Vec3(after.displacement[n] - before.displacement[n] -
@@ -240,12 +241,13 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     const Real decay = interval.seconds * damping_rate(frequency * step, settings.theta, step);
     motion.lost += -std::expm1(-decay) * begun;
     if (frequency > 0) motion.lost += decay * std::numbers::sqrt2 * speed / frequency;
-    // A vibration that loses an amplitude also dissipates its energy. Slow loads dissipate little.
+    // Damping of a vibration dissipates its energy, so the lost amplitude is limited by the dissipated energy. Under
+    // slow loads little is dissipated.
     const Real stiffness = motion.stiffness * world.mass(body) / motion.inertia;  // [N/m]
     const Real dissipated = dissipated_by(world) - motion.dissipated;
     if (stiffness > 0) motion.lost = std::min(motion.lost, std::sqrt(2 * std::max(Real{0}, dissipated) / stiffness));
     motion.lost = std::min(motion.lost, motion.largest);
-    // A wrong phase displaces by at most twice the amplitude.
+    // The displacement by a wrong phase is at most twice the amplitude.
     const Real phase = frequency > 0 ? std::min(motion.lead, 2 * std::numbers::sqrt2 / frequency) : motion.lead;
     return phase * speed + motion.lost;
 }
@@ -276,7 +278,7 @@ void StepError::sample(const World& world) {
         const auto holder = holders.find(body);
         const auto held = holder == holders.end() ? std::nullopt : std::optional(holder->second);
         const auto motion = motions_.find(body);
-        // After a change of its supports or of its kind, a body starts again.
+        // The estimate of a body starts again after a change of its supports or of its kind of motion.
         if (motion == motions_.end() || motion->second.holder != held ||
             motion->second.deformation.displacement.empty() != (world.dynamics(body) == BodyDynamics::rigid))
             motions_.insert_or_assign(body, begin(world, body, held));

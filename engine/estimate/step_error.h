@@ -31,21 +31,21 @@ private:
         std::vector<Vec3> start;                   // node positions at the start [m]
         Twist start_velocity;                      // rigid motion at the start
         Vec3 start_spin = Vec3::Zero();            // angular momentum of a rigid body at the start [kg m^2/s]
-        Vec3 velocity = Vec3::Zero();              // of the centre of mass at the last sample [m/s]
+        Vec3 velocity = Vec3::Zero();              // velocity of the centre of mass at the last sample [m/s]
         std::optional<AttachmentHandle> holder{};  // an attachment that holds nodes of the body
         RigidPose mesh{};                          // pose of the rest mesh in the frame of the deformation
-        Deformation deformation{};                 // at the last sample; empty for a rigid body
+        Deformation deformation{};                 // deformation at the last sample; empty for a rigid body
         Real first_step = 0;                       // mean length of the steps before the second sample [s]
         Real acceleration = -1;                    // mean acceleration of the rigid motion in these steps [m/s^2]
-        // Error of the place because of collisions in a wrong place [m], and its rate [m/s].
+        // Position error due to collisions at wrong positions [m], and its rate [m/s].
         Real deflected = 0, deflection_rate = 0;
-        Real tumbled = 0;  // error of the place because of free rotation [m]
+        Real tumbled = 0;  // position error due to free rotation [m]
         // Sums over the samples for the Rayleigh quotient of the deformation: twice the elastic energy [J], and the
         // squared displacements times the masses [kg m^2].
         Real stiffness = 0, inertia = 0;
-        Real lead = 0;        // sum of the errors of the phase of vibrations, as a time [s]
+        Real lead = 0;        // sum of the phase errors of vibrations, as a time [s]
         Real dissipated = 0;  // energy that the world had dissipated at the start [J]
-        Real lost = 0;        // amplitude of the vibrations that the theta method has damped [m]
+        Real lost = 0;        // amplitude of the vibrations that numerical damping of the theta method has removed [m]
         Real largest = 0;     // largest displacement by deformation so far [m]
         Real error = 0;       // largest error so far [m]
         Real moved = 0;       // largest displacement from the start so far [m]

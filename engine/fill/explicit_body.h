@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// All data on which the stable step of a single body depends, apart from the mesh. The initial values stand for the
-/// default material and elements. The dynamics of the body are ignored; it is explicit.
+/// All data on which the stable step of a single body depends, apart from the mesh. The initial values are the default
+/// material and elements. The dynamics of the body are ignored; it is explicit.
 struct StepCase {
     Settings settings{};
     MaterialSettings material{};

@@ -66,8 +66,8 @@ public:
     FilledMesh run() {
         const bool nested = shells_.has_regions() && !crossing();
         for (const SurfaceFault& fault : result_.surface.faults)
-            if (!nested || fault.kind != SurfaceFaultKind::doubled_volumes)  // the notes on regions say this
-                result_.notes.push_back(fault_text(fault));
+            // the notes on regions already contain this
+            if (!nested || fault.kind != SurfaceFaultKind::doubled_volumes) result_.notes.push_back(fault_text(fault));
         check_edge();
         const bool clean = result_.surface.can_be_filled();
         if (!clean || !keeps_triangles() || !fill_exactly()) fill_within_tolerance(clean);
@@ -100,7 +100,7 @@ private:
         require(settings_.limits.bytes > 0, "memory limit", settings_.limits.bytes, "a number of bytes above 0");
     }
 
-    /// Refuses an edge length that does not fit the size of the surface, as in another unit.
+    /// Refuses an edge length that does not fit the size of the surface, for example because it is in another unit.
     void check_edge() const {
         if (!settings_.edge) return;
         const Real edge = *settings_.edge, diagonal = box_diagonal(surface());

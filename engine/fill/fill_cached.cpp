@@ -119,9 +119,12 @@ Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings
     FilledMesh filled = fill(surface, file.string(), of_cache, progress);
     std::ranges::for_each(filled.notes, note);
     if (filled.may_change && has_netgen)
-        note("the mesh was not kept, as Netgen did not start, crashed or reached a limit: every run fills the surface");
+        note(
+            "the mesh was not stored, because Netgen did not start, crashed or reached a limit; every run fills the "
+            "surface again");
     else if (!write_cache(cache, filled))
-        note("the mesh could not be kept, as " + cache.string() + " cannot be written: every run fills the surface");
+        note("the mesh could not be stored, because " + cache.string() +
+             " cannot be written; every run fills the surface again");
     return std::move(filled.mesh);
 }
 

@@ -13,9 +13,9 @@ namespace skerry::mesh {
 struct Shell {
     // Indices of nodes, counter-clockwise as seen from outside the shell, also for a cavity.
     std::vector<std::array<Index, 3>> triangles;
-    Real volume = 0;                  // inside the shell, including shells within [m^3]
+    Real volume = 0;                  // volume inside the shell, including the shells inside it [m^3]
     Index parent = no_index;          // smallest shell around this shell; no_index: none
-    bool cavity = false;              // true: the inside is empty, except for shells within
+    bool cavity = false;              // true: the inside is empty, except for shells inside it
     int label = 0;                    // label of the region inside the shell; 0 for a cavity
     Index first_triangle = no_index;  // number of its first triangle in the given surface
 };

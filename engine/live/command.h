@@ -20,7 +20,7 @@ enum class LiveAction {
     step,     // advance by one step, then pause
     reset,    // go back to the state at the start
     rate,     // set the simulated time per wall time to `value`
-    gravity,  // switch gravity `on` or off
+    gravity,  // switch gravity on or off, as `on` says
     slider,   // set slider `number` to `value`
     pull,     // pull `body` by `point` towards `to`
     move,     // move the target of the pull to `to`
@@ -48,11 +48,11 @@ struct EnumNames<LiveAction> {
 struct LiveCommand {
     LiveAction action = LiveAction::pause;
     std::uint64_t client = 0;  // number of the browser
-    std::uint64_t number = 0;  // of a frame, or of a slider from 0
+    std::uint64_t number = 0;  // number of a frame, or of a slider from 0
     Real value = 0;
     bool on = false;
     FrameContent content = FrameContent::motion;   // content of frames with the fields `names`
-    std::uint64_t body_number = 0;                 // in the stream of the browser
+    std::uint64_t body_number = 0;                 // number of the body in the stream of the browser
     BodyHandle body{};                             // the body with this number
     Vec3 point = Vec3::Zero(), to = Vec3::Zero();  // [m]
 };

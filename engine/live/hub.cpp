@@ -30,13 +30,13 @@ std::uint64_t LiveHub::join(LiveLink& link) {
     if (clients_.size() == most_clients) {
         lock.unlock();
         link.send_text(problem_text("found " + std::to_string(most_clients) +
-                                    " browsers at this live view, expected fewer (close one of them)"));
+                                    " browsers connected to this live view, expected fewer; close one of them"));
         return 0;
     }
     Client& client = clients_.emplace_back();
     client.number = ++last_client_;
     client.link = &link;
-    client.snapshot = last_snapshot_;  // a snapshot from before it came may be old
+    client.snapshot = last_snapshot_;  // earlier snapshots may be outdated
     if (!failure_.empty()) put_text(client, problem_text(failure_));
     client.thread = std::thread([this, &client] { serve(client); });
     note_busy();
@@ -77,21 +77,22 @@ void LiveHub::receive(std::uint64_t number, std::string_view text) {
         if (command.number <= client->sent) client->seen = std::max(client->seen, command.number);
     } else if (problem.empty() && command.action == LiveAction::fields) {
         client->content = command.content;
-        client->version = 0;  // the present state is shown again, with the values that it now wants
+        client->version = 0;  // the present state is sent again, with the fields that the browser now requests
     } else if (problem.empty()) {
         if (command.action == LiveAction::pull) {
             if (command.body_number < client->bodies.size())
                 command.body = client->bodies[command.body_number];
             else
                 problem = "command: body: found " + std::to_string(command.body_number) + ", expected one of the " +
-                          std::to_string(client->bodies.size()) + " bodies that this browser has got";
+                          std::to_string(client->bodies.size()) + " bodies that this browser has received";
         }
         if (problem.empty() && !commands_.empty() && replaces(command, commands_.back()))
             commands_.back() = command;
         else if (problem.empty() && commands_.size() < most_waiting)
             commands_.push_back(command);
         else if (problem.empty())
-            problem = "command: found " + std::to_string(most_waiting) + " commands that wait, expected fewer";
+            problem = "command: found " + std::to_string(most_waiting) +
+                      " waiting commands, expected fewer; send the command again later";
         if (problem.empty() && command.action == LiveAction::pull) client->pulls = true;
         if (problem.empty() && command.action == LiveAction::release) client->pulls = false;
         note_busy();

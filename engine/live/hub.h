@@ -30,9 +30,9 @@ public:
     virtual void close() = 0;
 };
 
-/// Each browser has a thread of its own that encodes and sends frames, so that one that hangs delays no other. A
-/// browser gets a frame if it has acknowledged all frames but the last one. Frames that it misses are never encoded, so
-/// the differences in its stream stay right.
+/// Each browser has its own thread, which encodes and sends frames. So a browser that hangs does not delay the others.
+/// A browser gets a frame if it has acknowledged all frames but the last one. Frames that it misses are never encoded,
+/// so the differences in its stream remain correct.
 class LiveHub {
 public:
     static constexpr std::size_t most_clients = 4;
@@ -44,18 +44,18 @@ public:
     LiveHub(const LiveHub&) = delete;
     LiveHub& operator=(const LiveHub&) = delete;
 
-    // For the threads of connections.
+    // The next functions are for the threads of the connections.
 
     /// Adds a browser and returns its number. If there are too many, sends it a problem and returns 0. `link` must live
     /// until leave().
     std::uint64_t join(LiveLink& link);
-    /// Removes a browser, and ends its pull. A browser that pulls nothing leaves no command behind, because a command
+    /// Removes a browser, and ends its pull. For a browser that pulls nothing no command is added, because a command
     /// ends a call of advance and so changes the length of the steps. Waits for its thread.
     void leave(std::uint64_t client);
     /// Takes a message of a browser. A message that is no command is answered with a problem.
     void receive(std::uint64_t client, std::string_view text);
 
-    // For the thread of the simulation.
+    // The next functions are for the thread of the simulation.
 
     /// True if commands wait, or browsers are connected. Costs one comparison.
     bool is_busy() const { return busy_.load(std::memory_order_relaxed); }
@@ -76,7 +76,8 @@ public:
         bool frame = false;                           // a browser waits for a frame
         FrameContent content = FrameContent::motion;  // fields that it shows
     };
-    /// Counts a missed frame for each browser that is busy with earlier frames.
+    /// Finds out whether a browser waits for a frame, and which fields it shows. Counts a missed frame for each browser
+    /// that is still busy with earlier frames.
     Wish wish();
     /// Returns a snapshot that no browser reads any more.
     std::shared_ptr<Snapshot> free_snapshot();
@@ -105,7 +106,7 @@ private:
         std::uint64_t snapshot = 0;                   // number of the last snapshot that it got
         std::uint64_t version = 0;                    // version of that snapshot
         std::uint64_t sent = 0, seen = 0;             // numbers of frames
-        std::vector<BodyHandle> bodies;               // by number in its stream
+        std::vector<BodyHandle> bodies;               // bodies by number in its stream
         std::thread thread;
 
         bool is_ready() const { return sent - seen < 2; }

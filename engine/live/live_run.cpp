@@ -15,7 +15,7 @@ namespace {
 constexpr Real frame_step = 1.0 / 60;   // longest call of advance, as the frames of a scene [s]
 constexpr Real frames_per_second = 30;  // most snapshots per wall time [1/s]
 constexpr int snapshot_pause = 4;       // least time between two snapshots, in durations of a snapshot
-constexpr Real longest_wait = 0.02;     // of due(), and of sync() while paused [s]
+constexpr Real longest_wait = 0.02;     // longest wait in due(), and in sync() while paused [s]
 constexpr Real longest_lag = 0.1;       // lag behind the wall clock that the simulation makes up for [s]
 constexpr Real fastest_rate = 1000;     // largest simulated time per wall time
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
@@ -183,8 +183,8 @@ void LiveRun::set_gravity(World& world, bool on) {
     note_gravity(world);
 }
 
-/// Derives the switch from the world, whose gravity its owner or another view may have changed. The switch of a world
-/// that never had gravity is on.
+/// Sets the gravity switch of the page to the state of the world, because the program or another view may have changed
+/// gravity. In a world that never had gravity the switch is on.
 void LiveRun::note_gravity(const World& world) {
     const Vec3 gravity = world.settings().gravity;
     if (!gravity.isZero(0)) gravity_ = gravity;
@@ -296,7 +296,7 @@ void LiveRun::sample_speed(const World& world) {
     speed_time_ = world.time();
 }
 
-/// Lets the simulation be on time now.
+/// Restarts the pace at the present time. Any lead or lag of the simulation is forgotten.
 void LiveRun::pace_from_now(const World& world) {
     pace_wall_ = Clock::now();
     pace_time_ = world.time();

@@ -59,7 +59,7 @@ private:
     LiveState state_;
     Vec3 gravity_ = Vec3::Zero();           // last gravity of the world that was not zero [m/s^2]
     std::map<std::uint64_t, Pull> pulls_;   // by number of the browser
-    std::atomic<bool> step_asked_ = false;  // until due() or the next sync()
+    std::atomic<bool> step_asked_ = false;  // true until due() or the next sync() advances by one step
     bool failed_ = false;                   // paused by fail()
     std::string reset_refusal_;             // reason why resets are refused; empty if they are allowed
     std::atomic<std::uint64_t> resets_ = 0;

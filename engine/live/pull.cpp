@@ -11,12 +11,12 @@ namespace skerry {
 
 namespace {
 
-/// Points of a body at which it is held. A rigid body is held at `point`. Another body is held at several nodes of its
-/// surface as well, which lie far from each other and at most a quarter of the size of the body away, because a force
-/// at a single node would distort soft elements.
+/// Points of a body at which it is held. A rigid body is held at `point` only. A deformable body is also held at
+/// several nodes of its surface, because a force at a single node would distort soft elements. These nodes are far from
+/// each other, and at most a quarter of the size of the body from `point`.
 std::vector<Vec3> held_points(const World& world, BodyHandle body, const Vec3& point) {
     constexpr std::size_t most = 12;
-    constexpr Real reach = 0.25;  // of the diagonal of the bounding box
+    constexpr Real reach = 0.25;  // largest distance of held points, as a fraction of the diagonal of the bounding box
     std::vector<Vec3> held{point};
     if (world.dynamics(body) == BodyDynamics::rigid) return held;
     const std::span<const Vec3> nodes = world.positions(body);
@@ -49,9 +49,9 @@ void require_near(const char* field, const Vec3& point) {
 }  // namespace
 
 void Pull::begin(World& world, BodyHandle body, const Vec3& point, const Vec3& target) {
-    constexpr Real frequency = 2;        // of a free body on the spring [Hz]
-    constexpr Real most_gravities = 50;  // greatest force, in weights of the body
-    constexpr Real gravity = 9.81;       // of these weights [m/s^2]
+    constexpr Real frequency = 2;        // natural frequency of a free body on the spring [Hz]
+    constexpr Real most_gravities = 50;  // greatest force, as a multiple of the weight of the body
+    constexpr Real gravity = 9.81;       // gravity that defines this weight [m/s^2]
     const Real mass = world.mass(body);
     require_near("point", point);
     require_near("to", target);

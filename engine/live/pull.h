@@ -43,7 +43,8 @@ public:
 
 private:
     std::vector<SpringHandle> springs_{};
-    std::vector<Vec3> offset_{};  // from the pulled point to the first anchor of each spring when the pull began [m]
+    // vectors from the pulled point to the first anchor of each spring when the pull began [m]
+    std::vector<Vec3> offset_{};
     LoadHandle drag_{};
 };
 

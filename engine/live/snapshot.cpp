@@ -14,7 +14,7 @@ void SnapshotTaker::take(const World& world, FrameContent content, Snapshot& sna
     if (content >= FrameContent::mesh_error) {
         energy_ = frame.energy;
     } else if (now >= next_energy_) {
-        constexpr int pause = 100;  // in durations of the calculation
+        constexpr int pause = 100;  // pause between two calculations, as a multiple of the duration of a calculation
         energy_ = world.energy();
         next_energy_ = now + pause * (std::chrono::steady_clock::now() - now);
     }

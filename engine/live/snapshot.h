@@ -1,4 +1,4 @@
-// State of a world in one frame of a live view, as data of its own.
+// State of a world in one frame of a live view, with copies of all data that it needs.
 #pragma once
 
 #include <chrono>

@@ -28,8 +28,8 @@ inline std::string count_text(double count) {
     return count < most_written_out ? grouped(static_cast<std::uint64_t>(count)) : short_text(count);
 }
 
-/// Formats a value with an SI prefix, so that one to three digits stand before the decimal point: (0.00031, "s") gives
-/// "310 us".
+/// Formats a value with an SI prefix, so that one to three digits precede the decimal point: (0.00031, "s") gives "310
+/// us".
 inline std::string with_unit(double value, const char* unit) {
     struct Prefix {
         double factor;

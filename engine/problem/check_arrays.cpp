@@ -23,7 +23,7 @@ std::size_t block_at(const ContactProblem& problem, std::size_t i, std::size_t j
 /// True if the blocks W_ij and W_ji are transposes of each other, apart from errors in the assembly of W. In problems
 /// of the FCLIB collection these errors reach 0.004 of a diagonal block.
 bool symmetric(const ContactProblem& problem, std::size_t i, std::size_t j) {
-    constexpr Real tolerance = 0.01;  // relative to the larger one of the two diagonal blocks
+    constexpr Real tolerance = 0.01;  // largest asymmetry, as a fraction of the larger of the two diagonal blocks
     const auto block = [&](std::size_t row, std::size_t column) -> Mat3 {
         const std::size_t number = block_at(problem, row, column);
         return number < problem.block.size() ? problem.block[number] : Mat3::Zero();

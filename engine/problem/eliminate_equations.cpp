@@ -39,7 +39,8 @@ struct VelocityRow {
     }
 };
 
-/// The value of the step that a row keeps. `held`: keeps its velocity, and the impulse is not known.
+/// The quantity that a row keeps from the step: its velocity, or its impulse. `held`: the row keeps its velocity, and
+/// its impulse is not known.
 enum class Keeps { velocity, impulse, held };
 
 struct EquationRow {
@@ -106,7 +107,7 @@ public:
             for (const auto& of_b : b.nodes) sum += of_a.along.dot(of_nodes(of_a.node, of_b.node, of_b.along));
         return sum;
     }
-    /// Calls visit(leader) for each node and frame of a row. The leader is a node that stands for all nodes whose
+    /// Calls visit(leader) for each node and frame of a row. The leader is a node that represents all nodes whose
     /// masses are coupled.
     void for_each_leader(const VelocityRow& row, auto&& visit) const {
         for (const auto& of : row.frames) visit(leader_of_frame(of.frame));
@@ -247,7 +248,7 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
     return half * half.transpose();
 }
 
-/// Normal velocity of each contact by its own normal impulse [1/kg].
+/// Normal velocity of each contact per unit of its own normal impulse [1/kg].
 std::vector<Real> normal_mobilities(const ContactProblem& problem) {
     std::vector<Real> mobilities(problem.q.size());
     for (std::size_t i = 0; i < mobilities.size(); ++i)

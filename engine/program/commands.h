@@ -126,7 +126,7 @@ int sweep(const SweepOptions& options);
 
 struct StudyOptions {
     std::filesystem::path scene;
-    StudySettings settings;  // without folder; that is `out`
+    StudySettings settings;  // settings without the folder, which is `out`
     // Folder of the results. If empty, it is out/NAME_study for the scene file NAME.json.
     std::filesystem::path out;
     bool quiet = false;

@@ -26,7 +26,9 @@ constexpr Real hardly_longer = 1.03;  // a ratio of step lengths between 1 and t
 /// The ratio may be below 1, because removing tetrahedra reduces the mass of their nodes. This shortens the steps of
 /// the neighbouring tetrahedra.
 std::string compared(Real ratio) {
-    if (ratio < 1 / hardly_longer) return short_text(ratio) + " times as long: shorter, because neighbours lose mass";
+    if (ratio < 1 / hardly_longer)
+        return short_text(ratio) +
+               " times as long; shorter, because the neighbours of the removed tetrahedra lose mass";
     if (ratio < 1) return "slightly shorter";
     return ratio < hardly_longer ? "slightly longer" : short_text(ratio) + " times as long";
 }

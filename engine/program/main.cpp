@@ -311,9 +311,10 @@ void add_fill(CLI::App& app, FillOptions& options) {
                     "box; 0: keep all triangles, and refuse surfaces with faults")
         ->check(share)
         ->capture_default_str();
-    command.add_flag("--cavities", options.settings.cavities,
-                     "leave the inside of inner shells empty; default: only of shells whose triangles are clockwise as "
-                     "seen from outside, and the other inner shells bound regions with labels of their own");
+    command.add_flag(
+        "--cavities", options.settings.cavities,
+        "leave the inside of all inner shells empty; default: only the inside of shells whose triangles are "
+        "clockwise as seen from outside, and all other inner shells bound regions with their own labels");
     command.add_option("--material", options.material,
                        "material for which the stable step is computed; `skerry materials` lists the names");
     command.add_option("--scene", options.scene, "also write a scene in which the body falls on a floor");
@@ -396,7 +397,7 @@ void add_study(CLI::App& app, StudyOptions& options) {
     command.add_flag("--quiet", options.quiet, "print no progress and no report");
 }
 
-/// Throws SceneError that names an unknown command. CLI11 only says that a command is required.
+/// Throws SceneError that names an unknown command. CLI11 only reports that a command is required.
 void require_known_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return;
     const std::string found = argv[1];
@@ -472,7 +473,7 @@ int run_command_line(int argc, char** argv) {
 }
 
 /// Makes the allocator keep freed memory instead of returning it to the system. Loading a scene frees and allocates
-/// much memory, and the system would have to clear every page that it hands out again.
+/// much memory, and the system would have to clear every page before it is used again.
 void keep_freed_memory() {
 #ifdef __GLIBC__
     // Sizes in bytes. The C library would adapt these two limits by itself, but later.

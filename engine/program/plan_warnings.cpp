@@ -23,7 +23,8 @@ constexpr Real most_gravity = 5000;                      // [m/s^2]
 constexpr Real most_size_ratio = 999;                    // size of the longest body over that of the shortest
 // Distance of a body from the origin as a multiple of its size, beyond which a pin hardly rotates about the origin.
 constexpr Real most_pivot_distance = 1;
-constexpr Real most_surface_size = 20;    // size of a rigid body from a surface file, as of 20 mm read as m [m]
+// size of a rigid body from a surface file above which mm were probably read as m [m]
+constexpr Real most_surface_size = 20;
 constexpr Real least_given_density = 1;   // mean density of a body with a given mass; hollow bodies are light [kg/m^3]
 constexpr Real least_yield_ratio = 1e-6;  // yield stress over Young's modulus
 

@@ -80,7 +80,7 @@ private:
 };
 
 /// Shows the current activity and the elapsed seconds: as a status line on a terminal, otherwise as lines after 10, 20,
-/// 40 seconds and so on, so that a log shows that long work goes on.
+/// 40 seconds and so on, so that a log shows that long work continues.
 class ActivityLine {
 public:
     explicit ActivityLine(bool wanted);

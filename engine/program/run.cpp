@@ -177,7 +177,7 @@ void start_from_rest(World& world, RunResult& result) {
     const RelaxReport report = relax(world, settings, [](const RelaxReport&) { return caught_signal == 0; });
     const std::string steps = grouped(static_cast<std::size_t>(report.steps)) + " steps";
     if (report.converged)
-        result.notes.push_back("the run starts from rest, found in " + steps + " and " +
+        result.notes.push_back("the run starts from a static equilibrium, which took " + steps + " and " +
                                with_unit(watch.seconds(), "s") + " of wall time");
     else if (caught_signal != 0)
         result.status = "stopped by a signal before the start";
@@ -221,7 +221,7 @@ std::vector<std::string> thin_parts(const ScenePlan& plan, const World& world, s
 }
 
 /// Returns one text for each mesh whose boundary is not a closed manifold. The text names one body with this mesh.
-/// Where the boundary is not a manifold, a contact cannot tell the inside of a body from the outside.
+/// Where the boundary is not a manifold, contacts cannot distinguish the inside of a body from the outside.
 std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& world) {
     std::vector<std::string> found;
     const std::vector<BodyHandle> bodies = bodies_in_order(world);

@@ -75,7 +75,7 @@ std::vector<std::filesystem::path> write_results(const StudyOptions& options, co
         write_cheapest_scene(options.scene, result, files.cheapest);
         written.push_back(files.cheapest);
     } else if (earlier_study) {
-        std::filesystem::remove(files.cheapest, ignored);  // its cheapest settings are not those of this study
+        std::filesystem::remove(files.cheapest, ignored);  // the file is that of an earlier study
     }
     return written;
 }

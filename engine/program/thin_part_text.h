@@ -11,7 +11,7 @@ namespace skerry {
 
 /// Describes the thin part of a body that is stiffest compared with its material, counts the others and gives a remedy.
 /// If no thin part is too stiff, names a kind of elements of the body that lock, because the material is nearly
-/// incompressible. Returns an empty text if neither is so. `boundary` lists the boundary triangles of the mesh.
+/// incompressible. Otherwise returns an empty text. `boundary` lists the boundary triangles of the mesh.
 std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of);
 
 }  // namespace skerry

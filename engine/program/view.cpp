@@ -97,7 +97,7 @@ int view(const ViewOptions& options) {
     const Stopwatch watch;
     Real simulated = 0, before = scene.world.time();
     const auto go_on = [&] {
-        // Sums of the advances, because a reset sets the time of the world back.
+        // The advances are added up, because a reset sets the time of the world back.
         simulated += std::max<Real>(0, scene.world.time() - before);
         before = scene.world.time();
         return caught_signal == 0 && !(options.seconds && simulated >= *options.seconds);

@@ -55,7 +55,8 @@ private:
     [[noreturn]] static void raise_busy();
     [[noreturn]] static void raise_threads_lost();
 
-    static inline bool threads_started = false, threads_lost = false;  // of this process; changed with the GIL held
+    // state of this process; changed with the GIL held
+    static inline bool threads_started = false, threads_lost = false;
 
     WorldObject& object_;
 };

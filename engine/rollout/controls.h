@@ -16,8 +16,8 @@ namespace skerry {
 
 /// Sets the value of the object of a control.
 void set_controlled_value(World& world, const ValueControl& control, const TimeTable& value);
-/// Gives the motor of a joint the speed, the position or the keys of `target`. Its strength and its greatest speed
-/// stay.
+/// Gives the motor of a joint the speed, the position or the keys of `target`. Its strength and its greatest speed stay
+/// unchanged.
 void set_motor_target(World& world, JointHandle joint, JointMotor target);
 
 /// Control of the motor of a joint, by its present kind of target. Throws SceneError if the joint has no motor.

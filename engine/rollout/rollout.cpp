@@ -45,9 +45,9 @@ WorldState& source_of(const World* world, std::size_t number, Real dt) {
     state.require_between_steps("rollout");
     if (!(state.clock.time + dt > state.clock.time))
         refuse("rollout", "dt", short_text(dt),
-               "a time that is not lost when it is added to " + short_text(state.clock.time) +
+               "a longer time, because rounding would lose it in the sum with " + short_text(state.clock.time) +
                    " s, the time of world " + std::to_string(number));
-    // A later look at the contacts then writes nothing.
+    // A later evaluation of the contacts then writes nothing.
     view_contacts(state);
     return state;
 }

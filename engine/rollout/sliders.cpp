@@ -27,7 +27,7 @@ struct UnitOfControl {
     }
     std::string operator()(const ValueControl& control) const { return std::visit(*this, control.object); }
     std::string operator()(CableHandle cable) const {
-        constexpr std::array units{"N", "m", "m/s"};  // in the order of CableControl
+        constexpr std::array units{"N", "m", "m/s"};  // units in the order of CableControl
         return units[static_cast<std::size_t>(model.cables.control[row(cable)])];
     }
     std::string operator()(CavityHandle cavity) const {
@@ -142,7 +142,7 @@ void set_slider(World& world, const Slider& slider, Real value) {
     if (!(slider.low <= value && value <= slider.high))
         refuse("slider '" + slider.name + "'", "value", short_text(value),
                "a value from " + short_text(slider.low) + " to " + short_text(slider.high) + " " + slider.unit);
-    Real duration = 1e-3;  // at least so long, also for changes of nothing but rounding errors [s]
+    Real duration = 1e-3;  // least duration, also for changes that are only rounding errors [s]
     for (const SliderTarget& target : slider.targets)  // refuses removed objects before any object is changed
         duration = std::max(duration, std::abs(value - value_of(world, slider, target)) / slider.fastest);
     const Real now = world.time();

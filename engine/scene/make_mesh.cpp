@@ -44,7 +44,7 @@ Mesh fill_file(const std::filesystem::path& file, std::optional<Real> edge, int 
 }
 
 /// The mesh of a file, or of a filled surface, in the unit of the file. It is coarser than in the file if the entry
-/// says so, but not finer.
+/// requests this, but not finer.
 Mesh make_from_file(const MeshEntry& entry, bool rigid, std::vector<std::string>& notes,
                     const SurfaceFilling& filling) {
     // The surface is filled in the units of its file and scaled afterwards, so that scenes of any scale share the mesh

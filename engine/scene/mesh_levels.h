@@ -16,7 +16,7 @@ inline constexpr int most_refinements = 6;
 /// A mesh whose refinement changes the results of a scene: that of a deformable body, or a curved built-in shape of a
 /// rigid body or a collider. Levels are relative to the scene: at level n the edges are 2^-n times as long.
 struct MeshLevels {
-    Place place;                    // of the mesh entry
+    Place place;                    // place of the mesh entry
     int refine = 0;                 // value of the entry in the scene
     int coarsest = 0, finest = 0;   // the levels between these can be assigned
     std::string why_not_coarser{};  // reason for the value of `coarsest`
@@ -28,7 +28,7 @@ struct SceneLevels {
     // Levels that all meshes have; 0 if there are no meshes. Coarser levels never change the triangles of a file. A
     // coarser level of a surface that is filled may still be refused on reading, if no mesher fills it.
     int coarsest = 0, finest = 0;
-    std::string why_not_coarser{}, why_not_finer{};  // with the name of the mesh
+    std::string why_not_coarser{}, why_not_finer{};  // reasons, each with the name of the mesh
 
     /// Assignments (assign.h) that bring all meshes to a level.
     std::vector<std::string> assignments(int level) const;

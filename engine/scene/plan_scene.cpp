@@ -146,7 +146,7 @@ struct PlannedBodies {
     std::map<std::tuple<std::filesystem::path, bool, bool, Real, std::optional<Real>, std::optional<Real>, bool, int>,
              std::size_t>
         mesh_of_file;
-    // by path and scale of the file, and index in ScenePlan::meshes
+    // Visual surfaces by path and scale of their file, and by index of their mesh in ScenePlan::meshes.
     std::map<std::tuple<std::filesystem::path, Real, std::size_t>, std::shared_ptr<const BoundVisual>> visuals;
     const SurfaceFilling& filling;
 };
@@ -321,7 +321,7 @@ std::size_t leader_of(const JointPlan& joint, const ScenePlan& plan) {
 
 namespace {
 
-/// Adds a note if a joint does not start where its mimic wants it.
+/// Adds a note if a joint does not start at the coordinate that its mimic prescribes.
 void note_start_of_mimic(const JointPlan& joint, ScenePlan& plan) {
     const JointPlan& leader = plan.joints[leader_of(joint, plan)];
     const Real found = joint.settings.coordinate,

@@ -31,7 +31,7 @@ void read_into(SceneFile& scene, const Json& json, const Place& place, std::vect
                                                   "a different name for every included scene");
             if (included.name.find('/') != std::string::npos)
                 included.place.key("name").refuse(in_quotes(included.name),
-                                                  "a name without /, which stands between it and names of objects");
+                                                  "a name without /, which separates it from the names of objects");
             names.push_back(included.name);
             SceneFile part;
             read_into(part, read_json(file), Place(file), open);

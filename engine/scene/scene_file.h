@@ -79,12 +79,12 @@ struct PartEntry {
     Place place;
 };
 struct SphereRegion {
-    Vec3 center = Vec3::Zero();  // in the mesh's own frame [m]
+    Vec3 center = Vec3::Zero();  // centre in the mesh's own frame [m]
     Real radius = 0;             // [m]
 };
 /// The side of a plane to which the normal points, including the plane.
 struct HalfSpaceRegion {
-    Vec3 point = Vec3::Zero();  // in the mesh's own frame [m]
+    Vec3 point = Vec3::Zero();  // point in the mesh's own frame [m]
     Vec3 normal = {0, 0, 1};
 };
 /// A named set of a body: the part of the body that meets all given conditions.
@@ -347,7 +347,7 @@ struct SliderEntry {
 /// A scene file that a scene includes. Without a name its content becomes a part of the scene as it is.
 struct IncludeEntry {
     FilePath scene;
-    std::string name;              // stands in front of the names of all objects: NAME/OBJECT
+    std::string name;              // prefix of the names of all objects: NAME/OBJECT
     Vec3 position = Vec3::Zero();  // pose of the frame of the included scene [m]
     Rotation rotation;
     Place place;
@@ -383,7 +383,7 @@ struct SceneFile {
 /// first. Throws SceneError.
 SceneFile read_scene_file(const std::filesystem::path& file, std::span<const std::string> assignments = {});
 
-/// Stands for the name of the file in messages about a scene that is in no file.
+/// Used in place of the name of the file in messages about a scene that is in no file.
 inline constexpr const char* scene_text_name = "scene";
 /// Reads the text of a scene file. Relative paths start at `folder`.
 SceneFile read_scene_text(const std::string& json, const std::filesystem::path& folder,

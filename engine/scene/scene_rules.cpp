@@ -420,8 +420,8 @@ const Rule<IncludeEntry>& rule_of<IncludeEntry>() {
         Rule<IncludeEntry>("include", "A scene whose objects are added with other names and at another place.")
             .key("scene", &IncludeEntry::scene, {.meaning = "scene file", .required = true})
             .key("name", &IncludeEntry::name,
-                 {.meaning = "name that stands in front of the names of all objects and materials, as in NAME/OBJECT, "
-                             "and NAME_PROBE for probes",
+                 {.meaning = "prefix of the names of all objects and materials, as in NAME/OBJECT, and of probes, "
+                             "as in NAME_PROBE",
                   .required = true})
             .key("position", &IncludeEntry::position, {.meaning = "position of the frame of the scene", .unit = "m"})
             .key("rotation", &IncludeEntry::rotation, {.meaning = "rotation of the frame of the scene"});

@@ -152,8 +152,8 @@ struct KeysOfKind {
     std::vector<std::string> required, optional;
 };
 /// Throws SceneError unless the keys of an object suit its kind. `given`: the keys that only some kinds use, and
-/// whether the object has them. `kind`: such as: the quantity "force". `no_keys`: expected if the kind uses none of
-/// them.
+/// whether the object has them. `kind`: text such as: the quantity "force". `no_keys`: expected value in the message if
+/// the kind uses none of these keys.
 void check_keys_of_kind(const Place& place, const std::string& kind, const KeysOfKind& keys,
                         const std::vector<std::pair<std::string, bool>>& given, const char* no_keys = "");
 

@@ -7,8 +7,8 @@ constinit const KeyDoc part_set_doc{.meaning = "name of a set of the body, from 
 constinit const KeyDoc part_box_doc{.meaning = "box around the nodes, in the mesh's own frame"};
 constinit const KeyDoc part_nodes_doc{
     .meaning =
-        "numbers of nodes. All nodes of a mesh file count, from 0 in the order of the file, whatever numbers the "
-        "file gives them",
+        "numbers of nodes, counted from 0 over all nodes of the mesh file in their order; numbers in the file are "
+        "ignored",
     .limits = at_least(0)};
 
 template <>

@@ -23,11 +23,12 @@ void check_slider(const Place& place, const SliderEntry& slider) {
     for (const auto& [key, vector] : {std::pair("along", slider.along), std::pair("about", slider.about)}) {
         if (!vector) continue;
         if (!moves)
-            place.key(key).refuse("a key of a slider that moves nothing", "a slider with \"collider\" or \"body\"");
+            place.key(key).refuse("this key in a slider without \"collider\" or \"body\"",
+                                  "a slider with \"collider\" or \"body\"");
         if (vector->isZero(0)) place.key(key).refuse("a direction of length 0", "a direction of any other length");
     }
     if (slider.pin && slider.body.items.empty())
-        place.key("pin").refuse("a key of a slider that moves no pin", "a slider with \"body\"");
+        place.key("pin").refuse("this key in a slider without \"body\"", "a slider with \"body\"");
     if (!(slider.low < slider.high))
         place.key("high").refuse(Json(slider.high).dump(), "more than \"low\", " + Json(slider.low).dump());
     // The value of a pose is read from its rotation, which is the same at both ends of half a revolution.
@@ -164,24 +165,26 @@ const Rule<SliderEntry>& rule_of<SliderEntry>() {
             .key("pin", &Entry::pin,
                  {.meaning = "number of the pin of each body, counted from 0; default: 0", .limits = at_least(0)})
             .key("along", &Entry::along,
-                 {.meaning = "direction in the world of a displacement in m from the start of the scene"})
+                 {.meaning = "direction of the displacement in the world; the value is the displacement in m since the "
+                             "start of the scene"})
             .key("about", &Entry::about,
-                 {.meaning = "axis in the world of a turn in rad from the start of the scene, through the origin of "
-                             "each collider or the pivot of each pin"})
-            .key("joint", &Entry::joint, {.meaning = "joints whose motors get another target, in its unit"})
-            .key("cable", &Entry::cable,
-                 {.meaning = "cables with another tension in N, length in m or rate in m/s, whichever they have"})
+                 {.meaning = "axis of the rotation in the world, through the origin of each collider or the pivot of "
+                             "each pin; the value is the angle in rad since the start of the scene"})
+            .key("joint", &Entry::joint, {.meaning = "joints; the slider sets the target of their motors, in its unit"})
+            .key(
+                "cable", &Entry::cable,
+                {.meaning = "cables; the slider sets the tension in N, length in m or rate in m/s that each cable has"})
             .key("cavity", &Entry::cavity,
-                 {.meaning = "cavities with another pressure in Pa, inflow in kg/s or liquid volume in m^3"})
-            .key("pipe", &Entry::pipe, {.meaning = "pipes with another pressure of the reservoir in Pa"})
-            .key("spring", &Entry::spring, {.meaning = "springs with another rest length in m"})
-            .key("load", &Entry::load, {.meaning = "loads with another scale"})
-            .key("fibres", &Entry::fibres, {.meaning = "fibres with another active tension in Pa"})
+                 {.meaning = "cavities; the slider sets the pressure in Pa, inflow in kg/s or liquid volume in m^3"})
+            .key("pipe", &Entry::pipe, {.meaning = "pipes; the slider sets the pressure of the reservoir in Pa"})
+            .key("spring", &Entry::spring, {.meaning = "springs; the slider sets the rest length in m"})
+            .key("load", &Entry::load, {.meaning = "loads; the slider sets the scale"})
+            .key("fibres", &Entry::fibres, {.meaning = "fibres; the slider sets the active tension in Pa"})
             .key("low", &Entry::low, {.meaning = "least value", .required = true})
             .key("high", &Entry::high, {.meaning = "greatest value", .required = true})
             .key("value", &Entry::value,
                  {.meaning = "value at the start; default: the value that the rest of the scene gives, and 0 for a "
-                             "displacement or a turn"})
+                             "displacement or a rotation"})
             .key("fastest", &Entry::fastest,
                  {.meaning = "greatest change of the value in a second; default: high - low", .limits = above(0)})
             .exactly_one({"collider", "body", "joint", "cable", "cavity", "pipe", "spring", "load", "fibres"})

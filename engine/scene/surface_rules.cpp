@@ -23,7 +23,7 @@ const Rule<SurfaceEntry>& rule_of<SurfaceEntry>() {
                              "along it; default: the same in all directions",
                   .limits = above(0)})
             .key("direction", &Entry::direction,
-                 {.meaning = "direction in the mesh's own frame, which the faces carry along"})
+                 {.meaning = "direction in the mesh's own frame, which rotates with the faces"})
             .together({"friction_across", "direction"});
         return made;
     }();

@@ -35,7 +35,8 @@ Real angle_at(Index node, const std::array<Index, 3>& triangle, std::span<const 
     return std::atan2(side(1).cross(side(2)).norm(), side(1).dot(side(2)));
 }
 
-/// Normals of the smooth surface of each triangle at its three nodes: means of the faces, weighted with their angles.
+/// Normals of the smooth surface of each triangle at its three nodes: means of the normals of the faces, weighted by
+/// the angles of the faces at the node.
 std::vector<std::array<Vec3, 3>> corner_normals(std::span<const Vec3> nodes,
                                                 std::span<const std::array<Index, 3>> triangles,
                                                 std::span<const Vec3> normals) {
@@ -77,14 +78,14 @@ bool is_name(const std::string& name, const BodyEntry& body, const std::string& 
 }  // namespace
 
 Real FlatBody::error() const {
-    // Error of the displacements over that of the radius: the displacement of a shell under pressure grows with the
-    // square of the radius, and the load acts on the flat faces.
+    // Ratio of the error of the displacements to that of the radius: the displacement of a shell under pressure grows
+    // with the square of the radius, and the load acts on the flat faces.
     constexpr Real errors_of_radius = 3;
     return is_held ? errors_of_radius * faces.share : 0;
 }
 
 FlatFaces flat_faces(std::span<const Vec3> nodes, std::span<const std::array<Index, 3>> triangles) {
-    constexpr Real least_angle = 0.01;  // a surface that turns less along its edges counts as flat [rad]
+    constexpr Real least_angle = 0.01;  // a surface whose normal turns less along its edges counts as flat [rad]
     const std::vector<Vec3> normals = normals_of(nodes, triangles);
     const std::vector<std::array<Vec3, 3>> corners = corner_normals(nodes, triangles, normals);
     Real curved = 0, sum = 0;
@@ -136,7 +137,7 @@ std::vector<FlatBody> flat_bodies(const SceneFile& file, const World& world) {
 std::string flat_text(const FlatBody& body) {
     constexpr Real degrees = 180 / std::numbers::pi;
     return "Body '" + body.name + "': refined meshes keep the flat faces of the file, which turn by up to " +
-           short_text(body.faces.angle * degrees, 2) + " degrees and are off a smooth surface by " +
+           short_text(body.faces.angle * degrees, 2) + " degrees and deviate from a smooth surface by " +
            percent(body.faces.share) + " of its radius. " +
            (body.is_held ? "The mesh errors of this body contain three times that share of each value"
                          : "The error bars leave out this error of the shape") +

@@ -26,7 +26,8 @@ std::vector<ElementKind> elements_of(const SceneFile& file) {
     return kinds;
 }
 
-/// Adds the runs in which all bodies have linear, or all have smoothed elements, unless they have them anyway.
+/// Adds the runs in which all bodies have linear, or all have smoothed elements, unless the scene already has only such
+/// elements.
 void add_element_runs(const StudiedScene& scene, std::vector<PlannedRun>& plan) {
     for (const ElementKind kind : {ElementKind::linear, ElementKind::smoothed}) {
         std::vector<std::string> changed = scene.assignments;
@@ -52,7 +53,7 @@ void add_level_run(const StudiedScene& scene, int level, StudyStage stage, std::
 }
 
 /// Mean step of the implicit bodies [s]. Each call of advance is divided into equal implicit steps, which are shorter
-/// than the setting unless it divides the call. Only explicit bodies divide an implicit step further.
+/// than the setting unless the call is a multiple of the setting. Only explicit bodies divide an implicit step further.
 Real mean_implicit_step(const StudiedScene& scene, Real mean_step) {
     if (!scene.has_explicit) return mean_step;
     constexpr Real rounding = 1e-9;
@@ -162,7 +163,8 @@ void keep_to_budget(double budget, int threads, std::size_t first, std::span<Pla
 std::vector<std::string> variant_assignments(const StudiedScene& scene, const StudyVariant& variant, Real mean_step) {
     std::vector<std::string> assignments = scene.assignments;
     if (variant.step != 1) {
-        constexpr double slack = 1 + 1e-9;  // a call of advance that is a whole number of steps must stay one
+        // tolerance, so that a call of advance that is a whole number of steps counts as one
+        constexpr double slack = 1 + 1e-9;
         assignments.push_back("settings.step_size=" + number_json(mean_step * variant.step * slack));
         if (scene.settings.implicit_step > 0)
             assignments.push_back("settings.implicit_step=" +

@@ -23,7 +23,7 @@ struct StudiedScene {
     Settings settings;
     bool has_explicit = false;         // true with deformable bodies that are integrated explicitly
     std::vector<FlatBody> flat{};      // bodies whose refined meshes keep the flat faces of a file
-    std::vector<Real> shape_errors{};  // StudyColumn::shape_error of each column
+    std::vector<Real> shape_errors{};  // shape_error of each column (StudyColumn)
     double longest_call = 0;           // longest simulated time of a call of advance [s]
 };
 
@@ -56,8 +56,8 @@ void predict_levels(const StudiedScene& scene, std::span<const StudyRun> runs, s
 double wall_time(std::vector<double> costs, int threads);
 /// True if a run takes so long that it gets all threads, one run after the other.
 bool gets_all_threads(double cost, double total, int threads);
-/// Leaves out each run with which the study would take longer than `budget` times the first run, together with the runs
-/// before it that fit. Runs before number `first` are not left out.
+/// Leaves out runs that do not fit into the budget: a run is left out if it and the chosen runs before it would take
+/// longer than `budget` times the first run. Runs before number `first` are not left out.
 void keep_to_budget(double budget, int threads, std::size_t first, std::span<PlannedRun> plan);
 
 /// Assignments with which `skerry run --set` runs a variant. `mean_step`: mean step of the unchanged scene [s].

@@ -129,7 +129,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
     if (folder.empty()) return;
     make_folder(folder);
     file_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    // File systems without locks have other errors, and are used without a lock.
+    // On a file system without locks, flock fails with another error. The folder is then used without a lock.
     if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         close(file_);
         refuse_in(folder.string(), "study", "folder", "a folder in which another study runs",

@@ -22,7 +22,7 @@ namespace skerry {
 
 namespace {
 
-// Time between two calls of StudySettings::go_on. A program must react to Ctrl-C within 50 ms.
+// Time between two calls of StudySettings::go_on, so that a program reacts to Ctrl-C within 50 ms.
 constexpr std::chrono::milliseconds watch_period{20};
 
 constexpr double usual_budget = 15;  // StudySettings::budget, unless a study is short
@@ -44,7 +44,8 @@ void check_settings(const StudySettings& settings) {
                "a number of threads from 0 to 1024 (0: the number of cores)");
 }
 
-/// Names the tractions that act on another area with the finest meshes: a box or a sphere may select other faces there.
+/// Adds a sentence for each traction whose loaded area differs on the finest meshes, because a box or a sphere selects
+/// other faces there.
 void add_load_sentences(const std::vector<StudyRun>& runs, std::vector<std::string>& sentences) {
     constexpr Real least_change = 0.05;
     const StudyRun* finest = &runs[0];
@@ -115,7 +116,7 @@ private:
         return end;
     }
 
-    /// Removes runs from the plan that the first run has shown to be pointless: other tolerances without contacts, and
+    /// Removes runs that the first run has shown to be pointless from the plan: other tolerances without contacts, and
     /// steps longer than a call of advance.
     void drop_pointless() {
         mean_step_ = runs_[0].time.back() / static_cast<Real>(std::max<std::uint64_t>(runs_[0].steps, 1));
@@ -279,7 +280,7 @@ private:
         finish(i);
     }
 
-    /// Writes the run into the folder. The study goes on if this is impossible, because its results do not need the
+    /// Writes the run into the folder. If this is impossible, the study continues, because its results do not need the
     /// files.
     void store(std::size_t i) {
         // A refused scene is not stored: the reason may be a missing program or too little memory at the moment.
@@ -288,7 +289,7 @@ private:
             write_run(settings_.folder, inputs_[i], runs_[i]);
         } catch (const SceneError& error) {
             if (!is_lost_.exchange(true))
-                lost_ = std::string("Not all runs could be kept in the folder: ") + error.what() + ".";
+                lost_ = std::string("Not all runs could be stored in the folder: ") + error.what() + ".";
         }
     }
 
@@ -307,7 +308,7 @@ private:
             cost += plan_[i].cost;
             done += plan_[i].cost * shares_[i];
         }
-        // Before the first run has ended, the plan has runs that will not fit into the budget.
+        // Before the first run has ended, the plan still contains runs that will not fit into the budget.
         progress.share = std::min(1.0, done / std::min(cost, budget_ * threads_));
         try {
             if (!settings_.go_on(progress)) stop_ = true;
@@ -320,17 +321,17 @@ private:
     const StudySettings& settings_;
     const int threads_;
     double budget_;
-    CaseHasher hasher_;  // before `scene_`, so that each change since the scene was read is found
+    CaseHasher hasher_;  // constructed before `scene_`, so that it detects changes of files since the scene was read
     const StudiedScene scene_;
     std::vector<PlannedRun> plan_;
-    const FolderLock lock_;  // after `scene_`, so that an invalid scene creates no folder
-    Real mean_step_ = 0;     // of the scene as it is [s]
-    // The following are indexed as the plan.
+    const FolderLock lock_;  // constructed after `scene_`, so that an invalid scene creates no folder
+    Real mean_step_ = 0;     // mean step of the unchanged scene [s]
+    // The following vectors are indexed as the plan.
     std::vector<StudyRun> runs_;
     std::vector<std::string> inputs_;          // texts that identify all inputs of a run
     std::vector<std::atomic<double>> shares_;  // simulated shares of the durations
     std::atomic<bool> is_lost_{false};
-    std::string lost_;  // sentence on the first run that could not be written; else empty
+    std::string lost_;  // message about the first run that could not be written; else empty
     std::atomic<int> done_{0}, running_{0};
     std::atomic<bool> stop_{false};
 };

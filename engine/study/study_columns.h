@@ -59,7 +59,7 @@ private:
     World& world_;
     std::vector<DefaultProbe> defaults_;
     Recorder recorder_;
-    ProbeRecorder contacts_;  // of the probes of contacts
+    ProbeRecorder contacts_;  // recorder of the probes of contacts
     bool many_bodies_ = false;
     Real size_ = 0;  // diagonal of the bounding box of all bodies at the start [m]
     std::vector<Source> sources_;

@@ -62,7 +62,7 @@ private:
             if (corner < 0 || corner >= static_cast<Index>(nodes))
                 refuse(object, "triangles", "node " + std::to_string(corner),
                        "the index of a node of the mesh, 0 to " + std::to_string(static_cast<Index>(nodes) - 1));
-        // A triangle with two equal nodes is refused: inside the engine it stands for the core of a round body.
+        // A triangle with two equal nodes is refused: inside the engine it represents the core of a round body.
         const auto [a, b, c] = triangle;
         if (a == b || b == c || c == a)
             refuse(object, "triangles",

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-// The C++ interface that MPI has removed needs another library.
+// Excludes the C++ interface of MPI, which newer versions of MPI do not have and which needs another library.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
@@ -18,7 +18,7 @@ namespace skerry {
 
 namespace {
 
-/// Adds the wall time of its own life to a sum.
+/// Adds the wall time from its construction to its destruction to a sum.
 class Stopclock {
 public:
     explicit Stopclock(double& seconds) : seconds_(seconds) {}
@@ -51,7 +51,7 @@ public:
         if (level < MPI_THREAD_SERIALIZED)
             throw std::runtime_error("MPI: found the thread level " + std::to_string(level) + ", expected at least " +
                                      std::to_string(MPI_THREAD_SERIALIZED) +
-                                     " (MPI_THREAD_SERIALIZED); ask MPI_Init_thread for it");
+                                     " (MPI_THREAD_SERIALIZED); call MPI_Init_thread with this level");
         MPI_Comm_dup(world, &world_);
         MPI_Comm_rank(world_, &rank_);
         MPI_Comm_size(world_, &size_);

@@ -7,9 +7,9 @@
 
 namespace skerry {
 
-/// Starts MPI in this process, once in its life. The processes that the launcher has started are the ranks. Destroying
-/// the object waits for all ranks and ends MPI. Throws std::runtime_error if MPI does not allow that threads call it in
-/// turn.
+/// Starts MPI in this process, which is possible once. The processes that the launcher has started are the ranks.
+/// Destroying the object waits for all ranks and ends MPI. Throws std::runtime_error if MPI does not allow that threads
+/// call it in turn.
 std::unique_ptr<Ranks> start_mpi();
 
 /// Returns the processes of a communicator as ranks. `communicator`: its number from MPI_Comm_c2f. Throws

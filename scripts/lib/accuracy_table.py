@@ -27,7 +27,7 @@ SHOWN = 8  # rows of the table in the page
 
 
 def number(value):
-    """At most five digits that say something; zero is 0."""
+    """At most five significant digits; zero is 0."""
     return "0" if value == 0 else f"{value:.5g}"
 
 

@@ -30,13 +30,13 @@ LIMITS = {
 # Calls of memcpy, memmove or memset, and the instructions that replace them.
 MEMORY_FUNCTION = re.compile(r"\bmem(cpy|move|set)\b")
 STRING_INSTRUCTION = re.compile(r"(movs|stos)[bwlq]\b")
-# Calls of functions that end the program, or that stand in a part of a function that is rarely reached.
+# Calls of functions that end the program, or that are in a part of a function that is rarely reached.
 COLD = re.compile(r"\.cold\b|fail|terminate|throw|_Unwind_Resume|__cxa_")
 VECTOR = re.compile(r"%[xyz]mm\d+")
 SCALAR_COMPARISON = re.compile(r"v?u?comis[sd]|v?cmp\w*s[sd]|set\w+")
 
-# Instructions of the peak loops: a pattern and its count in one round. `chains` stands for the number of independent
-# chains, which depends on the number of registers.
+# Instructions of the peak loops: a pattern and its count in one round. `chains` is the number of independent chains,
+# which depends on the number of registers.
 PEAK_LOOPS = {
     "separate_rounds<double": [(r"v?mulpd", "chains"), (r"v?addpd", "chains")],
     "separate_rounds<float": [(r"v?mulps", "chains"), (r"v?addps", "chains")],

@@ -53,7 +53,8 @@ private:
         }
         if (motion_.stands_still() && is_convex_part(geometry_, part) &&
             !within_reach(distance, speed_against(Vec3::Zero(), node))) {
-            // The difference is a lower bound of the distance of every point of the edge from the collider.
+            // `distance` bounds the signed distance of every point of the edge from below, so the radii are subtracted
+            // from it.
             least_ = std::min(least_, distance - scale.radii);
             return;
         }

@@ -13,9 +13,9 @@ namespace skerry {
 /// find_contacts.
 ///
 /// Tests only pairs with a contact distance whose surfaces are known to be apart. Without a contact distance, surfaces
-/// may touch, and a touch cannot be told from a crossing. Skips a pair if the relative motion in this step is at most
-/// half of the least distance of its candidates, and a candidate if the motion is at most half of its distance. A slow
-/// scene therefore takes one comparison per pair. BodyTable::frame_speed must be the speed of this motion.
+/// may touch, and a touch cannot be distinguished from a crossing. Skips a pair if the relative motion in this step is
+/// at most half of the least distance of its candidates, and a candidate if the motion is at most half of its distance.
+/// A slow scene therefore takes one comparison per pair. BodyTable::frame_speed must be the speed of this motion.
 ///
 /// Each crossing is stored in crossings.found as a contact, with the weights and the normal at the time when the
 /// features meet. If a pair moves further than its candidate list is valid for, no features are tested. Instead

@@ -40,7 +40,7 @@ struct RestingMemory {
 };
 
 /// Updates the stored contacts between sleeping bodies after a step. `kick`: time for which forces acted in this step
-/// [s]. Contacts of this step are stored if both partners are asleep or stand still. Contacts that are already stored
+/// [s]. Contacts of this step are stored if both partners are asleep or do not move. Contacts that are already stored
 /// remain if this step has left out their pair. Returns false if nothing changes, which is found in one pass over the
 /// contacts and one over the pairs.
 bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real kick, RestingMemory& memory,

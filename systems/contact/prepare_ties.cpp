@@ -53,7 +53,7 @@ Mat3 mesh_axes(const TieInputs& ties, Index frame) {
 struct FrameMotion {
     Vec3 turning = Vec3::Zero();       // part of the velocity that stems from the spin [m/s]
     Vec3 velocity = Vec3::Zero();      // [m/s]
-    Vec3 acceleration = Vec3::Zero();  // of the free rotation [m/s^2]
+    Vec3 acceleration = Vec3::Zero();  // acceleration by the free rotation [m/s^2]
 };
 
 /// `node`: row of NodeTable of a node at the point if the body is implicit, else no_index.
@@ -95,7 +95,7 @@ Vec3 led_velocity(const RigidMotion& motion, const Vec3& point, Real h) {
 /// A point of the first body of a tie: one of its nodes, or the mean point of all.
 struct TiedPoint {
     Vec3 position = Vec3::Zero();  // [m]
-    FrameMotion of_frame;          // of the frame of its body
+    FrameMotion of_frame;          // motion of the frame of its body
 };
 
 TiedPoint tied_point(const TieInputs& ties, std::size_t t, Index node) {
@@ -141,7 +141,7 @@ public:
     const Vec3& point() const { return point_.position; }
     const Vec3& normal() const { return place_.normal; }
 
-    /// Velocity that the row demands of the node relative to the nodes of the other object [m/s]
+    /// Velocity that the row prescribes for the node relative to the nodes of the other object [m/s]
     Vec3 demanded() const {
         const TieTable& tie = ties_.tie;
         const Index second = tie.second[t_], frame = ties_.frame(second);

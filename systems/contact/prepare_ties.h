@@ -119,7 +119,7 @@ struct TieStep {
 };
 
 /// Appends a row to the contacts for each tied node of a weld or slide that does not rest, and a block to `blocks` for
-/// each tie of the kind `ball`. They demand that the position error is zero at the end of the step. Returns false if
+/// each tie of the kind `ball`. They require that the position error is zero at the end of the step. Returns false if
 /// there is no tie (skipped).
 bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows,
                   CableBlockTable& blocks);

@@ -69,8 +69,8 @@ Index label_all_as_one(std::span<const Stencil> stencil, std::span<const Real> i
     return any ? 1 : 0;
 }
 
-/// Counting sort of `count` contacts, joints or cables by region. The sort is stable, so those of a region stay in
-/// ascending order.
+/// Counting sort of `count` contacts, joints or cables by region. The sort is stable, so the contacts, joints or cables
+/// of a region stay in ascending order.
 template <class RegionOf>
 void collect(std::size_t count, const RegionOf& region_of, Index region_count, Ragged<Index>& list) {
     Column<Index>& offset = list.offset;

@@ -42,7 +42,7 @@ struct LoadInputs {
     std::span<const Range> body_nodes, body_implicit;
     std::span<const Index> node_body;
     std::span<const Real> mass;                // [kg]
-    std::span<const Vec3> position, velocity;  // at the start of the step [m, m/s]
+    std::span<const Vec3> position, velocity;  // state at the start of the step [m, m/s]
     Vec3 gravity = Vec3::Zero();               // gravity of the settings [m/s^2]
     ForceIntervals intervals;
 

@@ -26,7 +26,7 @@ struct CavityInputs {
     std::span<const Range> keys;
     std::span<const TimeKey> key;
     std::span<const CavityFluid> fluid;
-    std::span<const Real> mass;          // of the gas [kg]
+    std::span<const Real> mass;          // mass of the gas [kg]
     std::span<const Real> swept_volume;  // CavityTable::volume [m^3]
     std::span<const Range> body_nodes;   // BodyTable
     std::span<const Vec3> position;      // by node [m]

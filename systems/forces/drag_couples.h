@@ -18,7 +18,7 @@ struct DraggedBodies {
     // Columns of BodyTable and NodeTable:
     std::span<const Range> body_nodes, body_implicit;
     std::span<const Real> mass;                // [kg]
-    std::span<const Vec3> position, velocity;  // at the start of the step [m, m/s]
+    std::span<const Vec3> position, velocity;  // state at the start of the step [m, m/s]
 
     static DraggedBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& body,
                               const NodeTable& node) {
@@ -35,9 +35,9 @@ struct DraggedBodies {
 
 /// Adds couples to the drag of rigid bodies in `applied_force`, by node [N], so that its moment about the centre of
 /// mass is -drag L with the angular momentum L. The moment of add_loads() contains the inertia of the nodes instead of
-/// that of the body, and speeds up rotation if masses of nodes are negative. The forces of a couple have no sum. Nodes
-/// on a line can bear no couple along it. `fields`: from add_loads(). Returns false if there is no rigid or implicit
-/// body.
+/// that of the body, and speeds up rotation if masses of nodes are negative. The forces of a couple sum to zero.
+/// If all nodes lie on a line, they cannot take up a couple along this line. `fields`: from add_loads(). Returns false
+/// if there is no rigid or implicit body.
 bool add_drag_couples(const DraggedBodies& bodies, std::span<const BodyField> fields, std::span<Vec3> applied_force);
 
 }  // namespace skerry

@@ -99,7 +99,7 @@ bool mark_activated(const FibreInputs& fibres, Real t, Real h, std::span<std::ui
 
 struct FibreWorkInputs {
     std::span<const FibrePull> next;
-    std::span<const Vec3> passive_before;  // of the last step [Pa]
+    std::span<const Vec3> passive_before;  // stress in the last step [Pa]
     std::span<const Vec3> velocity_next;   // NodeTable [m/s]
     FreeNodes free;
 

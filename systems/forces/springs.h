@@ -120,7 +120,7 @@ struct SpringWork {
 
 struct SpringWorkInputs {
     std::span<const SpringForce> next;
-    std::span<const Vec3> force_before;      // of the last step [N]
+    std::span<const Vec3> force_before;      // forces in the last step [N]
     std::span<const Real> elastic_before;    // elastic tension [N]
     std::span<const Real> rest_rate_before;  // [m/s]
     std::span<const Vec3> velocity_next;     // NodeTable [m/s]

@@ -61,7 +61,7 @@ PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3
     if (!(ab.cross(ac).squaredNorm() > min_height_fraction * min_height_fraction * longest_squared * longest_squared))
         return closest_point_on_flat_triangle(p, {a, b, c});
 
-    // Method of Ericson 5.1.5: the signs of projections on the edges and of sub-areas tell which part of the triangle
+    // Method of Ericson 5.1.5: the signs of projections on the edges and of sub-areas show which part of the triangle
     // is nearest.
     const Real d1 = ab.dot(ap), d2 = ac.dot(ap);
     if (d1 <= 0 && d2 <= 0) return at(p, a, TriangleRegion::vertex0, 1, 0, 0);
@@ -86,7 +86,7 @@ PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3
     }
     const Real scale = 1 / (va + vb + vc);
     // Near an edge, rounding errors can make a weight negative. Such weights are set to zero, because the sign of a
-    // weight tells to which body the node belongs.
+    // weight shows to which body the node belongs.
     const Real v = std::max(Real(0), vb * scale), w = std::max(Real(0), vc * scale);
     return at(p, a + v * ab + w * ac, TriangleRegion::face, std::max(Real(0), 1 - v - w), v, w);
 }

@@ -444,7 +444,7 @@ TEST_CASE("a cavity that cannot be is refused by the field at fault", "[scene][c
     const auto surface = world.surface(block);
     refused({.body = block, .faces = std::vector{surface[0], surface[1]}, .filling = GasFilling{}},
             "an open edge between the nodes");
-    refused({.body = block, .filling = GasFilling{}}, "point into a hollow");
+    refused({.body = block, .filling = GasFilling{}}, "point into the cavity");
     refused({.body = block, .faces = std::vector{std::array<Index, 3>{0, 1, 99}}}, "the nodes 0, 1 and 99");
     refused({.body = block, .faces = std::vector{surface[1], surface[1]}}, "each face once");
     refused({.body = block, .faces = std::vector<std::array<Index, 3>>{}}, "faces: found no faces");

@@ -86,7 +86,7 @@ TEST_CASE("a step relies on positions at most two rounds old", "[scene]") {
 }
 
 // Linear elements have masses in the frame of their body (docs/methods/stable_step.md 2.4).
-TEST_CASE("a look in the frame of a body finds the same in parts, and the body stands as much turned as not",
+TEST_CASE("a stable-step check in the frame of a body gives the same result in pieces, and for a rotated body",
           "[scene]") {
     Swinging scene(without_clusters(), ElementKind::linear);
     const Model& model = WorldAccess::state_of(scene.world).model;
@@ -142,7 +142,7 @@ TEST_CASE("no step takes more than its share of the looks", "[scene]") {
     Model& model = WorldAccess::state_of(world).model;
     std::uint64_t all = 0;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
-        all += pieces_of_look(model.all_elements(), model.bodies.blocks[b]);
+        all += pieces_of_check(model.all_elements(), model.bodies.blocks[b]);
     REQUIRE(all > 128);
     const auto done = [&] { return model.watch.before + model.watch.look.piece; };
     std::uint64_t before = done(), greatest = 0;

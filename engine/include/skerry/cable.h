@@ -24,7 +24,7 @@ struct CableDrive {
 /// A cable without mass and without elasticity. It runs straight from point to point, and is drawn in or let out at the
 /// first point.
 struct CableSettings {
-    std::vector<Anchor> points;  // at least two; neighbours must not coincide
+    std::vector<Anchor> points;  // points of the cable, at least two; neighbours must not coincide
     CableDrive drive;            // prescribed tension, greatest length or rate
     // Friction coefficient mu at the points between the first and the last, >= 0. A cable that bends by the angle theta
     // at a point slides there if the tensions on both sides have the ratio exp(mu theta) (Euler and Eytelwein).

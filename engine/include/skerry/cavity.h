@@ -27,9 +27,9 @@ struct GasFilling {
     TimeTable inflow{};                // flow of gas into the cavity, negative to draw gas out [kg/s]
 };
 
-/// A liquid whose volume is prescribed, as by a syringe. The pressure above ambient is bulk_modulus log(volume / V),
-/// with the volume V of the cavity, and at least -ambient. The smaller the bulk modulus, the longer the stable step. An
-/// error of pressure / bulk_modulus in the volume is often acceptable.
+/// A liquid whose volume is prescribed, for example by a syringe. The pressure above ambient is bulk_modulus log(volume
+/// / V), with the volume V of the cavity, and at least -ambient. The smaller the bulk modulus, the longer the stable
+/// step. An error of pressure / bulk_modulus in the volume is often acceptable.
 struct LiquidFilling {
     Real bulk_modulus = 2.2e9;  // bulk modulus, > 0; default: water [Pa]
     // volume of the liquid at ambient pressure, > 0; default: the volume of the cavity when it is added [m^3]
@@ -46,8 +46,8 @@ struct CavitySettings {
     std::optional<std::vector<std::array<Index, 3>>> faces{};
     // Prescribed pressure, gas or liquid; default: the pressure 0.
     std::variant<TimeTable, GasFilling, LiquidFilling> filling{};
-    // Volume of the gas or liquid at the start. Required if the faces do not enclose a volume, as those of a piston:
-    // the volume then changes by the volume that the faces sweep in steps. Calls that place nodes, such as
+    // Volume of the gas or liquid at the start. Required if the faces do not enclose a volume, for example those of a
+    // piston: the volume then changes by the volume that the faces sweep in steps. Calls that place nodes, such as
     // World::reset(body), keep this volume and the mass of the gas; World::reset(saved) restores those of the saved
     // world. Not allowed for faces that enclose a volume [m^3].
     std::optional<Real> volume{};

@@ -14,8 +14,8 @@ namespace skerry {
 /// Value of an error that was not estimated.
 inline constexpr Real not_estimated = std::numeric_limits<Real>::quiet_NaN();
 
-/// Estimated relative errors of one body. A value is `not_estimated` if the error does not exist for the body, as the
-/// error of the mesh of a rigid body.
+/// Estimated relative errors of one body. A value is `not_estimated` if the error does not exist for the body, for
+/// example the error of the mesh for a rigid body.
 struct ErrorEstimate {
     BodyHandle body{};  // the body
     std::string name;   // name of the body
@@ -23,15 +23,15 @@ struct ErrorEstimate {
     // and the next three values are those at the sample with the largest elastic energy of the body.
     Real mesh = not_estimated;
     // Error of a displacement under given loads, due to the mesh. Positive if the mesh is too stiff, negative if it is
-    // too soft. Times `deformation` it is the error of the motion.
+    // too soft. Multiplied by `deformation` it is the error of the motion.
     Real deflection = not_estimated;
-    // Error of the displacement of a single node besides `deflection`, due to the mesh: root mean square of the error
-    // of linear interpolation along the edges [m].
+    // Error of the displacement of a single node in addition to `deflection`, due to the mesh: root mean square of the
+    // error of linear interpolation along the edges [m].
     Real interpolation = not_estimated;
     Real stress = not_estimated;  // error of the largest von Mises stress at the nodes, due to the mesh
-    // Error of the motion, due to the length of the steps: largest distance of the nodes from where infinitely short
-    // steps would take them, over their largest displacement from the start, both as root mean squares. Not estimated
-    // for a body at rest.
+    // Error of the motion, due to the length of the steps: largest distance of the nodes from their positions with
+    // infinitely short steps, divided by their largest displacement from the start, both as root mean squares. Not
+    // estimated for a body at rest.
     Real step = not_estimated;
     // Largest displacement by deformation over the largest displacement from the start, both as root mean squares. Not
     // estimated for a body at rest.
@@ -41,7 +41,7 @@ struct ErrorEstimate {
     Real contact = not_estimated;
     Real overlap = not_estimated;  // largest overlap with another object at a sample, 0 if there is none [m]
     // Largest distance to another object, at a sample, at which a contact carried a force, because contacts act within
-    // the contact distance. Places have an error of this size [m].
+    // the contact distance. Positions have an error of this size [m].
     Real gap = not_estimated;
     // Radius of the most loaded contact area by the theory of Hertz, and mean edge length of the mesh there [m]. Not
     // estimated where flat faces, edges or corners touch.
@@ -63,8 +63,8 @@ public:
     /// Call this after every call of advance(). Takes a sample if there were enough steps since the last one; samples
     /// take less than 2 % of the computing time of the steps.
     void sample(const World& world);
-    /// Takes the last sample. Call this once, at the end of a run. After less than 8000 explicit steps, meshes
-    /// are sampled of the bodies with the most elastic energy only, and of at least one, so that short runs are not
+    /// Takes the last sample. Call this once, at the end of a run. After less than 8000 explicit steps it samples the
+    /// mesh errors of only a few bodies, at least one: those with the most elastic energy. So short runs are not
     /// slowed.
     void finish(const World& world);
     /// Estimates for all bodies of the world at finish(), in the order of World::bodies().

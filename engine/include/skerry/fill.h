@@ -55,7 +55,7 @@ struct FilledMesh {
     std::string mesher;          // "Netgen", "fTetWild", or "fTetWild and Netgen"
     bool exact = false;          // true if the new surface is SurfaceReport::cleaned, bitwise
     SurfaceReport surface;       // check of the given surface
-    SurfaceDistance distance{};  // from SurfaceReport::cleaned (first) to the new surface (second)
+    SurfaceDistance distance{};  // distance from SurfaceReport::cleaned (first) to the new surface (second)
     Real tolerance = 0;          // largest distance that was allowed [m]
     // Volume inside the given surface; empty if it is not closed or if its shells cross each other [m^3].
     std::optional<Real> surface_volume{};
@@ -69,7 +69,7 @@ struct FilledMesh {
 using FillProgress = std::function<void(const std::string&)>;
 
 /// Fills surfaces with tetrahedra. Nodes are first merged as by check_surface. Clean surfaces (closed manifolds that do
-/// not cross) are filled by Netgen, which keeps them bitwise, unless `edge` asks for other triangles. Other surfaces
+/// not cross) are filled by Netgen, which keeps them bitwise, unless `edge` requests other triangles. Other surfaces
 /// are filled by fTetWild (Hu et al., Fast tetrahedral meshing in the wild, 2020) within the tolerance: holes are
 /// closed, and crossing shells are united; repeated runs give slightly different meshes. Each mesher runs in its own
 /// process. Of several meshes the one with the longest stable step is returned
@@ -78,13 +78,13 @@ using FillProgress = std::function<void(const std::string&)>;
 /// If shells are nested, regions have the labels 1, 2, ..., beginning with the region of the largest shell. The faces
 /// of each shell are a set: with the name of the file if each file has one shell, otherwise shell_1, shell_2, ...
 ///
-/// Shells that repeat another shell are dropped, with a note. Another note says so if the new surface is farther from
-/// the given one than the tolerance, as where a hole was closed. Throws SceneError that names the file if a file cannot
-/// be read, a mesher is not installed, or no mesher fills the surface within the limits.
+/// Shells that repeat another shell are dropped, with a note. A note also reports if the new surface is farther from
+/// the given one than the tolerance, for example where a hole was closed. Throws SceneError that names the file if a
+/// file cannot be read, a mesher is not installed, or no mesher fills the surface within the limits.
 FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSettings& settings = {},
                 const FillProgress& progress = {});
 
-/// Fills a surface from memory. `name` stands for the file in messages.
+/// Fills a surface from memory. Messages use `name` in place of a file name.
 FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillSettings& settings = {},
                 const FillProgress& progress = {});
 

@@ -28,9 +28,9 @@ struct LiveSettings {
 /// the token of address(), a new random number for each view. Requests with another Host, Origin or token are refused.
 ///
 /// One thread advances the world and calls the functions of the view. Other threads encode and send the frames. The
-/// simulation never waits for a browser: a browser that is slow gets fewer frames. A browser that only looks changes no
-/// bit of the world. In a process made by fork() the view can only be closed, which leaves its server to
-/// the first process. The first view makes the process ignore the signal SIGPIPE from then on.
+/// simulation never waits for a browser: a browser that is slow gets fewer frames. A browser that only displays the
+/// world changes no bit of it. In a process made by fork() the view can only be closed, which leaves its server to the
+/// first process. The first view makes the process ignore the signal SIGPIPE from then on.
 class LiveView {
 public:
     /// Starts the server, and stores the present state of the world for a reset. Throws SceneError if a setting is out
@@ -63,7 +63,7 @@ public:
     /// Carries out the commands that browsers have sent, and shows the world to browsers that are ready for a frame, at
     /// most 30 times a second of wall time. Commands that fail are reported to the browser that sent them, and change
     /// nothing. While the view is paused the call then waits for the next command, at most 20 ms. Otherwise it never
-    /// waits, and costs two comparisons without a browser.
+    /// waits, and without a browser it costs two comparisons.
     void sync(World& world);
     /// Calls sync() and returns the simulated time that is to be advanced now [s]; 0 if the view is paused or the world
     /// is ahead of the wall clock. With the result 0 it waits for commands, at most 20 ms. The caller must advance the
@@ -72,7 +72,7 @@ public:
     /// For a callback of World::advance. Shows the world between two steps of a long call, and returns false if
     /// commands wait, so that the call ends and they are carried out soon.
     bool between_steps(const World& world);
-    /// Pauses the view, and shows the text to all browsers. For steps that failed.
+    /// Pauses the view, and shows the text to all browsers. Call it after a step that failed.
     void fail(const std::string& text);
     /// Refuses resets by browsers with this text, for example while a recorder could not continue at an earlier time.
     /// An empty text allows them again.

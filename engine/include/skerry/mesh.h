@@ -143,8 +143,8 @@ Mesh table(const TableShape& shape);
 /// Throws SceneError that names the file, the place in the file, and the found and the expected text.
 Mesh read(const std::string& path, std::vector<std::string>* notes = nullptr);
 
-/// Reads the mesh of a rigid body: as `read`, but from a file without tetrahedra only the surface (Mesh::triangles), as
-/// `read_surface`. Throws SceneError.
+/// Reads the mesh of a rigid body like `read`. From a file without tetrahedra it reads only the surface
+/// (Mesh::triangles), like `read_surface`. Throws SceneError.
 Mesh read_rigid(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 /// Reads a triangle surface from a file in one of the formats of `read`, or in Wavefront .obj, .ply (ASCII
@@ -152,8 +152,8 @@ Mesh read_rigid(const std::string& path, std::vector<std::string>* notes = nullp
 /// that share their first corner. `notes` as for `read`. Throws SceneError.
 SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes = nullptr);
 
-/// Turns the inverted tetrahedra of a mesh that was not read from a file, as `read` does. `name` stands for the file in
-/// `notes` and in errors. Sorts the numbers of sets, and gives faces of sets the orientation of the boundary. Throws
+/// Turns the inverted tetrahedra of a mesh that was not read from a file, as `read` does. `notes` and errors use `name`
+/// in place of a file name. Sorts the numbers of sets, and gives faces of sets the orientation of the boundary. Throws
 /// SceneError if a tetrahedron uses a node twice or a node that does not exist, if a position is not finite, or if a
 /// set has a number that is out of range or a face that is not one of the tetrahedra.
 void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>* notes = nullptr);

@@ -26,7 +26,7 @@ public:
     void remove(HandleType object);
     /// True if the object is in the world, false if it was removed.
     bool alive(HandleType object) const;
-    std::vector<HandleType> all() const;  // in the order added
+    std::vector<HandleType> all() const;  // handles in the order added
     /// Name of an object for users and files, by default KIND_SLOT, such as "cable_0". It affects no step.
     std::string name(HandleType object) const;
     /// Sets the name of an object. Names need not differ, but find() needs a name that occurs once.

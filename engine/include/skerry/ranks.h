@@ -19,8 +19,8 @@ class Ranks;
 /// Rule that chooses the ranks that own bodies. The results are the same for all rules.
 enum class OwnerMap : std::uint8_t {
     curve,        // equal shares of the cost along the Hilbert curve, which keeps neighbours together
-    round_robin,  // in turn: body by body, with connected bodies as one
-    random,       // at random, by RankSettings::seed
+    round_robin,  // bodies in turn; connected bodies count as one
+    random,       // random owners, by RankSettings::seed
 };
 template <>
 struct EnumNames<OwnerMap> {

@@ -39,10 +39,10 @@ struct RelaxReport {
     std::string message;                // reason why a step could not be completed; otherwise empty
 };
 
-/// Moves the bodies of a world to a static equilibrium by dynamic relaxation with kinetic damping (Day 1965;
-/// Cundall 1976): ordinary steps, in which a body loses its velocities each time its kinetic energy has passed a
-/// maximum. Contacts and friction are those of the steps. All bodies start without velocities, and end without them.
-/// The result may depend on the way, where friction or bistable shapes permit several equilibria.
+/// Moves the bodies of a world to a static equilibrium by dynamic relaxation with kinetic damping (Day 1965; Cundall
+/// 1976): ordinary steps, in which a body loses its velocities each time its kinetic energy has passed a maximum.
+/// Contacts and friction are those of the steps. All bodies start without velocities, and end without them. The result
+/// may depend on the path of this motion, where friction or bistable shapes permit several equilibria.
 ///
 /// Time does not advance: values over time and prescribed motions stay at their present values, colliders and
 /// attachments do not move, gas does not flow, cables driven by a rate keep their greatest length, ties do not break,

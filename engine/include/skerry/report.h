@@ -261,9 +261,9 @@ struct SelfCrossing {
     // true if the body's setting self_contact was on when the crossing was last found
     bool self_contact = false;
     Real first_time = 0, last_time = 0;  // times of the first and of the last check that found a crossing [s]
-    // Number of places where an edge passes through a triangle, at the last check that found the surface crossing and
-    // at most in all checks; the first is 0 if a later check found none. Places whose features are at most one mean
-    // edge length apart in the rest shape do not count, because crushed elements cause such places.
+    // Number of places where an edge passes through a triangle. last_places: at the last check of this surface, 0 if
+    // that check found none. most_places: largest number of all checks. Places whose features are at most one mean edge
+    // length apart in the rest shape do not count, because crushed elements cause such places.
     Index last_places = 0, most_places = 0;
 
     /// Returns a text such as "the surface of body 'knot' crosses itself in up to 312 places, first found at 0.41 s and

@@ -91,7 +91,8 @@ struct RolloutSettings {
 struct RolloutSeries {
     std::string name;                   // name of the probe
     std::vector<SeriesColumn> columns;  // without the time
-    std::vector<Real> values;  // in the order (world, interval, column); NaN in intervals that were not completed
+    // values in the order (world, interval, column); NaN in intervals that were not completed
+    std::vector<Real> values;
 };
 
 /// End of the rollout of one world.

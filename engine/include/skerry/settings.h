@@ -36,7 +36,7 @@ struct StretchTerm {
 /// Plasticity of von Mises with isotropic hardening, of the law `hencky` (docs/methods/elasticity.md 8).
 struct Plasticity {
     Real yield_stress = 0;  // von Mises stress at which the material yields first, > 0 [Pa]
-    Real hardening = 0;     // slope of the yield stress by the equivalent plastic strain, >= 0 [Pa]
+    Real hardening = 0;     // increase of the yield stress per equivalent plastic strain, >= 0 [Pa]
 
     bool operator==(const Plasticity&) const = default;
 };

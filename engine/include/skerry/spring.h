@@ -27,7 +27,7 @@ struct SpringSettings {
 
 /// Present state of a spring. Before the first step `force` is zero.
 struct SpringState {
-    Anchor first{}, second{};  // at their present positions
+    Anchor first{}, second{};  // anchors at their present positions
     Real length = 0;           // distance of the anchors [m]
     Real rate = 0;             // rate of the length [m/s]
     Real rest_length = 0;      // present rest length [m]

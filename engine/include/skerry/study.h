@@ -17,7 +17,7 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Difference of a run to the scene as it is.
+/// Difference of a run from the scene as it is.
 struct StudyVariant {
     int refine = 0;      // level of the meshes: each level halves the edges, negative levels double them
     Real step = 1;       // ratio of the step length to the mean step of the unchanged scene; 1: the scene's own steps
@@ -53,7 +53,8 @@ struct StudyColumn {
     Real size = 0;      // diagonal of the bounding box of the body at the start, or of all bodies for other columns [m]
     // False for a column that gets no error bar of its own, such as the place of one of many bodies.
     bool reported = true;
-    bool is_statistic = false;   // true for a mean, least or largest value of all bodies, which chaos leaves meaningful
+    // true for a mean, least or largest value of all bodies, which is meaningful also in a chaotic run
+    bool is_statistic = false;
     std::vector<Real> values{};  // one per time; NaN if unknown
     // For a column of a largest stress: number within the body of the node that had the largest value of the run. Else
     // no_index.
@@ -72,7 +73,7 @@ struct StudyLoad {
 
 /// A run of a study. `skerry run SCENE` with the assignments as --set repeats the run, except for its perturbation.
 struct StudyRun {
-    StudyVariant variant;                        // difference to the scene as it is
+    StudyVariant variant;                        // difference from the scene as it is
     std::vector<std::string> assignments;        // the same difference, as SceneOverrides::assignments
     StudyRunStatus status = StudyRunStatus::ok;  // outcome
     std::string message{};                       // reason, unless the status is ok
@@ -124,11 +125,13 @@ struct StudyQuantity {
     Real scale = std::numeric_limits<Real>::quiet_NaN();
     // Observed order of convergence: the part `mesh` is proportional to this power of the edge length.
     Real mesh_order = std::numeric_limits<Real>::quiet_NaN();
-    Real step_order = std::numeric_limits<Real>::quiet_NaN();           // observed order in the step length
-    Real expected_mesh_order = std::numeric_limits<Real>::quiet_NaN();  // order in the edge length by theory
-    Real expected_step_order = std::numeric_limits<Real>::quiet_NaN();  // order in the step length by theory
-    StudyVerdict verdict = StudyVerdict::not_measured;                  // reliability
-    std::string sentence{};                                             // verdict in words
+    Real step_order = std::numeric_limits<Real>::quiet_NaN();  // observed order in the step length
+    // theoretical order of convergence in the edge length
+    Real expected_mesh_order = std::numeric_limits<Real>::quiet_NaN();
+    // theoretical order of convergence in the step length
+    Real expected_step_order = std::numeric_limits<Real>::quiet_NaN();
+    StudyVerdict verdict = StudyVerdict::not_measured;  // reliability
+    std::string sentence{};                             // verdict in words
     Real agree_until = infinity;  // time until which perturbed runs agree on the column of the quantity [s]
     // Value of each run and half width of its error bar, in the order of StudyResult::runs; NaN if unknown.
     std::vector<Real> run_values{}, run_errors{};
@@ -136,7 +139,7 @@ struct StudyQuantity {
 
 /// The cheapest settings whose predicted errors are at most the wanted error.
 struct CheapestSettings {
-    StudyVariant variant;    // difference to the scene as it is
+    StudyVariant variant;    // difference from the scene as it is
     bool reaches = false;    // false: no settings reach the wanted error, and these come nearest
     double error = 0;        // predicted largest relative error of all quantities with a known error
     double cpu_seconds = 0;  // predicted CPU time [s]
@@ -189,7 +192,7 @@ struct StudySettings {
 
 /// Runs a scene with several meshes, steps, tolerances and element kinds, and determines the error of each probe. The
 /// runs and their order of importance are listed in docs/study.md. The numbers do not depend on the number of threads,
-/// except through the budget, which decides which runs fit. A run that fails is a result, and the study goes on.
+/// except through the budget, which decides which runs fit. A run that fails is a result, and the study continues.
 ///
 /// Throws SceneError if the scene cannot be run as it is, a setting or the name of a probe is invalid, or the folder
 /// holds runs of another scene.

@@ -83,14 +83,16 @@ struct SurfaceReport {
     Real tolerance = 0;                               // nodes up to this distance apart were merged; negative: none [m]
     std::size_t merged = 0;                           // number of nodes that were merged into another node
     Real min_edge = 0, mean_edge = 0, max_edge = 0;   // edge lengths of the cleaned surface [m]
-    Real area = 0, volume = 0;                        // of the cleaned surface; volume of the closed shells [m^2, m^3]
-    std::vector<SurfaceFault> faults{};               // at most one entry of each kind, in the order of the kinds
+    // area of the cleaned surface; volume of the closed shells [m^2, m^3]
+    Real area = 0, volume = 0;
+    // faults, at most one entry of each kind, in the order of the kinds
+    std::vector<SurfaceFault> faults{};
     // Welded surface without flat and duplicate triangles and duplicate shells. Connected triangles have the same
     // orientation, and closed shells that lie in no other shell enclose a positive volume. Holes and crossings remain.
     SurfaceMesh cleaned{};
     std::vector<Index> number{};         // number in the given surface of each triangle of `cleaned`
     std::vector<Index> shell{};          // row in `shells` of each triangle of `cleaned`
-    std::vector<SurfaceShell> shells{};  // in the order of their first triangles
+    std::vector<SurfaceShell> shells{};  // shells in the order of their first triangles
 
     /// The faults of a kind; nullptr if there are none.
     const SurfaceFault* find(SurfaceFaultKind kind) const {
@@ -114,7 +116,7 @@ inline constexpr Real no_weld = -1;
 /// Checks a surface. Nodes up to `tolerance` * (diagonal of the bounding box) apart are first merged, also in chains; 0
 /// merges equal nodes only. Triangles cross if they overlap by more than this distance in every direction (at least
 /// default_weld times the diagonal). The order of the nodes and triangles does not change. Throws SceneError if a node
-/// is not finite or a triangle has a node that does not exist; `name` stands for the surface in the error.
+/// is not finite or a triangle has a node that does not exist. The error uses `name` as the name of the surface.
 SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance = default_weld,
                             const std::string& name = "surface");
 

@@ -38,7 +38,8 @@ struct TieSettings {
 struct TiedNode {
     Index node = 0;             // number in the mesh of the body
     Vec3 force = Vec3::Zero();  // force of the last step on the node [N]
-    Real error = 0;  // distance of the node, for a ball of the mean point, from the place that the tie demands [m]
+    // distance of the node (for a ball: of the mean point) from the position that the tie prescribes [m]
+    Real error = 0;
     std::optional<Real> broken{};  // time at which the node broke off [s]
 };
 
@@ -70,7 +71,7 @@ public:
     TieState state(TieHandle tie) const;
     /// Settings of a tie.
     TieSettings settings(TieHandle tie) const;
-    /// Sets the force at which a node breaks off [N]. Nodes that have broken off stay so.
+    /// Sets the force at which a node breaks off [N]. Nodes that have broken off are not tied again.
     void set_break_force(TieHandle tie, Real force);
 };
 

@@ -25,7 +25,7 @@ struct VisualMaterial {
 
 /// A triangle surface that is drawn in place of a body. It may be open or cross itself, because no step uses it.
 struct VisualSurface {
-    std::vector<Vec3> nodes{};                          // in the frame of the body's mesh [m]
+    std::vector<Vec3> nodes{};                          // nodes in the frame of the body's mesh [m]
     std::vector<std::array<Index, 3>> triangles{};      // indices of `nodes`, counter-clockwise as seen from outside
     std::vector<std::array<Real, 2>> texture_points{};  // texture coordinates (u, v)
     // Indices of `texture_points` for the corners of each triangle. A triangle without texture has three times

@@ -86,8 +86,8 @@ public:
     /// Adds a rigid cylinder with flat ends and sharp rims. The rules for a sphere apply, see add_body() above. The
     /// axis is z of the cylinder's frame, and the first node is the centre (mesh::cylinder_picture).
     BodyHandle add_body(const Cylinder& cylinder, const BodySettings& body);
-    /// Adds a collider: a rigid shape that stands still or moves as prescribed, and that no force moves. A collider has
-    /// no mass. It touches bodies, and no other collider.
+    /// Adds a collider: a rigid shape that does not move or moves as prescribed, whatever forces act on it. A collider
+    /// has no mass. It touches bodies, and no other collider.
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Prescribes the motion of some nodes of a body (numbers within the body). From now on the nodes stay in place or
     /// follow `motion`. Constant angular velocities rotate the nodes about `pivot`. Keys of a motion are poses at
@@ -197,7 +197,7 @@ public:
     /// Shape of a collider in its own frame.
     const Shape& shape(ColliderHandle collider) const;
     const std::string& name(ColliderHandle collider) const;       // name in messages and output
-    std::vector<AttachmentHandle> attachments() const;            // in the order added
+    std::vector<AttachmentHandle> attachments() const;            // handles in the order added
     BodyHandle body(AttachmentHandle attachment) const;           // body of the attached nodes
     std::vector<Index> nodes(AttachmentHandle attachment) const;  // numbers of the attached nodes within the body
     // unit vectors along which the nodes are held; empty if they are held completely
@@ -271,7 +271,7 @@ public:
     MaterialSettings material(MaterialHandle material) const;
     /// Replaces the settings of a material, with the effects and errors above.
     void set_material(MaterialHandle material, const MaterialSettings& settings);
-    std::vector<MaterialHandle> materials() const;   // in the order added
+    std::vector<MaterialHandle> materials() const;   // handles in the order added
     MaterialHandle material(BodyHandle body) const;  // BodySettings::material
     /// Returns the values that were set for the object. Other values are missing.
     SurfaceSettings surface_properties(BodyHandle body) const;

@@ -22,7 +22,7 @@ enum class Admission {
 
 /// Admits the page at /, and the stream at /live?token=TOKEN. Both need the Host 127.0.0.1:PORT or localhost:PORT, so
 /// that a foreign name that resolves to this machine is refused. An Origin must belong to the same Host. The stream
-/// needs an Origin and the token. So neither a page of another site nor another user of the machine gets at the run.
+/// needs an Origin and the token. So neither pages of other sites nor other users of the machine can reach the run.
 Admission admission(const LiveRequest& request, int port, std::string_view token);
 
 /// Returns 128 random bits of the system as 32 hexadecimal digits.

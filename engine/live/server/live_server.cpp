@@ -44,8 +44,8 @@ public:
         shutdown(socket_, SHUT_RDWR);
     }
 
-    /// Ends the connection if the browser has sent nothing for 30 s, in which it has not answered several pings, or has
-    /// not been asked because it has sent a part of a message.
+    /// Ends the connection if the browser has sent nothing for 30 s, because it has not answered several pings, or
+    /// because it stopped in the middle of a message, which suspends the pings.
     void close_if_silent() const {
         constexpr std::uint32_t longest_silence = 30'000;  // [ms]
         tcp_info info{};
@@ -57,8 +57,8 @@ public:
     std::uint64_t client = 0;  // number of the browser at the hub
 
 private:
-    /// The library returns the number of bytes that it has sent when the time for a request is over. After a part of a
-    /// message nothing more can be sent, because the browser would read it as the rest of the message.
+    /// If the time for a request has run out, the library returns the number of bytes that it has sent. After a part of
+    /// a message nothing more can be sent, because the browser would read it as the rest of the message.
     bool send(int opcode, std::string_view bytes) {
         constexpr std::size_t header = 2;  // length of a message without data, for which the library returns it
         mg_lock_connection(connection_);   // a ping of the library must not follow a part of a message either
@@ -112,7 +112,7 @@ int port_of(int socket, Call&& call) {
     return known ? ntohs(place.sin_port) : 0;
 }
 
-/// Returns the socket of a connection, which has no function in the library; -1 if it is not found. `port`: of the
+/// Returns the socket of a connection, which has no function in the library; -1 if it is not found. `port`: port of the
 /// server.
 int socket_of(const mg_connection* connection, int port) {
     constexpr long most_sockets = 1 << 16;  // numbers that are tried
@@ -144,7 +144,7 @@ struct LiveServer::Impl {
     std::atomic<int> port = 0;  // written once, before the first request can be admitted
     mg_context* context = nullptr;
     std::mutex links_mutex{};
-    std::set<const SocketLink*> links{};  // of the connected browsers; guarded by links_mutex
+    std::set<const SocketLink*> links{};  // links of the connected browsers; guarded by links_mutex
 
     static Impl& of(const mg_connection* connection) {
         return *static_cast<Impl*>(mg_get_user_context_data(connection));
@@ -249,16 +249,16 @@ void LiveServer::Impl::closed(const mg_connection* connection, void*) {
 LiveServer::LiveServer(int port, LiveHub& hub)
     : impl_(new Impl{.hub = hub, .page = live_page(), .token = random_token()}) {
     const std::string listening = "127.0.0.1:" + std::to_string(port);
-    // A browser has a thread as long as it is connected. The others answer requests.
+    // Each connected browser occupies one thread. The remaining threads answer requests.
     const std::string threads = std::to_string(LiveHub::most_clients + 8);
     const char* options[] = {"listening_ports",
                              listening.c_str(),
                              "num_threads",
                              threads.c_str(),
                              "request_timeout_ms",
-                             "10000",  // for requests, and for a browser that takes no data
+                             "10000",  // time limit for requests, and for a browser that takes no data [ms]
                              "websocket_timeout_ms",
-                             "5000",  // after which a browser is asked if it is there
+                             "5000",  // silence after which a ping is sent to a browser [ms]
                              "enable_websocket_ping_pong",
                              "yes",
                              "tcp_nodelay",
@@ -284,8 +284,8 @@ LiveServer::LiveServer(int port, LiveHub& hub)
 
 LiveServer::~LiveServer() {
     impl_->hub.close();
-    // The thread of the library that accepts connections looks every 2 s whether it has to stop, and at each
-    // connection.
+    // The thread of the library that accepts connections checks every 2 s, and at each new connection, whether it has
+    // to stop.
     std::atomic<bool> stopped = false;
     std::thread stopping([&] {
         mg_stop(impl_->context);

@@ -33,14 +33,15 @@ struct RawMesh {
     std::vector<std::array<Index, 6>> middle;
     std::vector<int> label;  // label of each tetrahedron; empty: no labels
     std::vector<std::array<Index, 3>> triangles;
-    std::vector<std::array<Index, 3>> triangle_middle;  // as `middle`, for the triangles
+    std::vector<std::array<Index, 3>> triangle_middle;  // like `middle`, for the triangles
     std::size_t curved_triangles = 0;                   // number of triangles of third or higher order
     std::map<std::string, MeshSet> sets;                // faces are the corners of triangles of any order
     std::map<std::string, std::vector<Vec3>> vectors;   // of the tetrahedra
-    VisualSurface visual;  // of an .obj or .ply file: texture coordinates, names of materials, and both by triangle
+    // for an .obj or .ply file: texture coordinates, names of materials, and their indices by triangle
+    VisualSurface visual;
     std::size_t flat_triangles = 0;  // number of triangles of an .obj or .ply file that were dropped, as they use a
                                      // node twice
-    std::vector<std::string> material_files;  // of an .obj file: names of its .mtl files
+    std::vector<std::string> material_files;  // for an .obj file: names of its .mtl files
     // number of ignored elements of each kind, for example "hexahedra"
     std::map<std::string, std::size_t> others;
     std::vector<std::string> notes;  // sentences for the user, without the name of the file

@@ -53,7 +53,7 @@ struct AbaqusScope {
 
 struct AbaqusElement {
     std::size_t nodes;       // 4, 10, 3, 6, or 0 if the element is not read
-    Index row;               // of the tetrahedron or triangle
+    Index row;               // row of the tetrahedron or triangle
     std::size_t first, end;  // range of its nodes in the list of the nodes of all elements
 };
 
@@ -81,7 +81,7 @@ public:
     }
 
 private:
-    /// Blocks of a scope and the motion that puts it into its place.
+    /// Blocks of a part or of the file outside of parts (a scope), and the motion by which *INSTANCE places its nodes.
     struct Instance {
         std::string prefix{};
         std::vector<const AbaqusBlock*> blocks{};
@@ -105,7 +105,7 @@ private:
     }
 
     /// Lists the instances in the order of the file, then everything outside of parts and instances. In a file without
-    /// instances each part stands for one.
+    /// instances, each part counts as an instance.
     std::vector<Instance> instances() {
         std::map<std::string, Instance> parts;  // by name in lower case
         std::vector<std::string> part_order;

@@ -86,8 +86,8 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
     require_end(reader, "nodes");
 }
 
-/// Place of each node of a row of the file .ele in the order of RawMesh::middle. With its option -o2 TetGen lists the
-/// nodes in the middle of the edges 23, 03, 01, 12, 13 and 20 after the corners (its tables edge2ver, orgpivot and
+/// Position of each node of a row of the file .ele in the order of RawMesh::middle. With its option -o2 TetGen lists
+/// the nodes in the middle of the edges 23, 03, 01, 12, 13 and 20 after the corners (its tables edge2ver, orgpivot and
 /// destpivot).
 constexpr std::array<std::size_t, 10> tetgen_order{0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
 

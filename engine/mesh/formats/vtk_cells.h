@@ -23,7 +23,7 @@ struct VtkCells {
     std::vector<std::int64_t> type;
     std::vector<int> label;  // label of each cell; empty: no labels
     std::vector<VtkArray> point_data, cell_data;
-    std::map<std::string, std::vector<Vec3>> vectors;  // of the cells; incomplete arrays are ignored
+    std::map<std::string, std::vector<Vec3>> vectors;  // vectors of the cells; incomplete arrays are ignored
 };
 
 /// True if cell data of this name are labels.

@@ -14,7 +14,7 @@
 namespace skerry::mesh {
 namespace {
 
-/// Finds patches of the given triangles at a common edge of which an odd number of triangles meet, and marks all
+/// Finds patches of the given triangles with a common edge at which an odd number of triangles meet, and marks all
 /// triangles of these patches. Triangles that are `dropped` do not count.
 std::vector<bool> with_odd_edge(Triangles triangles, const std::vector<bool>& given, const std::vector<bool>& dropped) {
     UnionFind patches;
@@ -94,7 +94,7 @@ bool for_each_solid(const SurfaceMesh& surface, std::span<const Side> edge, auto
         return arm - along.dot(arm) * along;
     };
     struct Place {
-        long angle;  // around the edge from its first triangle, in steps of 1e-6 rad
+        long angle;  // angle around the edge from its first triangle, in units of 1e-6 rad
         bool opens;  // true: the volume behind the triangle is on the side of larger angles
         std::size_t side;
     };

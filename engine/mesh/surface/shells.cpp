@@ -62,12 +62,13 @@ SurfaceMesh part_of(const SurfaceMesh& surface, std::span<const Index> rows) {
     return part;
 }
 
-/// Returns the largest distance of the nodes of the second shell from the first one if the second shell is the first
-/// one again. Unless `keep_walls`, shells of the same orientation may be further apart than `distance` [m].
+/// If the second shell repeats the first one, returns the largest distance of its nodes from the first one. Unless
+/// `keep_walls`, shells of the same orientation may be further apart than `distance` [m].
 std::optional<Real> repeats(const SurfaceReport& report, std::span<const ShellSize> sizes,
                             std::span<const std::vector<Index>> rows, std::size_t first, std::size_t second,
                             Real distance, bool keep_walls) {
-    // Shells of the same orientation this close together are hardly meant as a region, relative to their size.
+    // Shells of the same orientation that are closer together than this, relative to their size, count as one shell,
+    // because the space between them is hardly meant as a region.
     constexpr Real close = 1e-3;
     const ShellSize &a = sizes[first], &b = sizes[second];
     const bool closed = report.shells[first].closed;
@@ -139,11 +140,11 @@ public:
 private:
     const SurfaceReport& report_;
     BoxTree shells_, triangles_;
-    std::vector<int> winding_;   // of each shell around the point
+    std::vector<int> winding_;   // winding number of each shell around the point
     std::vector<Index> passed_;  // shells that the ray passes through
 };
 
-/// Triangles of a shell with the same other shells around the volume behind them.
+/// A group of triangles of a shell: the volume behind each of them is inside of the same set of other shells.
 struct Surrounded {
     std::size_t count = 0;
     Index first = no_index;

@@ -42,8 +42,8 @@ VisualPoints split_at_seams(const VisualSurface& surface);
 /// differ in length.
 void require_visual(const VisualSurface& surface, const std::string& object);
 
-/// Binds a valid surface to a body at rest. `nodes`: at rest [m]. A body without tetrahedra is rigid; `nodes` must then
-/// not lie in one plane. `triangles`: surface of a rigid body, at which values are taken.
+/// Binds a valid surface to a body at rest. `nodes`: positions at rest [m]. A body without tetrahedra is rigid; `nodes`
+/// must then not lie in one plane. `triangles`: surface of a rigid body, at which values are taken.
 BoundVisual bind_visual(VisualSurface surface, std::span<const Vec3> nodes,
                         std::span<const std::array<Index, 4>> tetrahedra,
                         std::span<const std::array<Index, 3>> triangles = {});

@@ -52,7 +52,8 @@ struct CrateFile::Tables {
 };
 
 CrateFile::CrateFile(std::iostream& file) : file_(file) {
-    token_index("");  // the sign of a token number tells properties from prims, so no property may have the number 0
+    // the sign of a token number distinguishes properties from prims, so no property may have the number 0
+    token_index("");
     write(std::as_bytes(std::span(header)));
     write(std::vector<std::byte>(sizeof(std::int64_t) + header_reserved));
 }
@@ -164,7 +165,8 @@ CrateValue CrateFile::times(std::span<const double> times) {
 CrateValue CrateFile::time_samples(CrateValue times, std::span<const CrateValue> values) {
     align();
     const CrateValue value = stored(CrateType::time_samples, size_);
-    // Each of the two offsets leads over the values that the times and the samples might need, which are elsewhere.
+    // Each of the two offsets skips data that the format allows at this place. Here these data are stored elsewhere, so
+    // nothing is skipped.
     constexpr auto next = static_cast<std::int64_t>(sizeof(std::int64_t));
     put(next);
     put(times);

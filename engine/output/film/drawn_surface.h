@@ -28,7 +28,7 @@ public:
 
 private:
     const BoundVisual* visual_;  // visual surface in the first frame, only for comparison
-    std::vector<Index> node_;    // without visual surface: node of the body at each vertex
+    std::vector<Index> node_;    // node of the body at each vertex if there is no visual surface
     std::vector<std::array<Index, 3>> triangles_;
 };
 
@@ -37,8 +37,8 @@ void require_positive(const std::filesystem::path& file, const char* setting, Re
 
 using Vec3f = std::array<float, 3>;
 
-/// Converts points to floats relative to an origin, so that they are exact however far the body is from the origin of
-/// the world.
+/// Converts points to floats relative to an origin, so that they are exact at any distance of the body from the origin
+/// of the world.
 std::vector<Vec3f> relative_to(const Vec3& origin, std::span<const Vec3> points);
 Vec3 mean_of(std::span<const Vec3> points);
 

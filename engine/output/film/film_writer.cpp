@@ -35,7 +35,7 @@ struct FilmWriter::Impl {
     FileReplacement file;
     FilmColor color;
     UsdFilm usd;
-    std::optional<Real> time{};  // of the previous frame [s]
+    std::optional<Real> time{};  // time of the previous frame [s]
 
     Impl(const std::filesystem::path& place, const FilmSettings& settings)
         : path(checked(place, settings)),

@@ -91,7 +91,8 @@ void UsdFilm::put_points(Object& object, std::span<const Vec3f> points) {
 /// Puts the vertices relative to the frame of a rigid body. They are put again only if the body has become another
 /// shape, not if they differ by rounding errors.
 void UsdFilm::put_rigid_body(Object& object, const MotionKey& pose, std::span<const Vec3> points) {
-    constexpr Real tolerance = 1e-7;  // relative to the radius of the body, as the rounding error of a float
+    // largest difference that counts as rounding error of a float, as a fraction of the radius of the body
+    constexpr Real tolerance = 1e-7;
     const Mat3 rotation = rotation_matrix(pose.rotation);
     if (object.rigid_points.empty()) object.center = rotation.transpose() * (mean_of(points) - pose.position);
     const Vec3 origin = pose.position + rotation * object.center;
@@ -339,7 +340,7 @@ CrateSpec UsdFilm::shader(std::string name, const char* kind) {
     return spec;
 }
 
-/// Adds a material to `looks_`. `inputs`: shaders from which it takes its colour, as value of `diffuse`.
+/// Adds a material to `looks_`. `inputs`: shaders from which the material takes its colour, as value of `diffuse`.
 void UsdFilm::add_material(const std::string& path, CrateSpec diffuse, Real opacity, std::vector<CrateSpec> inputs) {
     CrateSpec surface = shader("surface", "UsdPreviewSurface");
     surface.children.push_back(std::move(diffuse));

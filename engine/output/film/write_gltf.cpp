@@ -35,9 +35,9 @@ struct GltfMesh {
     Mat3 rotation = Mat3::Identity();
     std::vector<Vec3f> points;
     std::vector<std::array<Index, 3>> triangles;
-    std::vector<float> values;              // of the coloured quantity, by vertex; empty if there is none
-    const VisualSurface* visual = nullptr;  // with texture coordinates and materials; nullptr if there is none
-    Color color{};                          // of triangles without another colour
+    std::vector<float> values;              // values of the coloured quantity by vertex; empty if there is none
+    const VisualSurface* visual = nullptr;  // surface with texture coordinates and materials; nullptr if there is none
+    Color color{};                          // colour of triangles without another colour
 };
 
 /// Mean normal of the triangles at each vertex, weighted by area.
@@ -52,7 +52,7 @@ std::vector<Vec3f> vertex_normals(const GltfMesh& mesh) {
     }
     std::vector<Vec3f> normals;
     for (const Eigen::Vector3f& total : sum) {
-        // glTF wants unit vectors, also at vertices of triangles without area.
+        // glTF requires unit vectors, also at vertices of triangles without area.
         const Eigen::Vector3f unit =
             total.norm() > 0 ? Eigen::Vector3f(total / total.norm()) : Eigen::Vector3f::UnitZ();
         normals.push_back({unit.x(), unit.y(), unit.z()});

@@ -13,7 +13,7 @@ struct SeriesSummary {
     Real end, least, most, mean;
 };
 
-/// `time`: of the rows [s]; as many as `values`.
+/// `time`: times of the rows [s], as many as there are `values`.
 SeriesSummary summary_of_series(std::span<const Real> time, std::span<const Real> values);
 
 }  // namespace skerry

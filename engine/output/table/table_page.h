@@ -1,4 +1,4 @@
-// A web page with a table of runs and a plot of any number over any other, for sweeps and studies.
+// A web page with a table of runs and a plot of any number against any other, for sweeps and studies.
 #pragma once
 
 #include <string>

@@ -314,7 +314,7 @@ bool is_first_process() {
     try {
         return task_share(std::getenv).rank == 0;
     } catch (const SceneError&) {
-        return true;  // the variables of the launcher are not readable, which is then the error to report
+        return true;  // task_share cannot read the variables of the launcher; the caller then reports this error
     }
 }
 

@@ -30,10 +30,11 @@ struct RankWork {
 struct RanksReport {
     int count = 1, hosts = 1;
     std::vector<double> peak_memory;                 // greatest resident memory of each rank so far [bytes]
-    double messages = 0, bytes = 0, reductions = 0;  // per step; messages and bytes are sums over all ranks
+    double messages = 0, bytes = 0, reductions = 0;  // means per step; messages and bytes are sums over all ranks
     double waiting = 0;                              // share of the wall time of the steps, mean over the ranks
-    double imbalance = 1;                            // longest time that a rank computes, over the mean of all ranks
-    RankWork work{};                                 // empty if there is one rank
+    // longest computing time of a rank, divided by the mean of all ranks
+    double imbalance = 1;
+    RankWork work{};  // empty if there is one rank
 
     /// Replaces the work of rank 0 in the report of the whole world by the work of all ranks.
     void complete(WorldReport& world) const;
@@ -94,8 +95,9 @@ private:
     bool divided_ = false, is_gathered_ = false;
     Scene* scene_ = nullptr;
     std::optional<World> part_;
-    RankTraffic before_, in_steps_;          // at the last call of before_advance; sums over all calls of advance
-    std::array<std::string, 2> last_words_;  // the text in use, and that before it
+    // traffic at the last call of before_advance, and its sums over all calls of advance
+    RankTraffic before_, in_steps_;
+    std::array<std::string, 2> last_words_;  // current text, and the previous one
 };
 
 /// Throws SceneError if mpirun or srun has started several processes of a command that cannot share its work.

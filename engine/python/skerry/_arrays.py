@@ -37,7 +37,7 @@ RotationLike: TypeAlias = VectorLike | HasRotvec
 
 
 def shape_text(shape: Sequence[int | str]) -> str:
-    """Text of a shape, such as "(n, 3)"; a text in `shape` stands for any length."""
+    """Text of a shape, such as "(n, 3)"; a text in `shape` means any length."""
     return "(" + ", ".join(str(length) for length in shape) + ("," if len(shape) == 1 else "") + ")"
 
 
@@ -74,7 +74,7 @@ def real_array(value: ArrayLike, name: str, shape: Sequence[int | str]) -> NDArr
 
 
 def real_rows(value: ArrayLike, name: str, count: int) -> NDArray[np.float64]:
-    """C-contiguous array of float64 of the shape (count, 3), for which one row of three numbers may stand."""
+    """C-contiguous array of float64 of the shape (count, 3), or one row of three numbers for all of them."""
     given = numbers(value, name, (count, 3))
     if given.shape == (3,):
         given = np.broadcast_to(given, (count, 3))
@@ -143,7 +143,7 @@ TimeTableLike: TypeAlias = SupportsFloat | ArrayLike
 
 
 def time_table(value: TimeTableLike, name: str) -> TimeTable:
-    """Pairs (time, value). A number stands for a constant value."""
+    """Pairs (time, value). A number means a constant value."""
     given = numbers(value, name, ("n", 2))  # type: ignore[arg-type]
     if given.ndim == 0:
         return ((0.0, float(given)),)

@@ -44,7 +44,7 @@ def scene_error(object: str, field: str, found: str, expected: str, hint: str = 
 
 
 def import_package(name: str) -> Any:
-    """An optional package. ImportError tells how to install it."""
+    """An optional package. ImportError explains how to install it."""
     try:
         return importlib.import_module(name)
     except ImportError as error:

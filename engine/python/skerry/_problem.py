@@ -295,7 +295,7 @@ def solve(
     four-sided approximation "pyramid", to which the errors then refer. tolerance: upper bound on Solution.error.
     max_iterations: limit for each region. relaxation: factor of methods that sweep, > 0 and < 2.
 
-    SceneError: a setting is out of its range. Solution.converged tells whether the tolerance was reached."""
+    SceneError: a setting is out of its range. Solution.converged is True if the tolerance was reached."""
     settings = ProblemSettings(
         method=method, friction=friction, tolerance=tolerance, max_iterations=max_iterations, relaxation=relaxation
     )

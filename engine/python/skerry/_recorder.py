@@ -217,9 +217,9 @@ class ErrorEstimator(_Block):
         Mises stress at the nodes. step: relative error of the motion, due to the length of the steps. deformation:
         displacement by deformation over displacement. contact: relative error of the contact forces, due to the solver.
         overlap: largest overlap [m]. gap: largest distance of a contact that carried a force [m]. contact_radius,
-        contact_edge:
-        radius of the most loaded contact area by the theory of Hertz, and mean edge there [m]. time: of the sample with
-        the largest elastic energy [s]. worst_tetrahedron: the one with the largest error of the stress, or -1."""
+        contact_edge: radius of the most loaded contact area by the theory of Hertz, and mean edge there [m]. time: of
+        the sample with the largest elastic energy [s]. worst_tetrahedron: the one with the largest error of the stress,
+        or -1."""
         table: dict[str, list[str] | NDArray[np.generic]] = self._core.table()
         return table
 
@@ -363,7 +363,9 @@ class Film:
             self._writer = None
 
     def show(self, *, height: int = 560) -> Page:
-        """The page, which a notebook shows and Page.open() opens. height: in a notebook [pixels]. Ends the film."""
+        """The page, which a notebook shows and Page.open() opens. Ends the film.
+
+        height: height in a notebook [pixels]."""
         self.close()
         return Page(self._page or "", height)
 
@@ -420,7 +422,7 @@ class WorldOutput:
 
     def show(self, *, title: str = "skerry", height: int = 560) -> Page:
         """The present state as a page: a notebook shows it, and `world.show().open()` opens it in a browser. See view()
-        for a page that follows the world. title: heading. height: in a notebook [pixels]."""
+        for a page that follows the world. title: heading. height: height in a notebook [pixels]."""
         with self.record(title=title) as film:
             pass
         return film.show(height=height)

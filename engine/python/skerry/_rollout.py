@@ -26,8 +26,8 @@ _CONTROLS: dict[type, dict[str, tuple[int, ...]]] = {
     World: {"gravity": (3,)},
     **{kind: {"value": ()} for kind in (Cable, Cavity, Pipe, Spring, Load, FibreFamily)},
 }
-"""Quantities that a rollout can control, by the class of the object, with the shape of one value; -1 stands for the
-number of nodes. The first quantity is the default."""
+"""Quantities that a rollout can control, by the class of the object, with the shape of one value; -1 means the number
+of nodes. The first quantity is the default."""
 
 
 class RolloutResult(dict[str, NDArray[Any]]):
@@ -103,7 +103,8 @@ def rollout(
     count = _common(given, "number of worlds", 0, None if isinstance(worlds, World) else len(copies))
     intervals = _common(given, "number of intervals", 1, None if steps is None else counted(steps, "rollout: steps"))
     if intervals is None or intervals < 1:
-        raise scene_error("rollout", "steps", str(intervals), "a number of intervals >= 1, or a control that has it")
+        expected = "a number of intervals >= 1, or a control array that defines it"
+        raise scene_error("rollout", "steps", str(intervals), expected)
     if isinstance(worlds, World):
         copies *= 1 if count is None else count
     probes = record or {}
@@ -217,7 +218,7 @@ def _object_named(world: World, name: str) -> Body | Collider:
         return found[0]
     if found:
         raise scene_error(
-            "controls", "", f"a body and a collider of the name '{name}'", "the object in place of the name"
+            "controls", "", f"a body and a collider of the name '{name}'", "the object itself instead of the name"
         )
     names = ", ".join(f"'{known}'" for known in [*world.colliders, *world.bodies])
     raise KeyError(f"controls: no collider or body has the name '{name}'; the names are {names}")

@@ -80,7 +80,7 @@ class SurfaceShell:
 class SurfaceReport:
     """Result of check_surface().
 
-    faults: at most one entry of each kind.
+    faults: the faults, at most one entry of each kind.
     shells: shells in the order of their first triangles.
     can_be_filled: True if `cleaned` bounds volumes, and its triangles neither cross nor overlap.
     tolerance: largest distance of merged nodes [m].

@@ -147,7 +147,7 @@ VisualLike: TypeAlias = VisualSurface | SurfaceMesh | Path
 
 
 def visual_of(value: VisualLike) -> VisualSurface:
-    """The visual surface that an argument stands for."""
+    """The visual surface that an argument describes."""
     if isinstance(value, VisualSurface):
         return value
     if isinstance(value, SurfaceMesh):

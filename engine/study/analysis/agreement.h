@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Two runs agree while their difference is at most this share of the scale of the column. Contacts of faces can turn a
-/// perturbation at once into a ten-thousandth, which then does not grow.
+/// Two runs agree while their difference is at most this share of the scale of the column. Contacts of faces can
+/// increase a perturbation at once to 1e-4 of the scale, after which it does not grow.
 inline constexpr Real agreement_share = 1e-3;
 
 /// A run and the runs whose starts differ from its start by a perturbation. All have the same columns and times.
@@ -25,8 +25,9 @@ Real first_difference(const PerturbedRuns& runs, std::size_t column);
 /// Returns the last time at which all runs agree on a column, infinity if they agree to the end [s].
 Real agree_until(const PerturbedRuns& runs, std::size_t column, Real scale);
 
-/// Returns the rate at which the largest difference of all columns of lengths grows, relative to their scales. Fitted
-/// while the difference grows from rounding to a hundredth. 0 if it grows less than a hundredfold [1/s].
+/// Returns the rate of exponential growth of the largest difference, relative to the scale, of all columns of lengths
+/// [1/s]. The rate is fitted to the interval in which the difference grows from rounding errors to a hundredth. 0 if it
+/// grows less than a hundredfold.
 Real growth_rate(const PerturbedRuns& runs, std::span<const Real> scales);
 
 }  // namespace skerry

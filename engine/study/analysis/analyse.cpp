@@ -15,7 +15,8 @@ std::string chaos_text(const StudyResult& result) {
     if (result.growth_rate > 0)
         text += "; small differences grow tenfold every " + duration_text(std::log(10) / result.growth_rate);
     return text +
-           ". After that, no run predicts the place of a single body, however fine its mesh and steps: use the values "
+           ". After that, no run predicts the position of a single body, however fine its mesh and steps: use the "
+           "values "
            "named _agreed, and the statistics of all bodies.";
 }
 
@@ -90,7 +91,7 @@ StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings) {
 }
 
 OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& settings) {
-    // A part that is smaller than these shares of the wanted error, or of the error bar, does not matter.
+    // A part that is smaller than these fractions of the wanted error, or of the error bar, is ignored.
     constexpr Real noise_share = 0.01, step_share = 0.1, share_of_bar = 0.1;
     const StudyFamily family(runs);
     const Measured measured = measure_all(family, settings);

@@ -12,7 +12,7 @@ namespace skerry {
 /// empty.
 StudyResult analyse(std::vector<StudyRun> runs, const StudySettings& settings);
 
-/// Parts of the errors that further runs could determine better.
+/// Parts of the errors that further runs could reduce or determine more exactly.
 struct OpenParts {
     bool step = false;   // a smaller step length
     bool noise = false;  // another perturbation of the start

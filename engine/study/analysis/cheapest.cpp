@@ -44,7 +44,8 @@ std::vector<Option> factor_options(const StudyFamily& family, Real StudyVariant:
         StudyVariant rest = run->variant;
         rest.*member = 1;
         if (!rest.is_scene()) continue;
-        // Measured times scatter. Shorter steps and lower tolerances count as no cheaper than the scene as it is.
+        // Measured times scatter. Shorter steps and lower tolerances are never assumed to be cheaper than the scene as
+        // it is.
         const double cost = run->cpu_seconds / family.scene->cpu_seconds;
         options.push_back({run->variant, run->variant.*member < 1 ? std::max(cost, 1.0) : cost});
     }
@@ -104,7 +105,8 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
                 least_error = std::min(least_error, error);
                 if (predictions.back().may_be_nearest) least_measured = std::min(least_measured, error);
             }
-    // If no settings reach the wanted error, those of the runs with nearly the smallest error come nearest.
+    // If no settings reach the wanted error, the cheapest of the runs within this factor of the smallest error is
+    // proposed.
     constexpr double nearly = 1.1;
     const bool reaches = least_error <= wanted;
     const double target = reaches ? wanted : nearly * least_measured;

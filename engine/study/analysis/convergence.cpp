@@ -8,8 +8,8 @@ namespace skerry {
 namespace {
 
 constexpr Real unknown = std::numeric_limits<Real>::quiet_NaN();
-// Factor by which error bounds exceed estimated errors. With order 1, which is assumed of two levels, the bound is
-// three times the difference of the levels (Roache 1994).
+// Factor by which error bounds exceed estimated errors. With order 1, which is assumed if there are only two levels,
+// the bound is three times the difference of the levels (Roache 1994).
 constexpr Real safety = 1.5;
 constexpr Real assumed_order = 1;  // order of two levels
 // An observed order agrees with the theory if it is between `near_least` times the lowest and `near_most` times the
@@ -45,7 +45,8 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         if (std::abs(difference) > coarse_share * size) {
             shape_ = ConvergenceShape::coarse;
             used_order_ = 0;
-            // The larger of both values, at most `size` plus the difference: a position may have a large offset.
+            // The larger of both values, at most `size` plus the difference. The limit is needed because a position may
+            // have a large offset.
             least_error_ =
                 std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
         }
@@ -89,7 +90,8 @@ Real Convergence::error_at(Real h) const {
     if (shape_ == ConvergenceShape::unmeasured) return unknown;
     const Real finest = levels_.back().h;
     if (h < finest) return std::max(least_error_, safety * remainder_ * std::pow(h / finest, used_order_));
-    // A coarse level that is near the limit by accident has at least the error of the finer levels.
+    // The value of a coarse level can be near the limit by accident. Its error counts as at least that of each finer
+    // level.
     Real error = 0;
     for (const ConvergenceLevel& level : levels_)
         if (level.h <= h) error = std::max(error, error_of(level.value));

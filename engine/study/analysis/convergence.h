@@ -59,7 +59,7 @@ public:
 private:
     void find_order(TheoryOrder theory, Real noise, Real size);
 
-    std::vector<ConvergenceLevel> levels_{};  // from coarse to fine
+    std::vector<ConvergenceLevel> levels_{};  // levels from coarse to fine
     ConvergenceShape shape_ = ConvergenceShape::unmeasured;
     Real order_ = std::numeric_limits<Real>::quiet_NaN();
     Real used_order_ = 1;   // order with which errors are predicted

@@ -12,7 +12,7 @@ namespace skerry {
 namespace {
 
 constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
-constexpr Real matters = 0.2;  // an irregular part below this share of the error bar is ignored
+constexpr Real matters = 0.2;  // fraction of the error bar below which an irregular part is ignored
 
 const char* ending_of(StudyFigure figure) {
     switch (figure) {
@@ -62,7 +62,7 @@ TheoryOrder step_theory(const StudyRun& scene) {
     return scene.integrator == Integrator::leapfrog && scene.max_contacts == 0 ? TheoryOrder{2, 2} : TheoryOrder{1, 2};
 }
 
-/// The reasons why the runs that `belongs` selects are missing, each once.
+/// Reasons why the runs for which belongs() is true are missing, without duplicates.
 template <class Belongs>
 std::string reasons_of(const StudyFamily& family, const Belongs& belongs) {
     std::string text;
@@ -98,7 +98,8 @@ std::string singular_text(const StudyFamily& family, std::size_t column, StudyFi
         const Real growth = figure_value(fine, column, figure, 0) / figure_value(coarse, column, figure, 0);
         rate[i] = growth > 0 ? std::log2(growth) / (fine.variant.refine - coarse.variant.refine) : 0;
     }
-    // If the stress converges, the exponent falls from level to level: to a half with order 1, to 0.7 with order 1/2.
+    // If the stress converges, the exponent falls from level to level, by a factor of 0.5 with order 1 and 0.7 with
+    // order 1/2.
     constexpr Real least_rate = 0.1, least_steadiness = 0.75, same_place = 0.25;
     const StudyColumn& fine = levels.back()->columns[column];
     const StudyColumn& before = levels[levels.size() - 2]->columns[column];
@@ -115,8 +116,8 @@ std::string irregular_text(const char* part, ConvergenceShape shape) {
         return std::string("two levels of the ") + part +
                " differ by more than 30 % of the value: both are too coarse, and the error may exceed the error bar";
     const char* behaviour = shape == ConvergenceShape::oscillating ? "changes its sign"
-                            : shape == ConvergenceShape::fast      ? "falls faster than the theory says"
-                                                                   : "does not fall as it should";
+                            : shape == ConvergenceShape::fast      ? "decreases faster than the theory predicts"
+                                                                   : "does not decrease as the theory predicts";
     return std::string("the ") + part + " error " + behaviour +
            ", so the value is not extrapolated; the error bar is a multiple of the largest difference and can be used";
 }
@@ -134,7 +135,7 @@ void combine(MeasuredQuantity& quantity) {
     for (const auto& [convergence, error] : parts) {
         if (convergence->shape() == ConvergenceShape::unmeasured && error == 0) continue;  // there is no such error
         if (convergence->irregular() && error <= matters * r.error) {
-            r.best_error += error;  // the part is too small to spoil the extrapolation of the others
+            r.best_error += error;  // the part is too small to disturb the extrapolation of the others
             continue;
         }
         r.best += convergence->limit() - r.value;
@@ -167,8 +168,9 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     const StudyColumn& scene = family.scene->columns[column];
     if (figure != StudyFigure::agreed && !scene.is_statistic && quantity.noise > agreement_share * r.scale) {
         r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
-        return decide(StudyVerdict::chaotic,
-                      "runs whose starts differ by 1e-12 m end with different values, so this value is accidental");
+        return decide(
+            StudyVerdict::chaotic,
+            "runs whose starts differ by 1e-12 m end with different values, so this value depends on rounding errors");
     }
     if (const std::string text = singular_text(family, column, figure); !text.empty()) {
         r.error = r.mesh = infinity;
@@ -215,7 +217,7 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
                          short_text(value, 4) + " " + r.unit + ", outside the error bar";
 }
 
-/// Measures the error of a number of each run.
+/// Measures the error of a value of each run.
 template <class ValueOf>
 MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, Real scale, const ValueOf& value_of) {
     const SeriesColumn& what = family.scene->columns[column].what;
@@ -336,7 +338,7 @@ std::vector<StudyFigure> figures_of(const StudyFamily& family, std::size_t colum
     const StudyFigure extreme = value(StudyFigure::largest) - start >= start - value(StudyFigure::smallest)
                                     ? StudyFigure::largest
                                     : StudyFigure::smallest;
-    // Mostly the end is the extreme; then one of the two says all.
+    // The value at the end is often the extreme value too. Then one of the two figures suffices.
     constexpr Real different = 1e-3;
     if (std::abs(value(extreme) - value(StudyFigure::end)) > different * scale) figures.push_back(extreme);
     if (scene.what.unit == "N" && figures.size() > 1) figures.push_back(StudyFigure::mean);

@@ -36,7 +36,7 @@ struct MeasuredQuantity {
     Real noise = 0;  // largest difference between a perturbed run and the scene as it is
     std::vector<std::pair<StudyVariant, Real>> elements{};  // value of each run with another kind of element
     Real shape = 0;       // part of the mesh error that finer meshes keep, see StudyColumn::shape_error
-    Real least_mesh = 0;  // mesh error that linear elements have at least, by comparison with smoothed ones
+    Real least_mesh = 0;  // lower bound of the mesh error of linear elements, from a comparison with smoothed elements
 };
 
 /// Returns the largest absolute value of each column over the run, for lengths and energies the largest change since

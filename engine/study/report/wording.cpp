@@ -21,7 +21,7 @@ std::pair<Real, std::string> prefix_of(Real size, const std::string& unit) {
     return {1, ""};
 }
 
-/// Formats a value to the second digit of its error. An error may be its own value.
+/// Formats a value to the second digit of its error. If `value` is itself an error, both arguments are equal.
 std::string to_digit_of(Real value, Real error) {
     constexpr int most_digits = 6, most_decimals = 4;
     if (!(error > 0) || !std::isfinite(error)) return short_text(value, most_digits);
@@ -36,7 +36,7 @@ std::string to_digit_of(Real value, Real error) {
     return text;
 }
 
-/// Formats a share in percent with two digits, large ones as whole numbers.
+/// Formats a fraction in percent with two digits; large fractions are written as whole numbers.
 std::string share_text(Real share) {
     constexpr Real whole = 99.5, most_written_out = 1e6;  // [%]
     const Real percents = 100 * share;

@@ -21,7 +21,7 @@ struct QuantityText {
 };
 QuantityText quantity_text(const StudyQuantity& quantity);
 
-/// One line for all quantities with the same verdict and sentence; known quantities have none.
+/// One line for all quantities with the same verdict and sentence; quantities with the verdict `known` have no line.
 std::vector<std::string> verdict_lines(const StudyResult& result);
 /// One line for all runs that have no result for the same reason.
 std::vector<std::string> missing_lines(const StudyResult& result);

@@ -49,7 +49,7 @@ void hold_here(Model& model, std::size_t body, Real now);
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
 /// Enables a disabled pair during a call of advance. `first`: row of BodyTable; `second`: row of BodyTable or
-/// ColliderTable, as `kind` says.
+/// ColliderTable, depending on `kind`.
 void enable_pair(WorldState& world, PairKind kind, Index first, Index second);
 
 // control_cables.cpp

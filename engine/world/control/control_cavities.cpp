@@ -225,8 +225,8 @@ CavityHandle Cavities::add(const CavitySettings& cavity) {
     set_keys(table.keys, table.key, row, keys.keys);
     if ((gas || liquid) && !(volume > 0)) {
         erase_cavity(model, row);
-        refuse(object, "faces", "faces around " + short_text(volume) + " m^3 of hollow",
-               "faces whose outward normals, seen from the body, point into a hollow");
+        refuse(object, "faces", "faces around " + short_text(volume) + " m^3",
+               "faces that bound a volume > 0; the normals that point out of the body must point into the cavity");
     }
     if (gas) table.mass[row] = mass_of_gas(fluid, gas->pressure, volume);
     table.pressure_now[row] = filling_of(model, row, state.clock.time).pressure();

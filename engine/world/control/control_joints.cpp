@@ -198,7 +198,7 @@ OfHead of_head(const JointTable& table, Index joint) {
 /// limits. `joint`: one of them, whose `field` is to be changed. `table`: the joints after the change.
 void require_common_position(const JointTable& table, std::size_t joint, const char* field) {
     const OfHead own = of_head(table, static_cast<Index>(joint));
-    Real lower = -infinity, upper = infinity;  // of the coordinate of `joint`
+    Real lower = -infinity, upper = infinity;  // limits of the coordinate of `joint`
     for (std::size_t j = 0; j < table.size(); ++j) {
         const OfHead other = of_head(table, static_cast<Index>(j));
         if (other.head != own.head) continue;
@@ -209,11 +209,11 @@ void require_common_position(const JointTable& table, std::size_t joint, const c
     }
     constexpr Real rounding = 1e-9;
     if (lower - upper > rounding * std::max({Real(1), std::abs(lower), std::abs(upper)}))
-        refuse_joint(field,
-                     "limits of this joint and of those that it mimics or that mimic it, by which its coordinate is at "
-                     "least " +
-                         short_text(lower) + " and at most " + short_text(upper),
-                     "limits that a common position of these joints satisfies");
+        refuse_joint(
+            field,
+            "limits of joints coupled by mimics, which together require a coordinate of this joint of at least " +
+                short_text(lower) + " and at most " + short_text(upper),
+            "limits that the coupled joints can satisfy together");
 }
 
 }  // namespace

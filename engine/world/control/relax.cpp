@@ -167,7 +167,7 @@ public:
             if (moves(b)) stop_body(state_.model, b);
     }
 
-    /// Adds the steps to the report. Returns whether the bodies came into equilibrium.
+    /// Adds the steps to the report. Returns true if the bodies have reached equilibrium.
     bool run(const std::function<bool(const RelaxReport&)>& go_on, RelaxReport& report) {
         bool balanced = false;
         int calm = 0;
@@ -234,8 +234,9 @@ private:
         for (const BodyBalance& of : bodies_) largest_ = std::max(largest_, of.out_of_balance);
     }
 
-    /// Returns whether all bodies are in balance and slow. A speed is slow if forces of the tolerated size reach it
-    /// within `time` [s]. Without weights, loads and contacts, the largest out-of-balance force so far is the measure.
+    /// Returns true if all bodies are in balance and slow. A body is slow if forces of the tolerated size would give it
+    /// its speed within `time` [s]. Without weights, loads and contacts, the tolerance is relative to the largest
+    /// out-of-balance force so far.
     bool find_worst(Real time, RelaxReport& report) const {
         report.residual = report.speed = 0;
         report.worst.reset();

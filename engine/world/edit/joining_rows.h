@@ -82,7 +82,7 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, NamedHandle
 
 /// Calls visit(row, joined) for each body or collider that a row of a joining table names. `role`: `body` or
 /// `collider`. `joined` is a reference to the entry of the column, which is a row of BodyTable or ColliderTable. The
-/// entry no_index stands for the world and is not visited.
+/// entry no_index means the world and is not visited.
 template <class Table>
 void for_each_joined(Table& table, ColumnRole role, auto&& visit) {
     const AnyTable any(table);

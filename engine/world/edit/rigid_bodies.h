@@ -12,7 +12,7 @@ namespace skerry {
 /// Appends the row of RigidBodyTable for a body whose nodes are already in the tables.
 void append_rigid_body(Model& model, Index row, const NewBody& body);
 
-/// Copies the given mass properties of a body to `as_new`.
+/// Copies the given mass properties of a body to `as_new`, the settings of an equal new body.
 void keep_given_mass(const Model& model, std::size_t body, NewBody& as_new);
 /// Computes mass and inertia of a body again after densities have changed. The velocity and angular velocity of the
 /// body do not change.

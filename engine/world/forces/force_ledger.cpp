@@ -158,7 +158,7 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
     }
 }
 
-/// Does the same for an attachment that holds its nodes along single directions.
+/// Like take_over_reactions, for an attachment that holds its nodes along single directions.
 void ForceLedger::take_over_axes(const Model& model, std::size_t attachment, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     const Mat3& held = model.attachments.held[attachment];
@@ -271,8 +271,8 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
 }
 
 /// Completes the sums of a pair at the end of a step. If both bodies were asleep and the step has no contact between
-/// them, their mean forces over the time in which both were still are used. If a body was awake, its still time grows
-/// by the step, or the sums over the still time are cleared because a body moved.
+/// them, their mean forces over the time in which both were still are used. If a body was awake, adds the step to the
+/// sums over the still time, or clears these sums if a body moved.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;

@@ -1,4 +1,4 @@
-// Sums over the steps of each rank, which are added up when they are needed.
+// Adds the sums that each rank has kept over its own steps to the records of the run, when they are needed.
 #include <algorithm>
 #include <cstdint>
 #include <span>

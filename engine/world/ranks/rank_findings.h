@@ -45,7 +45,7 @@ struct RankFindings {
     bool far = false;      // a body may be too far from the origin (check_distance)
     RunCounters counters;  // contacts, regions and solver work of the attempt (count_step)
 
-    // Stands for no body. It is greater than all places, so that the least place wins.
+    // Placeholder for no body. It is greater than all places, so that the least place of all ranks is that of a body.
     static constexpr Index nobody = std::numeric_limits<Index>::max();
     bool again_over_ranks() const { return labels_open || bodies_missing || ghosts_expired; }
 };

@@ -40,7 +40,7 @@ struct PredictionMail : RankMail {
 /// Message about a set of touching bodies that one rank has found: one entry for each body of the set that has several
 /// holders.
 struct SetMember {
-    Index place;         // place of the body in the undivided world
+    Index place;         // place of the body: its row in the undivided world
     Index set;           // row of the first body of the set on the rank that has found the set
     Index must_stay_up;  // nonzero if a body of the set must stay awake
 };
@@ -60,7 +60,7 @@ struct RankSleep {
 /// A body that a rank must hold to solve a region.
 struct BodyRequest {
     int rank;
-    Index place;  // place of the body in the undivided world
+    Index place;  // place of the body: its row in the undivided world
 };
 
 /// Rounds in which ranks exchange the labels of their regions (docs/methods/ranks.md 3).

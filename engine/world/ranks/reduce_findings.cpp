@@ -135,7 +135,7 @@ void take_findings(const RankFindings& all, const StageFindings& found) {
     found.table.beyond_lists = tested && all.beyond_lists;
     found.crossings = tested ? all.crossings : 0;
     if (!tested || all.beyond_lists || all.again_over_ranks()) found.table.found_count = 0;
-    // A positive number prevents the stages that commit the step.
+    // With a positive number of crossings, the stages that commit the step do nothing.
     if (all.again_over_ranks()) found.crossings = 1;
 }
 

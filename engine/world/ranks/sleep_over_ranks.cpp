@@ -1,6 +1,6 @@
 // Sleep of bodies with several holders. Each rank knows only the contacts that it owns. A set of touching bodies is
 // therefore joined from the sets of all ranks, and a body wakes on all its holders if one rank wakes it. Both are rare:
-// the reduction of findings tells whether any rank needs them.
+// the reduction of findings shows whether any rank needs them.
 #include <algorithm>
 #include <cstddef>
 #include <span>

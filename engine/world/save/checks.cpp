@@ -12,8 +12,7 @@ namespace skerry {
 
 namespace {
 
-/// True for columns that may contain infinity. It stands for a bound that does not exist, or is the value in an unused
-/// lane.
+/// True for columns that may contain infinity. Infinity means that there is no bound, or that the lane is unused.
 bool may_be_infinite(std::string_view path) {
     constexpr std::array<std::string_view, 21> paths{"watch/step",
                                                      "watch/look/in_frame",

@@ -49,8 +49,8 @@ struct SavedArray {
 /// A saved world whose checksum and header are right. The values of the arrays are not checked.
 class SavedFile {
 public:
-    /// Throws SceneError if the bytes are not those of an undamaged saved world of the present version. `name` stands
-    /// for the file in messages. The bytes must outlive this object.
+    /// Throws SceneError if the bytes are not those of an undamaged saved world of the present version. Messages use
+    /// `name` in place of a file name. The bytes must outlive this object.
     SavedFile(std::string name, std::span<const std::byte> bytes);
 
     const std::map<std::string, SavedArray>& arrays() const { return arrays_; }

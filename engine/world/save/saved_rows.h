@@ -39,8 +39,9 @@ struct SavedSelfCrossings {
     Column<std::array<std::uint32_t, 2>> body;  // slot and generation
     Ragged<std::uint8_t> name;
     Column<std::uint8_t> self_contact;
-    Column<std::array<Real, 2>> time;     // of the first and of the last check that found a crossing [s]
-    Column<std::array<Index, 2>> places;  // at the last check that found a crossing, and at most
+    Column<std::array<Real, 2>> time;  // times of the first and of the last check that found a crossing [s]
+    // number of crossings at the last check, and largest number so far
+    Column<std::array<Index, 2>> places;
 };
 
 struct SavedRows {

@@ -24,7 +24,7 @@ struct LoadedWorld {
 };
 /// Implementation of World::load.
 LoadedWorld load_world(const std::filesystem::path& file, const LoadSettings& settings);
-/// Implementation of World::from_bytes. `name` stands for the file in messages. If `compare_hash` is true, a world
+/// Implementation of World::from_bytes. Messages use `name` in place of a file name. If `compare_hash` is true, a world
 /// whose hash differs from the saved hash is refused. Tests of the reading code pass false, so that all consistent
 /// values are accepted.
 LoadedWorld read_world(const std::string& name, std::span<const std::byte> bytes, const LoadSettings& settings,

@@ -276,7 +276,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     };
     while (left > 0) {
         if (go_on && !stops && !call_back([&] { return go_on(std::as_const(report)); })) stops = true;
-        // Ranks learn in a step that one of them stops, and end the call together after it.
+        // Every step informs all ranks if one of them stops, and all end the call after this step.
         if (world.ranks.on() ? world.ranks.all.stop : stops) {
             report.status = StepStatus::stopped;
             break;

@@ -300,7 +300,7 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     // stable step of the explicit elements of each planned body; 0: the body has no clusters [s]
     std::vector<Real> stable(twin.size());
     for (const PlannedBody& body : plan.body) {
-        // equal bodies have equal plans, so the values of the first body are copied
+        // bodies with equal meshes have equal plans, so the values of the first of them are copied
         if (const std::size_t first = twin[body.row]; stable[first] > 0) {
             body.elements.put_back(model, body.row);
             const auto as_first = [&](auto& column) {

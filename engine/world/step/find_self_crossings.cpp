@@ -11,7 +11,7 @@ namespace skerry {
 
 namespace {
 
-// Value that stands for an unknown number of crossings: the body is not checked, so its number has not changed.
+// Value for an unknown number of crossings: the body is not checked, so its number has not changed.
 constexpr Index unchanged = -1;
 
 /// True if the body may have begun or ceased to cross itself since the last check.

@@ -43,7 +43,7 @@ bool a_force_changes(const Model& model, Real time, Real h) {
 
 /// True if a stable step is still to be evaluated for a stored shape. This can be so if a body was moving when its
 /// shape was stored and has fallen asleep since.
-bool looks_are_due(const StepWatch& watch) {
+bool checks_are_due(const StepWatch& watch) {
     for (Index b = watch.body; b < watch.kept; ++b)
         if (watch.step[static_cast<std::size_t>(b)] != StepWatch::not_evaluated) return true;
     return false;
@@ -57,7 +57,7 @@ bool nothing_moves(WorldState& world) {
     const Real time = world.clock.time, h = scratch.parameters.h;
     if (!model.any_asleep || !model.tuning.contact_budgets || !all_bodies_rest(model.bodies)) return false;
     if (scratch.contacts.size() > 0 || scratch.regions.size() > 0 || scratch.regions.pushed) return false;
-    if (!world.cache.crossings.row.empty() || looks_are_due(model.watch)) return false;
+    if (!world.cache.crossings.row.empty() || checks_are_due(model.watch)) return false;
     if (a_motor_moves(model, time, h) || a_force_changes(model, time, h)) return false;
     if (!all_stand_still(model.colliders, time, h) || !all_stand_still(model.attachments, time, h)) return false;
     drive_nodes(NodeMotionInputs::bind({}, model.attachments), h, model.nodes.position, model.nodes.velocity);

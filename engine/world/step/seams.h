@@ -63,7 +63,7 @@ struct MotionModel {
 /// stages of the law in one phase of the step. A null pointer means that the law has no stages in this phase.
 struct ConstraintLaw {
     ListStages find = nullptr;      // finds the rows of this step and the impulses with which the solver starts
-    ListStages take = nullptr;      // takes rows out of the contact table again that are not contacts, after the solve
+    ListStages take = nullptr;      // removes rows that are not contacts from the contact table, after the solve
     ListStages measure = nullptr;   // measures work, losses and errors of the rows after the solve
     ListStages check = nullptr;     // checks that no constraint is violated at the end of the step
     ListStages remember = nullptr;  // stores the impulses for the next step, if the step can be committed

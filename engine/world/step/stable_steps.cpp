@@ -140,9 +140,9 @@ Real evaluate_stable_step(const Model& model, std::size_t body, std::span<const 
 namespace {
 
 /// Stores newly evaluated stable steps, body by body. Makes elements implicit where clusters reduce the computing time.
-class LooksTaken {
+class CheckedSteps {
 public:
-    LooksTaken(Model& model, Column<Real>& stiffness_sum)
+    CheckedSteps(Model& model, Column<Real>& stiffness_sum)
         : model_(model), stiffness_sum_(stiffness_sum), goal_(model.of_ranks.rest_step) {
         const BodyTable& bodies = model.bodies;
         for (std::size_t b = 0; b < bodies.slot.size(); ++b)
@@ -191,22 +191,22 @@ private:
 }  // namespace
 
 Real evaluate_stable_steps(Model& model, Column<Real>& stiffness_sum) {
-    LooksTaken looks(model, stiffness_sum);
+    CheckedSteps checked(model, stiffness_sum);
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (model.bodies.blocks[b].size() > 0)
-            looks.take(b, explicit_step(model, b, model.nodes.position, stiffness_sum));
+            checked.take(b, explicit_step(model, b, model.nodes.position, stiffness_sum));
     model.watch.begin_round();
-    return looks.end();
+    return checked.end();
 }
 
 Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum) {
     StepWatch& watch = model.watch;
-    LooksTaken looks(model, stiffness_sum);
+    CheckedSteps checked(model, stiffness_sum);
     for (std::size_t b = 0; b < static_cast<std::size_t>(watch.body); ++b)
         if (model.bodies.blocks[b].size() > 0 && watch.step[b] != StepWatch::not_evaluated)
-            looks.take(b, watch.step[b]);
+            checked.take(b, watch.step[b]);
     watch.begin_round();
-    return looks.end();
+    return checked.end();
 }
 
 namespace {
@@ -224,7 +224,7 @@ void gather_pieces(const Model& model, RankState& ranks) {
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (ranks.owns(b))
             mine.push_back(
-                {ranks.place[b], static_cast<std::uint32_t>(pieces_of_look(elements, model.bodies.blocks[b]))});
+                {ranks.place[b], static_cast<std::uint32_t>(pieces_of_check(elements, model.bodies.blocks[b]))});
     ranks.pieces_before.clear();
     for_each_gathered<PiecesAtPlace>(*ranks.ranks, mine, [&](const PiecesAtPlace& body) {
         const auto place = static_cast<std::size_t>(body.place);
@@ -246,7 +246,7 @@ void count_pieces(WorldState& world) {
     if (!ranks.on()) {
         const ElementInputs elements = model.all_elements();
         for (std::size_t b = 0; b < rows; ++b)
-            first[b + 1] = first[b] + pieces_of_look(elements, model.bodies.blocks[b]);
+            first[b + 1] = first[b] + pieces_of_check(elements, model.bodies.blocks[b]);
         return;
     }
     if (ranks.pieces_before.empty()) gather_pieces(model, ranks);
@@ -267,7 +267,7 @@ void store_shapes(Executor& executor, Model& model, std::uint64_t round) {
     watch.step.resize(bodies.slot.size());
     const auto first = static_cast<std::size_t>(watch.kept);
     const auto is_due = [&](std::size_t row) {
-        return watch.first_piece[row] < watch.target || pieces_of_look(elements, bodies.blocks[row]) == 0;
+        return watch.first_piece[row] < watch.target || pieces_of_check(elements, bodies.blocks[row]) == 0;
     };
     while (watch.kept < rows && is_due(static_cast<std::size_t>(watch.kept))) ++watch.kept;
     parallel_for(executor, static_cast<std::size_t>(watch.kept) - first, 1, [&](std::size_t begin, std::size_t end) {

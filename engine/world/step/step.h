@@ -88,7 +88,7 @@ void list_rows_taken_back(WorldState& world, TaskGraph& graph);
 // held_depth.cpp
 
 /// Largest depth of held nodes on surfaces inside analytic colliders now. Unless `all` is set, bodies whose attachments
-/// stand still are not tested against colliders that stand still.
+/// do not move are not tested against colliders that do not move.
 HeldDepth held_in_shapes(const WorldState& world, bool all);
 /// Largest depth of held nodes behind held triangles of other bodies and of mesh colliders now. Refits the trees of the
 /// bodies that have held nodes.

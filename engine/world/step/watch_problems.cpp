@@ -23,7 +23,7 @@ void copy(std::span<const T> from, Column<T>& to) {
 
 /// Converts row numbers of the contacts of a step to positions in the list of all contacts, which includes contacts of
 /// sleeping bodies.
-void say_places_among_all(const ContactTable& contacts, const RestingContactTable& resting, std::vector<Index>& place) {
+void number_among_all(const ContactTable& contacts, const RestingContactTable& resting, std::vector<Index>& place) {
     if (resting.empty()) return;
     Column<Index> rows;
     merge_contacts(contacts, resting, rows);
@@ -86,7 +86,7 @@ void show_contact_problem(const WorldState& world, Real time) {
     StepProblem problem = step_problem({inputs, kept.velocity_next, c.impulse, c.region, equations},
                                        scratch.parameters.solver, scratch.parameters.h);
     if (problem.problem.q.empty()) return;
-    say_places_among_all(c, world.cache.resting, problem.contact);
+    number_among_all(c, world.cache.resting, problem.contact);
     problem.step = record.counters.steps;
     problem.time = time;
     problem.step_size = scratch.parameters.h;

@@ -131,8 +131,8 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     const std::size_t region = static_cast<std::size_t>(contact.closest.region);
     if (contact.closest.region == TriangleRegion::face) {
         const bool turned = height < 0 && surfaces == Surfaces::apart;
-        // For the core of a round body behind an inverted face, face_depth is no limit: the core stays as far behind
-        // this face as it would stay in front of a regular one.
+        // `face_depth` does not limit the core of a round body behind an inverted face, because the core stays as far
+        // behind this face as it would stay in front of a regular one.
         if (height < -scale.face_depth && !(turned && scale.radii > 0)) return contact;
         contact.side = height >= 0 ? Side::outside : Side::behind;
         contact.distance = turned ? -height : height;

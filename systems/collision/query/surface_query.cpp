@@ -14,7 +14,7 @@ namespace {
 constexpr Real rounding = 16 * std::numeric_limits<Real>::epsilon();
 
 /// A ray, sheared so that it is parallel to the axis of its largest component. The sign of one 2x2 determinant then
-/// tells on which side of an edge the ray passes. The rounding errors are equal for both triangles at this edge.
+/// shows on which side of an edge the ray passes. The rounding errors are equal for both triangles at this edge.
 class ShearedRay {
 public:
     explicit ShearedRay(const Ray& ray) : ray_(ray) {

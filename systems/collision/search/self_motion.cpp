@@ -179,7 +179,7 @@ void remove_candidates(const SelfSearch& self, Index p, PairTable& pairs, auto&&
 }  // namespace
 
 void resize(const CollisionInputs& inputs, SelfSearch& self) {
-    // Rows of nodes inside bodies are not used, but they are saved.
+    // Rows of nodes inside bodies are unused, but they are saved too, so they need defined values.
     for (Column<Vec3>* column : {&self.origin, &self.moved}) column->resize(inputs.position.size(), Vec3::Zero());
     for (Column<Aabb>* box : {&self.moved_box, &self.speed_box}) box->resize(inputs.bvh_node.size());
     self.leaf_of_vertex.resize(inputs.surface.vertices.node.size());

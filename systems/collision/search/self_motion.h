@@ -19,7 +19,7 @@
 // 2. The list is complete for a step if M(a, b) > R(a, b) for all pairs of leaves. The features of other pairs are
 //    compared again, and those with D(t) < zone + max(m, k S, R) are listed. S(a, b) bounds the relative motion in one
 //    step, so fast pairs are not compared in every step. The new spare distance is this maximum.
-// 3. Only pairs of leaves that are close to each other have a row. The row of the root with itself stands for all other
+// 3. Only pairs of leaves that are close to each other have a row. The row of the root with itself represents all other
 //    pairs. If it expires, the close pairs are listed again.
 //
 // All bounds and D(s) are computed from boxes.
@@ -35,7 +35,7 @@
 
 namespace skerry {
 
-// Number k of steps for which a spare distance allows, if the parts of the body keep their velocities. With a larger
+// Number k of steps for which a spare distance suffices if the parts of the body keep their velocities. With a larger
 // number there are fewer comparisons, but each comparison finds more candidates.
 inline constexpr Real steps_ahead = 4;
 // Pairs of leaves are listed up to this distance, as a multiple of the mean edge length. With a larger number the list

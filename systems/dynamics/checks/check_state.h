@@ -41,7 +41,7 @@ struct CheckInputs {
     std::span<const Range> body_node_blocks;
     // smallest rest altitude; 0 for a kinematic body, whose speed is not checked [m]
     std::span<const Real> body_min_altitude;
-    std::span<const Vec3> velocity;  // at the start of the step [m/s]
+    std::span<const Vec3> velocity;  // velocity at the start of the step [m/s]
     std::span<const Vec3> velocity_next;
     // Velocity by which contacts move positions only; empty if no contact does so [m/s]
     std::span<const Vec3> push_out;
@@ -58,8 +58,9 @@ struct CheckInputs {
     std::span<const ElementGradient> element_gradient = {};
     std::span<const ElementLane> element_implicit_modulus = {};
     std::span<const ElementPart> element_part = {};  // empty if no element is an inversion barrier
-    std::span<const MovingFrame> body_frame = {};    // from BodyTable; empty if the frames of all bodies stand still
-    GhostMarks ghosts = {};                          // the deformation rates of their elements are not checked
+    // column of BodyTable; empty if the frames of all bodies are at rest
+    std::span<const MovingFrame> body_frame = {};
+    GhostMarks ghosts = {};  // the deformation rates of their elements are not checked
 
     /// `pushed`: true if a contact pushes nodes out of penetration in this step.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,

@@ -20,10 +20,11 @@ struct InversionInputs {
     std::span<const std::uint8_t> tetrahedron_sliver;  // empty if there are no slivers
     std::span<const Range> body_blocks;                // BodyTable
     std::span<const Real> body_frame_speed, body_travel, body_displacement;
-    std::span<const Vec3> position;  // at the start of the step [m]
+    std::span<const Vec3> position;  // position at the start of the step [m]
     // push_out is empty if no contact pushes nodes out of an overlap [m/s]
     std::span<const Vec3> velocity_next, push_out;
-    std::span<const Range> body_rigid = {};  // from BodyTable; rigid bodies are not checked; empty if there are none
+    // column of BodyTable; rigid bodies are not checked; empty if there are none
+    std::span<const Range> body_rigid = {};
 
     /// `pushed`: true if a contact pushes nodes out of penetration in this step.
     static InversionInputs bind(const Binder& binder, const TetrahedronBlockTable& tetrahedron, const BodyTable& body,

@@ -25,8 +25,8 @@ struct ImplicitGoal {
     Real stable;
     Real headroom;     // ratio of the assumed to the present stiffness of an implicit element
     Real most_moment;  // largest allowed ImplicitShare::moment; the search fails above it
-    // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. With a limit, inverse
-    // masses tell which nodes move; by row of NodeTable [1/kg].
+    // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. With a limit, the inverse
+    // masses show which nodes move; by row of NodeTable [1/kg].
     std::size_t most_nodes = 0;
     std::span<const Real> inverse_mass{};
 };
@@ -101,7 +101,8 @@ private:
     /// need() is at least least_need_. Elements whose nodes all belong to implicit elements are candidates as well,
     /// because they enlarge no cluster. If there is no candidate, the function lowers least_need_.
     void give_up(Real step);
-    /// Writes the assumed moduli of the implicit elements, and returns their share.
+    /// Writes the assumed moduli of the implicit elements. Returns their share of the volume and of the moment of
+    /// inertia.
     ImplicitShare add_implicit(const ImplicitGoal& goal);
 
     const ElementInputs elements_;

@@ -32,7 +32,7 @@ struct StiffenInputs {
 /// Outputs of a stiffening: the assumed moduli of implicit elements, and the cluster matrices that depend on them.
 struct StiffenOutputs {
     std::span<ElementLane> modulus;  // Pa, by block
-    NodeClusters& clusters;          // of the clusters only the inverse matrices are written
+    NodeClusters& clusters;          // only the inverse matrices of the clusters are written
 
     static StiffenOutputs bind(const Binder& binder, ElementBlockTable& element, NodeClusters& clusters) {
         binder.value(clusters.nodes);

@@ -76,8 +76,9 @@ struct Run {
 
     bool relaxes() const { return material.relaxes() && !next.spring_strain.empty(); }
 
-    /// Relaxes the springs. Returns their second Piola-Kirchhoff stress over maxwell.modulus. Writes the strains of the
-    /// springs. Adds the dissipated energy to `relaxed`, which dissipated_of() converts to joules.
+    /// Relaxes the springs of the Maxwell elements and writes their strains. Returns their second Piola-Kirchhoff
+    /// stress, divided by maxwell.modulus. Adds the dissipated energy to `relaxed`, which dissipated_of() converts to
+    /// joules.
     [[gnu::always_inline]] LaneSymmetric<Float8> relax_springs(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
                                                                const Parts<KernelReal>& scale,
                                                                Parts<KernelReal>& relaxed) const {

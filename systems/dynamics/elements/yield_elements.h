@@ -25,10 +25,10 @@ inline constexpr std::size_t blocks_per_yield = 64;
 
 /// Returns the elastic strain of all elements in a range of blocks to the yield surface, at the given positions (Simo
 /// 1992). Elements that do not yield, or are left out of the step, stay unchanged. An element with a stretch or volume
-/// ratio below the limits of the law of Hencky does not flow. Returns the dissipated energy, the plastic work [J]. The
-/// stress does this work on its way along the yield surface; the excess of the elastic energy before the return does
-/// not count, because no force has come from it.
-/// `parts`: work memory, one entry per blocks_per_yield blocks. Parallel over blocks.
+/// ratio below the limits of the law of Hencky does not flow. Returns the dissipated energy, the plastic work [J]. Only
+/// the work of the stress along the yield surface counts. The excess of the elastic energy before the return does not,
+/// because the stress before the return never acted on the nodes. `parts`: work memory, one entry per blocks_per_yield
+/// blocks. Parallel over blocks.
 Real yield_elements(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                     const PlasticState& state, std::span<Real> parts);
 

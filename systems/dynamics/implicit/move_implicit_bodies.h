@@ -41,7 +41,7 @@ struct ImplicitBodies {
     // Columns for bodies that attachments hold:
     RigidHolds holds;
     std::span<const Vec3> center, rest_center;           // RigidBodyTable
-    std::span<const Vec3> rest_position, node_velocity;  // of NodeTable; held nodes have prescribed velocities
+    std::span<const Vec3> rest_position, node_velocity;  // columns of NodeTable; held nodes have prescribed velocities
     std::span<const Real> inverse_mass;                  // NodeTable
     GhostMarks ghosts = {};
 

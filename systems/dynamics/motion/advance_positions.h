@@ -18,7 +18,7 @@ struct AdvanceInputs {
     std::span<const std::uint8_t> body_asleep = {};             // column of BodyTable; empty if no body is asleep
     std::span<const Vec3> velocity_next;                        // [m/s]
     std::span<const Vec3> displacement_origin;                  // [m]
-    std::span<const MovingFrame> body_frame = {};               // column of BodyTable; empty if all frames stand still
+    std::span<const MovingFrame> body_frame = {};               // column of BodyTable; empty if all frames are at rest
 
     /// `velocity`: column of the velocities with which nodes move. `any_asleep`: true if some body is asleep.
     static AdvanceInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,

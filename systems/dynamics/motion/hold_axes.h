@@ -24,7 +24,7 @@ struct AxisHoldInputs {
     std::span<const Index> node;   // rows of NodeTable
     std::span<const Vec3> anchor;  // position in the frame of the attachment [m]
     // by node
-    std::span<const Vec3> position, velocity;  // at the start of the step
+    std::span<const Vec3> position, velocity;  // state at the start of the step
     std::span<const Vec3> load;                // applied force; empty if there are none [N]
     std::span<const Real> mass, inverse_mass;
     std::span<const Index> body;  // row of BodyTable
@@ -60,8 +60,8 @@ struct AxisHoldInputs {
 ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag, std::span<Vec3> velocity_next,
                        Column<Vec3>& held_impulse);
 
-/// Rows of the contact problem that hold nodes along single directions. While regions are solved, they stand at the end
-/// of ContactTable.
+/// Rows of the contact problem that hold nodes along single directions. While regions are solved, they are the last
+/// rows of ContactTable.
 struct HeldRows {
     struct Node {
         Mat3 held = Mat3::Zero();     // projection onto the directions along which attachments hold the node

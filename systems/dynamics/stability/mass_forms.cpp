@@ -108,7 +108,8 @@ public:
         const bool large = form_.size() > blocks_of_large;
         const int rounds = large ? 1 : 16, products = large ? 1 : 5;
         constexpr Real noise_part = 0.3;  // noise added to the vectors in each round, to find missing modes
-        // Z starts as a multiple of the identity. The final Z is a mean over the rounds.
+        // Search for the matrix Z of each element. It starts as a multiple of the identity, and the final Z is the mean
+        // of all rounds.
         for (ElementForm& of_block : form_)
             for (std::size_t i = 0; i < 6; ++i)
                 for (Real& lane : of_block[i].lane) lane = i < 3 ? Real{1} / 3 : 0;

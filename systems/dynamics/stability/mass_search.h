@@ -74,7 +74,7 @@ inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corn
 /// Symmetric band matrix: all entries outside a band around the diagonal are zero. A row is stored from the diagonal to
 /// the end of the band. Groups of rows are computed when they are needed.
 struct BandMatrix {
-    std::size_t size;   // rows; whole groups
+    std::size_t size;   // number of rows, a multiple of `group`
     std::size_t width;  // number of entries stored per row
     std::size_t group;  // number of rows per group
     /// Adds the entries of the rows of a group to `rows`, which contains zeros. Each row begins `stride` numbers after

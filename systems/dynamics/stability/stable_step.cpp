@@ -41,7 +41,7 @@ struct PieceRun {
     std::uint64_t end;  // number of the piece after the last one
 };
 
-/// Run of pieces that starts at piece `from` and ends at piece `until` or before.
+/// Run of consecutive pieces of the same work, from piece `from` up to `until` or before.
 PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t until) {
     const Index sums = sums_of(blocks);
     const auto place = static_cast<Index>(from);
@@ -71,9 +71,9 @@ struct Pieces {
     static void for_each_block(Range blocks, auto&& visit) {
         for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) visit(b);
     }
-    void sum(const PieceRun& run, StepEvaluation& look) const {
+    void sum(const PieceRun& run, StepEvaluation& check) const {
         if (frame_bound(elements, run.blocks) > 0)
-            for_each_block(run.blocks, [&](std::size_t b) { add_deformation(b, look.deformation); });
+            for_each_block(run.blocks, [&](std::size_t b) { add_deformation(b, check.deformation); });
         for_each_block(run.blocks, [&](std::size_t b) {
             if (has_mass_form(elements, b)) return;
             add_stiffness(elements, b, deformation_of(elements, b, position), stiffness_sum,
@@ -114,17 +114,17 @@ struct Greatest {
     Real& bound;  // [1/s^2]
     Index& element;
 };
-Greatest greatest_of(StepEvaluation& look, const PieceRun& run) {
-    if (run.work == PieceWork::bound_in_frame) return {look.in_frame, look.element_in_frame};
-    return {look.highest, look.element};
+Greatest greatest_of(StepEvaluation& check, const PieceRun& run) {
+    if (run.work == PieceWork::bound_in_frame) return {check.in_frame, check.element_in_frame};
+    return {check.highest, check.element};
 }
 
 /// Updates the greatest bound of omega^2 with the bounds of a block.
-void note_bound(std::size_t block, const Real8& bound, Greatest greatest, StepEvaluation& look) {
+void note_bound(std::size_t block, const Real8& bound, Greatest greatest, StepEvaluation& check) {
     for (std::size_t l = 0; l < element_lanes; ++l) {
         const Index here = static_cast<Index>(block * element_lanes + l);
         // a shape that is not finite has no stable step
-        if (!(bound[l] <= std::numeric_limits<Real>::max()) && look.broken == no_index) look.broken = here;
+        if (!(bound[l] <= std::numeric_limits<Real>::max()) && check.broken == no_index) check.broken = here;
         if (bound[l] > greatest.bound) {
             greatest.bound = bound[l];
             greatest.element = here;
@@ -145,31 +145,31 @@ constexpr Real well_in_frame = 1.25;
 /// Continues a stable-step check until its first `until` pieces are done. in_chunks(run, body) must divide the blocks
 /// of the run into chunks, and call body(begin, end, StepEvaluation of the chunk) for each chunk.
 template <class InChunks>
-void look_on(const Pieces& pieces, Range blocks, std::uint64_t until, StepEvaluation& look, InChunks&& in_chunks) {
+void run_pieces(const Pieces& pieces, Range blocks, std::uint64_t until, StepEvaluation& check, InChunks&& in_chunks) {
     SKERRY_CHECK(pieces.stiffness_sum.size() == pieces.position.size());
     SKERRY_CHECK(pieces.mass.size() == pieces.position.size());
     const Real at_rest = frame_bound(pieces.elements, blocks);
     std::optional<Mat3> rotation;  // rotation of the body; computed once for all waves of this call
-    while (look.piece < until) {
-        const PieceRun run = run_from(blocks, at_rest > 0, look.piece, until);
-        if (run.opens_wave) look.known = greatest_of(look, run).bound;
+    while (check.piece < until) {
+        const PieceRun run = run_from(blocks, at_rest > 0, check.piece, until);
+        if (run.opens_wave) check.known = greatest_of(check, run).bound;
         if (run.work == PieceWork::sum) {
-            pieces.sum(run, look);
-        } else if (run.work == PieceWork::bound_in_frame || !(look.in_frame > 0) ||
-                   look.in_frame > well_in_frame * at_rest) {
-            if (run.work == PieceWork::bound_in_frame && !rotation) rotation = turn_as_whole(look.deformation);
+            pieces.sum(run, check);
+        } else if (run.work == PieceWork::bound_in_frame || !(check.in_frame > 0) ||
+                   check.in_frame > well_in_frame * at_rest) {
+            if (run.work == PieceWork::bound_in_frame && !rotation) rotation = turn_as_whole(check.deformation);
             in_chunks(run, [&](Index begin, Index end, StepEvaluation& found) {
                 const Range some{run.blocks.begin + begin, run.blocks.begin + end};
                 const auto note = [&](std::size_t b, const Real8& bound) {
                     note_bound(b, bound, greatest_of(found, run), found);
                 };
                 if (run.work == PieceWork::bound_in_frame)
-                    pieces.bound_in_frame(some, *rotation, look.known, note);
+                    pieces.bound_in_frame(some, *rotation, check.known, note);
                 else
-                    pieces.bound(some, look.known, note);
+                    pieces.bound(some, check.known, note);
             });
         }
-        look.piece = run.end;
+        check.piece = run.end;
     }
 }
 
@@ -185,15 +185,15 @@ Real step_of(Real bound) {
 
 }  // namespace
 
-std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks) {
+std::uint64_t pieces_of_check(const ElementInputs& elements, Range blocks) {
     blocks = without_guards(elements, blocks);
     const Index passes = frame_bound(elements, blocks) > 0 ? 2 : 1;
     return static_cast<std::uint64_t>(sums_of(blocks) + passes * blocks.size());
 }
 
-void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
-                   StepEvaluation& look) {
+void continue_check(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
+                    StepEvaluation& check) {
     // `least`: number of blocks in a chunk, some 20 us of work. `most_chunks`: number of chunks whose results fit on
     // the stack.
     constexpr Index least = 8, most_chunks = 64;
@@ -201,7 +201,7 @@ void continue_look(Executor& executor, const ElementInputs& elements, Range bloc
         const Index count = run.blocks.size();
         const Index size = std::max(least, (count + most_chunks - 1) / most_chunks);
         if (count <= size) {
-            body(0, count, look);
+            body(0, count, check);
             return;
         }
         std::array<StepEvaluation, static_cast<std::size_t>(most_chunks)> part;
@@ -212,35 +212,35 @@ void continue_look(Executor& executor, const ElementInputs& elements, Range bloc
                      });
         for (Index c = 0; c * size < count; ++c) {
             StepEvaluation& own = part[static_cast<std::size_t>(c)];
-            if (look.broken == no_index) look.broken = own.broken;
-            const Greatest most = greatest_of(look, run), here = greatest_of(own, run);
+            if (check.broken == no_index) check.broken = own.broken;
+            const Greatest most = greatest_of(check, run), here = greatest_of(own, run);
             if (!(here.bound > most.bound)) continue;
             most.bound = here.bound;
             most.element = here.element;
         }
     };
-    look_on({elements, position, mass, stiffness_sum}, without_guards(elements, blocks), until, look, in_chunks);
+    run_pieces({elements, position, mass, stiffness_sum}, without_guards(elements, blocks), until, check, in_chunks);
 }
 
-StableStep result_of(const StepEvaluation& look) {
-    if (look.broken != no_index) return {0, look.broken};
+StableStep result_of(const StepEvaluation& check) {
+    if (check.broken != no_index) return {0, check.broken};
     StableStep found{infinity, no_index};
-    if (look.highest > 0) found = {step_of(look.highest), look.element};
-    if (!(look.in_frame > 0)) return found;
+    if (check.highest > 0) found = {step_of(check.highest), check.element};
+    if (!(check.in_frame > 0)) return found;
     // Both bounds of the body are valid if both were computed. The longer step is taken.
-    const Real step = step_of(look.in_frame);
-    if (!(look.highest > 0) || step > found.step) found = {step, look.element_in_frame};
+    const Real step = step_of(check.in_frame);
+    if (!(check.highest > 0) || step > found.step) found = {step, check.element_in_frame};
     return found;
 }
 
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum) {
     clear_stiffness(elements, blocks, stiffness_sum);
-    StepEvaluation look;
-    look_on({elements, position, mass, stiffness_sum}, without_guards(elements, blocks),
-            pieces_of_look(elements, blocks), look,
-            [&](const PieceRun& run, auto&& body) { body(0, run.blocks.size(), look); });
-    return result_of(look);
+    StepEvaluation check;
+    run_pieces({elements, position, mass, stiffness_sum}, without_guards(elements, blocks),
+               pieces_of_check(elements, blocks), check,
+               [&](const PieceRun& run, auto&& body) { body(0, run.blocks.size(), check); });
+    return result_of(check);
 }
 
 void element_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
@@ -254,13 +254,13 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
     const Range of_body = without_guards(elements, blocks);
     for (ElementLane& lanes : step.subspan(static_cast<std::size_t>(of_body.size())))
         std::ranges::fill(lanes.lane, infinity);
-    const std::uint64_t count = pieces_of_look(by_shares, of_body);
-    StepEvaluation look;
+    const std::uint64_t count = pieces_of_check(by_shares, of_body);
+    StepEvaluation check;
     for (std::uint64_t piece = 0; piece < count;) {
         const PieceRun run = run_from(of_body, false, piece, count);
         piece = run.end;
         if (run.work == PieceWork::sum) {
-            pieces.sum(run, look);
+            pieces.sum(run, check);
             continue;
         }
         pieces.bound(run.blocks, 0, [&](std::size_t b, const Real8& bound) {

@@ -29,15 +29,15 @@ StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<co
                        std::span<const Real> mass, std::span<Real> stiffness_sum);
 
 /// Number of pieces of a stable-step check. A check computes stable_step() in pieces that all take about the same time.
-std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks);
+std::uint64_t pieces_of_check(const ElementInputs& elements, Range blocks);
 /// Continues a stable-step check until `until` of its pieces are done. `stiffness_sum` must be zero at the nodes of the
 /// body before the first piece. All inputs must stay the same until the last piece. The result does not depend on where
 /// the check is interrupted.
-void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
-                   StepEvaluation& look);
+void continue_check(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
+                    StepEvaluation& check);
 /// Result of a stable-step check, available when all of its pieces are done.
-StableStep result_of(const StepEvaluation& look);
+StableStep result_of(const StepEvaluation& check);
 
 /// Step that each element of these blocks would allow alone, with its mass shares [s]. It is infinite for elements that
 /// limit no step and in unused lanes. If the body has neither mass forms nor frame masses, the shortest of these steps

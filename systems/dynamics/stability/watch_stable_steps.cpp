@@ -12,7 +12,7 @@ void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<Wa
     parts.reserve(inputs.body_blocks.size());  // this capacity is enough for any later step
     for (bool whole = true; whole && watch.body < watch.kept; watch.body += whole) {
         const auto b = static_cast<std::size_t>(watch.body);
-        const std::uint64_t pieces = pieces_of_look(inputs.elements, inputs.body_blocks[b]);
+        const std::uint64_t pieces = pieces_of_check(inputs.elements, inputs.body_blocks[b]);
         if (watch.step[b] != StepWatch::not_evaluated) {
             const std::uint64_t before = watch.first_piece[b];
             const std::uint64_t due = watch.target > before ? std::min(pieces, watch.target - before) : 0;
@@ -27,8 +27,8 @@ void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<Wa
         for (std::size_t p = begin; p < end; ++p) {
             WatchPart& part = parts[p];
             const auto b = static_cast<std::size_t>(part.body);
-            continue_look(executor, inputs.elements, inputs.body_blocks[b], watch.position, inputs.mass,
-                          watch.stiffness_sum, part.until, part.look);
+            continue_check(executor, inputs.elements, inputs.body_blocks[b], watch.position, inputs.mass,
+                           watch.stiffness_sum, part.until, part.look);
         }
     });
     for (const WatchPart& part : parts) {

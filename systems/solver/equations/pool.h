@@ -42,7 +42,7 @@ public:
     void make_room(std::size_t workers) {
         while (slots_.size() < workers) slots_.push_back(std::make_unique<Slot>());
     }
-    /// Leases a free memory. At least one is free, because each worker solves one region at a time.
+    /// Leases a working memory. At least one is free, because each worker solves one region at a time.
     Lease lease() {
         while (true)
             for (const std::unique_ptr<Slot>& slot : slots_)

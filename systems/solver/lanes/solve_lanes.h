@@ -141,8 +141,8 @@ struct LaneOutcome {
     LaneMask<T> solved;
 };
 
-/// Lane version of ErrorTest. The last iteration does not require a measurement, because unfinished regions are solved
-/// again outside of lanes.
+/// Lane version of ErrorTest. The error need not be measured after the last iteration, because regions that are still
+/// unsolved are solved again outside of lanes.
 template <class T, int K>
 class LaneTest {
 public:

@@ -182,7 +182,7 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
 }
 
 void load_mimic(const JointPlaceInRegion& first, const JointPlaceInRegion& leader) {
-    constexpr Real rounding = 1e-12;  // of the mobility, relative to its summands
+    constexpr Real rounding = 1e-12;  // rounding error of the mobility, as a fraction of its summands
     Real sum = 0, size = 0;
     for (const JointPlaceInRegion* a : {&first, &leader})
         for (const JointPlaceInRegion* b : {&first, &leader}) {

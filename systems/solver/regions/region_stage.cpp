@@ -42,7 +42,7 @@ Real tolerance_of(const RegionStage& stage, std::span<const Index> row) {
     const RegionInputs& inputs = stage.inputs;
     const SolverSettings& settings = stage.settings;
     if (!(settings.still_tolerance < settings.tolerance) || inputs.still_time.empty()) return settings.tolerance;
-    // Mesh colliders have no still time, so they count as still. Bodies that a moving collider carries along do not.
+    // Mesh colliders have no still time, so they count as still. Bodies on a moving collider do not.
     const auto is_still = [&](Index body) {
         return body == no_index || inputs.body_kind[body] == BodyKind::kinematic || inputs.still_time[body] > 0;
     };

@@ -170,7 +170,7 @@ TEST_CASE("more browsers and more commands than the limits are refused", "[unit]
     Visit& visit = visits.front();
     hub.take_commands();
     for (std::size_t i = 0; i < LiveHub::most_waiting + 1; ++i) visit.send({{"do", "play"}});
-    CHECK_THAT(visit.browser.wait_for_text("problem")["text"], Contains("found 1000 commands that wait"));
+    CHECK_THAT(visit.browser.wait_for_text("problem")["text"], Contains("found 1000 waiting commands"));
     CHECK(hub.take_commands().size() == LiveHub::most_waiting);
     // Only the last place of the mouse and the last value of a slider count.
     for (int i = 0; i < 5000; ++i) visit.send({{"do", "move"}, {"to", {i, 0, 0}}});

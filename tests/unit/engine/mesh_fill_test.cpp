@@ -247,7 +247,7 @@ TEST_CASE("a surface of a scene is filled again only after a change of the surfa
     std::vector<std::string> notes;
     mesh::fill_cached(file, exact, {}, &notes);
     REQUIRE(notes.size() == 1);
-    CHECK_THAT(notes.front(), Contains("part.obj: the mesh could not be kept") && Contains("every run fills"));
+    CHECK_THAT(notes.front(), Contains("part.obj: the mesh could not be stored") && Contains("every run fills"));
 }
 
 TEST_CASE("notes of a filling are given again with the mesh of the cache file") {
@@ -275,7 +275,7 @@ TEST_CASE("a mesh of fTetWild is not kept if Netgen is missing or crashes") {
         mesh::fill_cached(file, {}, {}, &notes);
         REQUIRE(notes.size() == 2);
         CHECK_THAT(notes[0], Contains("filled by fTetWild"));
-        CHECK_THAT(notes[1], Contains("the mesh was not kept"));
+        CHECK_THAT(notes[1], Contains("the mesh was not stored"));
         for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
             CHECK(entry.path().extension() != ".msh");
     }

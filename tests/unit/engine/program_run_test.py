@@ -35,7 +35,7 @@ class ProgramRunTest(ProgramCase):
     def test_a_run_from_rest_does_not_move(self):
         stats = self.folder / "rest_stats.json"
         done = self.skerry("run", self.scene, "--from-rest", "--stats", stats, "--seconds", "0.1")
-        self.assertRegex(done.stderr, r"NOTE: the run starts from rest, found in \d+ steps")
+        self.assertRegex(done.stderr, r"NOTE: the run starts from a static equilibrium, which took \d+ steps")
         self.assertLess(json.loads(stats.read_text())["energy"]["kinetic"], 1e-6)
 
     def test_the_summary_and_the_statistics_have_estimated_errors(self):

@@ -130,7 +130,8 @@ TEST_CASE("differences that do not fall as the theory says give a long bar and n
     const StudyQuantity q = only_quantity(analyse(displacement_runs(-0.2, 0.4, 0, 1, 0), {}));
     CHECK(q.verdict == StudyVerdict::irregular);
     CHECK(q.sentence ==
-          "the mesh error does not fall as it should, so the value is not extrapolated; the error bar is a multiple of "
+          "the mesh error does not decrease as the theory predicts, so the value is not extrapolated; the error bar is "
+          "a multiple of "
           "the largest difference and can be used");
     CHECK(q.mesh_order == Approx(0.4));
     CHECK(q.expected_mesh_order == 2);

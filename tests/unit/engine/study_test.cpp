@@ -285,7 +285,7 @@ TEST_CASE("a study whose runs cannot be written has results all the same") {
     const StudyResult result = study(scene, settings);
     CHECK_FALSE(result.quantities.empty());
     CHECK(std::ranges::any_of(result.sentences, [](const std::string& sentence) {
-        return sentence.starts_with("Not all runs could be kept in the folder: ");
+        return sentence.starts_with("Not all runs could be stored in the folder: ");
     }));
 }
 

@@ -28,7 +28,7 @@ class Frame:
         return Frame(self.rotation @ other.position + self.position, self.rotation @ other.rotation)
 
     def points(self, points: Reals) -> Reals:
-        """Points of the frame, shape (n, 3), outside the frame."""
+        """Converts points of the frame, shape (n, 3), to coordinates outside of the frame."""
         result: Reals = points @ self.rotation.T + self.position
         return result
 
@@ -150,8 +150,8 @@ class Robot:
     """A robot of a file, see load_robot().
 
     name: name of the robot.
-    links: by name, parents first.
-    joints: by name, in the order of the links.
+    links: the links by name, parents first.
+    joints: the joints by name, in the order of the links.
     apart: pairs of links that do not collide, in addition to links that a joint joins.
     warnings: parts of the file that are not simulated, each with its element and name.
     """
@@ -199,7 +199,7 @@ class Robot:
             known = [name for name in waiting if name in found]
             if not known:
                 raise scene_error(
-                    f"robot '{self.name}'", "mimic", f"a circle of mimics with '{waiting[0]}'", "joints without circles"
+                    f"robot '{self.name}'", "mimic", f"a cycle of mimics with '{waiting[0]}'", "joints without cycles"
                 )
             waiting = [name for name in waiting if name not in found]
         return found

@@ -63,7 +63,8 @@ class PlacedRobot:
         return self._states("motor")
 
     def set_targets(self, targets: ArrayLike) -> None:
-        """Sets the targets of all motors, shape (m,): a coordinate, a speed or a force, as `RobotJoint.drive` says."""
+        """Sets the targets of all motors, shape (m,): a coordinate, a speed or a force, depending on
+        `RobotJoint.drive`."""
         values = real_array(targets, "targets", (len(self.motor_names),))
         motors = [
             self.robot.joints[name].motor(float(value)) for name, value in zip(self.motor_names, values, strict=True)

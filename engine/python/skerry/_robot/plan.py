@@ -49,8 +49,8 @@ class PlannedJoint:
 
     joint: the description.
     second: name of the link of the other body; None: the world.
-    point: in the world [m].
-    axis: in the world.
+    point: position in the world [m].
+    axis: direction in the world.
     coordinate: coordinate at the start [rad or m].
     motor: the motor that holds this coordinate, or has the speed or force 0; None: no motor.
     """

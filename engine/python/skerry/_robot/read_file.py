@@ -341,8 +341,8 @@ class _Reader:
         return drive, most
 
     def with_mimics(self, joints: list[RobotJoint]) -> list[RobotJoint]:
-        """The joints with the mimics of a URDF, which the package mujoco does not read, or of the equalities of MJCF.
-        Joints that mimic have no motor."""
+        """Returns the joints with their mimics. A URDF file defines mimics, which the package mujoco does not read; an
+        MJCF file defines them by equalities. Joints that mimic have no motor."""
         mimics = dict(self.urdf_mimics(self.urdf) if self.urdf is not None else self.equalities(joints))
         names = {joint.name for joint in joints if joint.has_coordinate}
         for name, mimic in mimics.items():

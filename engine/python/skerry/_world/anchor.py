@@ -20,8 +20,8 @@ class Anchor:
     """A point that is fixed to a body, to a collider, or to the world if neither is given. The point of a deformable
     body must be inside the body, or at most one mean edge length of its surface outside.
 
-    body: body that carries the point.
-    collider: collider that carries the point.
+    body: body to which the point is fixed.
+    collider: collider to which the point is fixed.
     point: position in the world at the time when the anchor is used, shape (3,) [m].
     """
 

@@ -214,7 +214,7 @@ class Body(TouchingObject):
     def visual(self) -> VisualSurface | None:
         """Surface that is drawn in place of the body; None if there is none. Assignment takes a VisualSurface, a
         SurfaceMesh, the path of a file, or None. Steps do not depend on it; it is saved and copied with the world. A
-        warning Doubt tells if its size or place does not fit the body."""
+        warning Doubt is issued if its size or position does not fit the body."""
         core = self._core.visual(self._handle)
         return None if core is None else VisualSurface._of(core)
 
@@ -338,7 +338,7 @@ class Body(TouchingObject):
 
     @property
     def loads(self) -> Reals:
-        """External forces on the nodes that were set, a copy of shape (n, 3) [N]."""
+        """External forces that were set on the nodes, a copy of shape (n, 3) [N]."""
         loads: Reals = self._core.loads(self._handle)
         return loads
 

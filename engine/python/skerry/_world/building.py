@@ -154,13 +154,13 @@ class Building(CavityBuilding):
         SurfaceMesh of closed shells with dynamics="rigid".
         material: a handle, or a record; equal records become one material. materials: materials of the tetrahedra with
         a label, or of a set by its name; sets take precedence. position, rotation: pose of the mesh (3,) [m, rad].
-        velocity, angular_velocity: of the body about its centre of mass (3,) [m/s, rad/s]. dynamics: "explicit",
-        "implicit", "rigid" or "automatic", which chooses explicit or implicit by their costs. element: kind of the
-        elements. self_contact: True: the body can touch itself. contact_distance: default 2 % of the mean edge length
-        of the surface [m]. mass: of a rigid body [kg], instead of that by density. center_of_mass (3,) [m] and inertia
-        (3, 3) about it [kg m^2]: both in the frame of the mesh; they require the mass, which alone scales the inertia
-        of the shape. collision_group, collision_mask: see Body.set_collision_groups(). visual: see Body.visual. name:
-        unique in the world, default "body N".
+        velocity, angular_velocity: initial rigid motion about the centre of mass (3,) [m/s, rad/s]. dynamics:
+        "explicit", "implicit", "rigid" or "automatic", which chooses explicit or implicit by their costs. element: kind
+        of the elements. self_contact: True: the body can touch itself. contact_distance: contact distance, default 2 %
+        of the mean edge length of the surface [m]. mass: mass of a rigid body [kg], instead of that by density.
+        center_of_mass (3,) [m] and inertia (3, 3) about it [kg m^2]: both in the frame of the mesh; they require the
+        mass, which alone scales the inertia of the shape. collision_group, collision_mask: see
+        Body.set_collision_groups(). visual: see Body.visual. name: unique in the world, default "body N".
 
         SceneError: a value is out of range, or a body has this name. BufferError: arrays of views() are in use. Ctrl-C
         raises KeyboardInterrupt at the end of the call, when the body is already added."""
@@ -339,8 +339,8 @@ class Building(CavityBuilding):
     ) -> Cable:
         """Adds a cable that runs straight from point to point and never pushes, and returns it.
 
-        points: at least two, and at least one on a body. Exactly one of the following is given, as a number or as pairs
-        (time, value). tension: tension of the first segment [N]. length: greatest length [m]. rate: rate of the
+        points: at least two points, at least one on a body. Exactly one of the next three is given, as a number or as
+        pairs (time, value). tension: tension of the first segment [N]. length: greatest length [m]. rate: rate of the
         greatest length, which is the length now [m/s]. friction: friction coefficient mu at the points between the
         first and the last; tensions differ there by at most exp(mu theta) for a bend by the angle theta. name: see
         Cable.name."""
@@ -477,7 +477,7 @@ class Building(CavityBuilding):
         return self._materials[material]
 
     def _forget_material(self, changed: Any) -> None:
-        """Must be called after a material was changed: its record no longer stands for it."""
+        """Must be called after a material was changed, because its record is then outdated."""
         self._materials = {record: handle for record, handle in self._materials.items() if handle != changed}
 
     def _new_name(self, name: str | None, kind: str, objects: Objects[Any]) -> str:

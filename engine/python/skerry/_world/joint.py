@@ -113,7 +113,7 @@ class Joint(NamedObject):
         self._core.set_motor(self._handle, None if motor is None else checked(motor, "motor", Motor))
 
     def set_limits(self, *, lower: float | None = None, upper: float | None = None) -> None:
-        """Sets the limits of the coordinate; None stands for no limit [rad or m]."""
+        """Sets the limits of the coordinate; None means no limit [rad or m]."""
         limits = (None if value is None else real(value, name) for value, name in ((lower, "lower"), (upper, "upper")))
         self._core.set_limits(self._handle, *limits)
 

@@ -187,7 +187,7 @@ class WorldLoads:
         return Load(cast("World", self), handle, f"{state['kind']} on {on}")
 
     def _body_or_all(self, body: Body | None) -> Any:
-        """Handle of a body; None stands for all bodies."""
+        """Handle of a body; None means all bodies."""
         return None if body is None else self._loaded(body)
 
     def _loaded(self, body: Body) -> Any:

@@ -205,7 +205,7 @@ class TouchingObject(PosedObject):
 
     @property
     def surface_values(self) -> Surface:
-        """Friction and restitution that were set. None stands for the value of the material of a body, and for a
+        """Friction and restitution that were set. None means the value of the material of a body, and for a
         collider for the value of the body that touches it."""
         surface: Surface = self._core.surface_properties(self._handle)
         return surface

@@ -41,7 +41,7 @@ class SurfaceSet(NamedObject):
 
     @property
     def surface_values(self) -> Surface:
-        """Friction and restitution that were set. None stands for the value of the body. With `direction`, the
+        """Friction and restitution that were set. None means the value of the body. With `direction`, the
         friction applies along it."""
         surface: Surface = self._values["surface"]
         return surface
@@ -54,7 +54,7 @@ class SurfaceSet(NamedObject):
 
     @property
     def direction(self) -> Vector | None:
-        """Direction in the frame of the mesh, which the faces carry along; None: there is none."""
+        """Direction in the frame of the mesh, which moves with the faces; None: there is none."""
         direction: Vector | None = self._values["direction"]
         return direction
 

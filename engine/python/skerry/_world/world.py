@@ -158,13 +158,13 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
     ) -> PlacedRobot:
         """Adds a robot as rigid bodies and joints, all or none of them.
 
-        robot: the result of load_robot(), or a file for it. material: of the surfaces. position, rotation: pose of the
-        robot (3,) [m, rad]. coordinates: coordinates of joints by name; default: RobotJoint.rest, or the nearest value
-        within the limits [rad or m]. fixed: True: the base does not move; False: it is free; None: as the file says.
-        motors: False: without motors. With True they hold the coordinates, or have the speed or the force 0.
+        robot: the result of load_robot(), or a file for it. material: material of the surfaces. position, rotation:
+        pose of the robot (3,) [m, rad]. coordinates: coordinates of joints by name; default: RobotJoint.rest, or the
+        nearest value within the limits [rad or m]. fixed: True: the base does not move; False: it is free; None: as in
+        the file. motors: False: without motors. With True they hold the coordinates, or have the speed or the force 0.
         self_collision: False: links do not collide with each other. With True, only links that a joint joins, and pairs
-        that the file excludes, do not. name: names of bodies and joints are NAME/LINK and NAME/JOINT; default: the
-        name of the robot.
+        that the file excludes, do not. name: names of bodies and joints are NAME/LINK and NAME/JOINT; default: the name
+        of the robot.
 
         SceneError: an error in the file, or a value is out of range, or a body has one of the names."""
         given = robot if isinstance(robot, Robot) else load_robot(robot)

@@ -28,7 +28,7 @@ void require_divisible(const WorldState& world) {
     const Settings& settings = world.model.settings;
     if (settings.integrator == Integrator::leapfrog)
         refuse_division("settings.integrator", "leapfrog", "symplectic_euler",
-                        "several ranks have only this integrator");
+                        "several ranks support only this integrator");
     if (settings.contact_regions == ContactRegions::global)
         refuse_division("settings.contact_regions", "global", "separate", "ranks solve regions concurrently");
     if (world.record.forces.on())
@@ -54,8 +54,8 @@ RankMessage message_of_first(Ranks& ranks, std::span<const std::byte> mine) {
 /// twice.
 constexpr Index batches = 8;
 
-/// Returns a message with the marked bodies of one batch. The first batch also has the contact data of the pairs that a
-/// rank owns. `with_records`: true if the receiver is not rank 0.
+/// Number of messages in which a rank sends its bodies to another rank. With several messages, only a part of the
+/// bodies is in memory twice.
 RankMessage message_of_batch(WorldState& world, std::span<const std::uint8_t> marked, Index batch, int pairs_of,
                              bool with_records) {
     const WholeWorld& whole = world.ranks.whole;
@@ -68,7 +68,7 @@ RankMessage message_of_batch(WorldState& world, std::span<const std::uint8_t> ma
     return message_of(rows);
 }
 
-/// Calls visit(member) for all facts about the undivided world that rank 0 tells the others.
+/// Calls visit(member) for all facts about the undivided world that rank 0 sends to the others.
 void for_each_fact(WholeWorld& whole, std::vector<BodyExtent>& extents, Model& model, auto&& visit) {
     visit(whole.owner);
     visit(whole.slot);
@@ -167,8 +167,8 @@ std::vector<BodyExtent> send_parts(World& world, Ranks& ranks, const RankSetting
     return extents;
 }
 
-/// Replaces the world of another rank by its part of the world of rank 0. Only the backend, the number of threads and
-/// the callback of the steps stay.
+/// Replaces the world of another rank by its part of the world of rank 0. The backend, the number of threads and the
+/// callback of the steps are kept.
 std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSettings& settings) {
     const RankMessage facts = message_of_first(ranks, {});
     MailReader reader(facts);
@@ -220,9 +220,10 @@ void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
     WorldState& undivided = WorldAccess::state_of(world);
     undivided.require_between_steps("distribute");
     if (undivided.ranks.on())
-        refuse_division("world", "a world that is already divided", "an undivided world", "call it once");
+        refuse_division("world", "a world that is already divided", "an undivided world",
+                        "call distribute() only once");
     if (ranks.size() == 1) return require_divisible(undivided);
-    const ArithmeticScope arithmetic;  // as in advance(), which would otherwise choose the clusters
+    const ArithmeticScope arithmetic;  // same rounding as in advance(), because clusters may be chosen here
     const std::vector<BodyExtent> extents =
         ranks.rank() == 0 ? send_parts(world, ranks, settings) : receive_part(world, ranks, settings);
     WorldState& state = WorldAccess::state_of(world);

@@ -23,7 +23,7 @@ constexpr std::uint64_t steps_between_searches = 1000;
 constexpr Real steps_of_margin = 20;
 /// Cost of a contact, in units of the cost of an explicit element. The solver visits a contact several times.
 constexpr Real contact_cost = 10;
-/// Cost of a body without elements, in the same units.
+/// Cost of a body without elements, in units of the cost of an explicit element.
 constexpr Real body_cost = 20;
 
 /// Distance by which a body may move before its holders are found again [m]. `speed`: greatest speed of a node [m/s].
@@ -41,10 +41,11 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
     const Model& model = world.model;
     const BodyTable& bodies = model.bodies;
     Range nodes = bodies.nodes[body];
-    // the other nodes of a round body only draw it
+    // the other nodes of a cylinder, ball or capsule serve only to draw it
     if (const Index core = bodies.core_nodes[body]; core > 0) nodes.end = nodes.begin + core;
     Aabb box = empty_box();
-    Real speed = bodies.max_speed[body];  // that of the last step; a contact may have slowed the body
+    // greatest speed in the last step; a contact may have slowed the body since then
+    Real speed = bodies.max_speed[body];
     const std::span<const Real> tried = world.ranks.tried_speed;
     if (body < tried.size() && std::isfinite(tried[body])) speed = std::max(speed, tried[body]);
     for (Index node = nodes.begin; node < nodes.end; ++node) {
@@ -58,11 +59,12 @@ BodyExtent extent_of(const WorldState& world, std::size_t body, Real contacts) {
             .cost = body_cost + elements + static_cast<Real>(bodies.implicit[body].size()) + contact_cost * contacts,
             .margin = margin,
             .box = {box.lower - more, box.upper + more},
-            // the progress of a long step does not move with the rows of a body
+            // all ranks hold a body with a long step, because the progress of that step is not stored in the rows of
+            // the body
             .on_all = model.settings.implicit_step > 0 && bodies.implicit[body].size() > 0};
 }
 
-/// Facts that each rank tells all others in a rank search.
+/// Facts that each rank sends to all others in a rank search.
 struct SearchHeader {
     std::uint64_t extents, requests, stale;
     std::uint64_t keeps_owners;  // 1: bodies must not get new owners now
@@ -70,9 +72,9 @@ struct SearchHeader {
 
 /// Facts about the bodies of all ranks.
 struct RankSearch {
-    std::vector<BodyExtent> extents;  // in the order of the places
+    std::vector<BodyExtent> extents;  // bodies in the order of their places
     std::vector<FetchedUnit> requests;
-    std::vector<Index> stale;  // places
+    std::vector<Index> stale;  // places of bodies whose copies are outdated
     bool keeps_owners = false;
 };
 
@@ -83,7 +85,7 @@ std::vector<std::uint8_t> owned_bodies(const WorldState& world) {
     return owned;
 }
 
-/// Sorts the rows by unit and rank. Of rows with the same unit and rank, keeps the one for the most searches.
+/// Sorts the rows by unit and rank. Among rows with the same unit and rank, keeps only the one with the most searches.
 void keep_longest(std::vector<FetchedUnit>& fetched) {
     std::ranges::sort(fetched, {}, [](const FetchedUnit& of) { return std::tuple(of.unit, of.rank, -of.searches); });
     const auto is_same = [](const FetchedUnit& a, const FetchedUnit& b) {
@@ -254,7 +256,7 @@ void move_bodies(WorldState& world, const RankSearch& found, const HolderChange&
 /// Motion of bodies since their holders were found, by row of BodyTable.
 struct GhostMotion {
     std::span<const Real> margin, moved;  // RankState [m]
-    std::span<const Real> max_speed;      // in this attempt [m/s]
+    std::span<const Real> max_speed;      // greatest speed in this attempt [m/s]
 
     static GhostMotion bind(const Binder& binder, const RankState& ranks, const BodyTable& bodies) {
         return {.margin = binder.read(ranks.margin),

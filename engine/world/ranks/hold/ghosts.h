@@ -1,4 +1,4 @@
-// Which bodies the ranks of a divided world own and hold, and the moves of bodies between them.
+// Owners and holders of the bodies of a divided world, and the transfer of bodies between ranks.
 #pragma once
 
 #include <span>
@@ -27,7 +27,7 @@ void list_ghost_paths(WorldState& world, TaskGraph& graph);
 /// requests, and moves bodies to them. If the costs of the ranks differ too much, bodies get new owners. Changes no
 /// state of any body.
 void update_ghosts(WorldState& world);
-/// Does the same as update_ghosts, with given owners. `owner`: by place.
+/// Like update_ghosts, but with given owners. `owner`: by place.
 void move_to_owners(WorldState& world, const Column<std::int32_t>& owner);
 
 }  // namespace skerry

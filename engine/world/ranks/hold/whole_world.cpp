@@ -50,7 +50,7 @@ WholeWorld whole_world_of(Model& model) {
     Column<std::uint32_t> own = bodies.slot;
     for (std::size_t b = 0; b < own.size(); ++b) {
         const bool moves = bodies.kind[b] == BodyKind::deformable;
-        if (!moves) own[b] = no_slot;  // a kinematic body has the slot of its collider
+        if (!moves) own[b] = no_slot;  // a kinematic body has no handle slot of its own, but that of its collider
         whole.owner.push_back(moves ? 0 : WholeWorld::everywhere);
     }
     whole.place_of_slot = rows_by_slot(own);

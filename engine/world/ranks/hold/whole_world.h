@@ -26,13 +26,14 @@ struct WholeWorld {
     // The next columns have one row per place.
     Column<std::int32_t> owner;  // rank
     Column<std::uint32_t> slot;  // BodyTable::slot
-    // First place of the unit of the body. A *unit* is a set of bodies that rows other than contacts join. All bodies
-    // of a unit have the same owner and the same holders.
+    // First place of the unit of the body. A *unit* is a set of bodies that joints, ties, cables, springs and other
+    // rows connect. All bodies of a unit have the same owner and the same holders.
     Column<Index> unit;
-    std::vector<BodyRecord> records;   // of bodies that this rank does not hold: complete on rank 0, else names
+    // records of bodies that this rank does not hold: complete on rank 0, else only names
+    std::vector<BodyRecord> records;
     std::vector<Index> place_of_slot;  // by handle slot: place of the body, or no_index
-    // Row in the undivided world of each row that joins bodies: by table of Model::for_each_joining and handle slot.
-    // The last list is that of the attachments.
+    // Row in the undivided world of each row that connects bodies. Index: table, in the order of
+    // Model::for_each_joining, then handle slot of the row. The last list is for attachments.
     std::vector<std::vector<Index>> joining_place;
     // Ranks that hold the body at each place, ascending.
     std::vector<std::vector<int>> holders;

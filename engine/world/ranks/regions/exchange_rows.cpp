@@ -57,8 +57,8 @@ private:
         return false;
     }
 
-    /// Sends the units of this rank whose rows another rank solves. Units of other ranks are solved elsewhere, unless
-    /// their owners say otherwise.
+    /// Sends the units of this rank whose rows another rank solves. Units of other ranks count as solved elsewhere
+    /// until a message of their owner assigns them to this rank.
     void send_units() {
         regions_.elsewhere.assign(regions_.unit.size(), 1);
         regions_.unit_count.assign(bodies_.peers.size(), 0);

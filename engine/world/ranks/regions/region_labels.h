@@ -1,4 +1,4 @@
-// Labels of regions, which ranks that hold the same bodies make equal (docs/methods/ranks.md 3).
+// Labels of regions. Ranks that hold common bodies exchange the labels until they agree (docs/methods/ranks.md 3).
 #pragma once
 
 #include <array>

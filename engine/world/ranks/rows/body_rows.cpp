@@ -81,8 +81,8 @@ void move_tables(Model& from, Model& to) {
     to.watch.first_piece.clear();
 }
 
-/// Completes the new numbers of bodies whose rows are replaced by rows that were added, so that data which refer to the
-/// bodies can be kept. Returns marks of these bodies, by new row.
+/// Finds bodies whose old rows are replaced by added rows, and maps their old rows to the new ones. Data that refer to
+/// these bodies then remain valid. Returns marks of these bodies, by new row.
 std::vector<std::uint8_t> find_exchanged(const Model& before, std::span<const Index> place_before, const Model& now,
                                          std::span<const Index> place_now, RowMoves& moves) {
     constexpr auto range_of = OfBodyTables<Range>::members();
@@ -186,7 +186,7 @@ public:
         const std::size_t count = model_.bodies.slot.size();
         Column<Real> valid_until;
         // The lowest finite number makes the next step search all pairs. Unlike SearchState::forgotten, it keeps the
-        // known ones.
+        // candidates that are known.
         valid_until.resize(count, std::numeric_limits<Real>::lowest());
         Column<Vec3> origin;
         if (!world_.cache.pairs.self.origin.empty()) origin.resize(model_.nodes.position.size(), Vec3::Zero());

@@ -18,7 +18,7 @@ struct WatchProgress {
 
 /// Entry of WorldReport::self_crossings, without the name.
 struct FoundSelfCrossing {
-    std::uint32_t slot = no_slot;  // of the handle of the body
+    std::uint32_t slot = no_slot;  // slot of the handle of the body
     bool self_contact = false;
     Real first_time = 0, last_time = 0;  // [s]
     Index last_places = 0, most_places = 0;

@@ -29,7 +29,7 @@ void append_rows(AnyColumn from, Range rows, AnyColumn to) {
     if (!added.empty()) std::memcpy(to.write() + first * bytes, added.data(), added.size());
 }
 
-/// Appends a row with its lists of entries (lists_of).
+/// Appends a row of a table, and the lists of entries that belong to it (lists_of).
 template <class Table>
 void append_row_with_lists(Table& from, std::size_t row, Table& to) {
     append_row(from, row, to);
@@ -144,7 +144,7 @@ private:
             total += parts.back().size();
         }
         const AnyColumn to = columns_[table][c];
-        to.resize(total / to.type().bytes);  // at once, so that the column does not grow in steps
+        to.resize(total / to.type().bytes);  // resized at once, so that the column does not grow in steps
         std::byte* end = to.write();
         for (const std::span<const std::byte> part : parts) {
             if (!part.empty()) std::memcpy(end, part.data(), part.size());
@@ -279,7 +279,8 @@ private:
         return *found;
     }
 
-    /// Rows that join a body that the source gives. The world itself also gives the rows that join no body.
+    /// Rows to copy from a source: those that connect a body that is copied from this source. The world itself also
+    /// provides the rows that connect no body.
     template <class Table>
     static std::vector<std::size_t> rows_given(Table& table, const RowSource& source) {
         std::vector<std::uint8_t> gives(table.slot.size(), source.gives_common ? 1 : 0);

@@ -24,7 +24,7 @@ void list_cavity_forces(WorldState& w, TaskGraph& g) {
 }
 
 /// Bounds of the squared frequencies of the nodes of a body by the pressure of one cavity. `p`: pressure [Pa].
-/// `stiffness`: of the filling [Pa/m^3].
+/// `stiffness`: stiffness of the filling [Pa/m^3].
 Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Real p, Real stiffness,
                    bool is_implicit) {
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(cavities.body[c])];

@@ -1,5 +1,5 @@
 // Constraint law of ties: nodes of deformable bodies that are fixed to other objects (docs/methods/ties.md). The rows
-// of ties stand behind the contacts in the contact table while regions are solved.
+// of ties follow the contacts in the contact table while regions are solved.
 #include "engine/world/step/seams.h"
 
 namespace skerry {
