@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -58,7 +59,7 @@ public:
         MPI_Op_create(combine_records, 1, &combine_);
     }
     ~MpiRanks() override {
-        if (record_ != MPI_DATATYPE_NULL) MPI_Type_free(&record_);
+        for (auto& [bytes, type] : record_types_) MPI_Type_free(&type);
         MPI_Op_free(&combine_);
         MPI_Comm_free(&world_);
         if (ends_mpi_) MPI_Finalize();
@@ -83,14 +84,13 @@ public:
     void reduce(std::span<std::byte> record, void (*combine)(std::byte*, const std::byte*)) override {
         const Stopclock clock(traffic_.seconds);
         ++traffic_.reductions;
-        if (record.size() != record_bytes_) {
-            if (record_ != MPI_DATATYPE_NULL) MPI_Type_free(&record_);
-            record_bytes_ = record.size();
-            MPI_Type_contiguous(length_of(record_bytes_, "a record"), MPI_BYTE, &record_);
-            MPI_Type_commit(&record_);
+        const auto [type, is_new] = record_types_.try_emplace(record.size(), MPI_DATATYPE_NULL);
+        if (is_new) {
+            MPI_Type_contiguous(length_of(record.size(), "a record"), MPI_BYTE, &type->second);
+            MPI_Type_commit(&type->second);
         }
         combine_in_use = combine;
-        MPI_Allreduce(MPI_IN_PLACE, record.data(), 1, record_, combine_, world_);
+        MPI_Allreduce(MPI_IN_PLACE, record.data(), 1, type->second, combine_, world_);
     }
     std::vector<RankMessage> gather_everywhere(std::span<const std::byte> mine) override {
         const Stopclock clock(traffic_.seconds);
@@ -186,8 +186,7 @@ private:
     MPI_Comm world_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
     MPI_Op combine_ = MPI_OP_NULL;
-    MPI_Datatype record_ = MPI_DATATYPE_NULL;  // type of the records of the last reduction
-    std::size_t record_bytes_ = 0;
+    std::map<std::size_t, MPI_Datatype> record_types_;  // types of the records of reductions, by their size [bytes]
     std::vector<MPI_Request> sends_;
 };
 

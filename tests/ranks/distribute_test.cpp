@@ -162,13 +162,15 @@ TEST_CASE("only rank 0 needs to build the world", "[ranks]") {
         const RankScene scene = own_scene(name);
         World whole = scene.make(1);
         whole.advance(scene.seconds / 4);
+        std::uint64_t hash = 0;
         run_on_ranks(3, [&](Ranks& ranks) {
             World world = ranks.rank() == 0 ? scene.make(1) : World({.threads = 1});
             distribute(world, ranks);
             world.advance(scene.seconds / 4);
-            INFO(name);
-            if (std::optional<World> all = gathered(world)) CHECK(all->state_hash() == whole.state_hash());
+            if (const std::optional<World> all = gathered(world)) hash = all->state_hash();
         });
+        INFO(name);
+        CHECK(hash == whole.state_hash());
     }
 }
 

@@ -1,8 +1,9 @@
 // Worlds that several ranks simulate have the bits of the run without ranks.
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -149,40 +150,94 @@ double modelled_bytes(const WorldState& state) {
     return bytes;
 }
 
+/// Messages of a rank in a number of steps: modelled, and counted.
+struct CountedMessages {
+    double bytes = 0, exchanges = 0, messages = 0;  // by the model
+    double steps = 0;
+    RankTraffic before, after;
+};
+
 TEST_CASE("messages, bytes and round trips of a step follow the model", "[ranks]") {
     const RankScene scene = own_scene("pile");
-    std::mutex mutex;
     double modelled = 0, sent = 0;
-    for (const OwnerMap map : {OwnerMap::curve, OwnerMap::round_robin})
+    for (const OwnerMap map : {OwnerMap::curve, OwnerMap::round_robin}) {
+        std::vector<CountedMessages> all(3);
         run_on_ranks(3, [&](Ranks& ranks) {
             World world = scene.make(1);
             distribute(world, ranks, {.map = map});
             world.advance(scene.seconds / 2);
-            const RankTraffic before = ranks.traffic();
-            double bytes = 0, exchanges = 0, messages = 0;
+            CountedMessages& counted = all[static_cast<std::size_t>(ranks.rank())];
+            counted.before = ranks.traffic();
             world.watch_steps([&](const StepReport&) {
                 const WorldState& state = WorldAccess::state_of(std::as_const(world));
-                bytes += modelled_bytes(state);
+                counted.bytes += modelled_bytes(state);
                 const double of_step = 3 + state.ranks.label_rounds.count;  // predictions, contacts and results
-                exchanges += of_step;
-                messages += of_step * static_cast<double>(state.ranks.peers.size());
+                counted.exchanges += of_step;
+                counted.messages += of_step * static_cast<double>(state.ranks.peers.size());
             });
-            const StepReport report = world.advance(scene.seconds / 2);
-            const RankTraffic after = ranks.traffic();
-            const std::scoped_lock lock(mutex);
-            modelled += bytes;
-            sent += static_cast<double>(after.bytes - before.bytes);
-            constexpr double round_trips = 6;  // greatest number in a step
-            CHECK(exchanges <= round_trips * report.steps);
-            constexpr double rare = 1.2;  // for repeated attempts, moved copies and the ends of calls
-            CHECK(static_cast<double>(after.exchanges - before.exchanges) < rare * exchanges);
-            CHECK(static_cast<double>(after.messages - before.messages) < rare * messages);
-            CHECK(static_cast<double>(after.reductions - before.reductions + after.collectives - before.collectives) <
-                  rare * report.steps);
+            counted.steps = world.advance(scene.seconds / 2).steps;
+            counted.after = ranks.traffic();
         });
+        for (const CountedMessages& of : all) {
+            const auto between = [&](std::uint64_t RankTraffic::*count) {
+                return static_cast<double>(of.after.*count - of.before.*count);
+            };
+            modelled += of.bytes;
+            sent += between(&RankTraffic::bytes);
+            constexpr double round_trips = 6;  // greatest number in a step
+            CHECK(of.exchanges <= round_trips * of.steps);
+            constexpr double rare = 1.2;  // for repeated attempts, moved copies and the ends of calls
+            CHECK(between(&RankTraffic::exchanges) < rare * of.exchanges);
+            CHECK(between(&RankTraffic::messages) < rare * of.messages);
+            CHECK(between(&RankTraffic::reductions) + between(&RankTraffic::collectives) < rare * of.steps);
+        }
+    }
     CAPTURE(modelled, sent);
     CHECK(sent < 1.5 * modelled);
     CHECK(sent > modelled / 1.5);
+}
+
+/// Wall time of a step on two ranks [s], and the number of calls in it that wait for other ranks.
+struct TimedStep {
+    double seconds = 0, calls = 0;
+};
+
+TimedStep time_step(const RankScene& scene, std::chrono::microseconds delay) {
+    TimedStep timed;
+    const auto run = [&](Ranks& ranks) {
+        World world = scene.make(1);
+        distribute(world, ranks);
+        world.advance(scene.seconds / 2);
+        const RankTraffic before = ranks.traffic();
+        const auto start = std::chrono::steady_clock::now();
+        const double steps = world.advance(scene.seconds / 2).steps;
+        const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+        const RankTraffic after = ranks.traffic();
+        const std::uint64_t calls = after.exchanges - before.exchanges + after.reductions - before.reductions +
+                                    after.collectives - before.collectives;
+        if (ranks.rank() == 0) timed = {wall.count() / steps, static_cast<double>(calls) / steps};
+    };
+    run_on_ranks(2, run, delay);
+    return timed;
+}
+
+// Needs two idle cores. docs/scaling.md has the result.
+TEST_CASE("a delay of messages adds one delay to a step for each call that waits", "[.delay]") {
+    const RankScene scene = own_scene("pile");
+    const auto fastest = [&](std::chrono::microseconds delay) {
+        TimedStep best = time_step(scene, delay);
+        for (int i = 0; i < 4; ++i)
+            if (const TimedStep next = time_step(scene, delay); next.seconds < best.seconds) best = next;
+        return best;
+    };
+    const TimedStep without = fastest({});
+    for (const std::chrono::microseconds delay : {std::chrono::microseconds(100), std::chrono::microseconds(1000)}) {
+        const TimedStep with = fastest(delay);
+        const std::chrono::duration<double> each = delay;
+        WARN("delay " << 1e6 * each.count() << " us: " << 1e6 * without.seconds << " us a step become "
+                      << 1e6 * with.seconds << " us, " << with.calls << " calls");
+        CHECK(with.seconds - without.seconds < 1.2 * with.calls * each.count());
+    }
 }
 
 }  // namespace rank_scenes_test

@@ -152,6 +152,37 @@ void note_committed_step(WorldState& world, StepReport& report) {
     note_limit(world, report);
 }
 
+/// Completes a committed step. `let_through`: number of crossings that were accepted before the step.
+void complete_step(WorldState& world, std::uint64_t let_through, StepReport& report) {
+    world.drawn_behind = world.scratch.parameters.draws_late;
+    if (world.scratch.findings.rest.bodies > 0) world.draw(true);
+    if (world.scratch.findings.released_ties > 0) release_ties(world);
+    report.crossed += static_cast<Index>(world.cache.crossings.let_through - let_through);
+    note_committed_step(world, report);
+}
+
+/// Checks the world after a second round of steps. Returns false if the balance of energy has to wait for the end of
+/// the call.
+bool check_after_rounds(WorldState& world) {
+    world.draw();
+    if (!world.scratch.left_out)
+        find_self_crossings(*world.executor, world.model, world.clock.time, world.scratch.self_crossing_places,
+                            world.record.self_crossings);
+    if (world.clock.offset != 0) return false;
+    check_balance_after_motion(world);
+    return true;
+}
+
+/// Returns true, and sets the verdict, if the next step would be too short to advance the time. `end`: time at the end
+/// of the call [s].
+bool is_too_stiff(WorldState& world, const AttemptLimits& attempt, Real end) {
+    Index stiffest = no_index;
+    const Real trusted = trusted_step(world.model, &stiffest);
+    if (std::min(trusted, attempt.at_most()) > std::numeric_limits<Real>::epsilon() * end) return false;
+    world.scratch.findings.verdict = {StepFault::too_stiff, place_of_stiffest(world, stiffest), no_index, trusted};
+    return true;
+}
+
 /// Limits the next attempt so that no body with a joint or tie rotates too far.
 void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     Index row = no_index;
@@ -189,6 +220,26 @@ void require_countable(const WorldState& world, Real dt) {
            "at most 2147483647 steps",
            of_body ? "check the size and material of this body" : "use a shorter dt or a larger step_size");
 }
+
+/// Callbacks of the caller. The exception of a callback is kept until the end of the call.
+class Callbacks {
+public:
+    /// Returns the result of the call; false if it throws.
+    bool run(auto&& call) {
+        try {
+            return call();
+        } catch (...) {
+            thrown_ = std::current_exception();
+            return false;
+        }
+    }
+    void rethrow() const {
+        if (thrown_) std::rethrow_exception(thrown_);
+    }
+
+private:
+    std::exception_ptr thrown_;
+};
 
 /// Marks the world as advancing during the lifetime of this object, also when an exception is thrown.
 class AdvanceScope {
@@ -251,16 +302,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     // With leapfrog, the balance is checked only at the end of the call, when positions and velocities belong to one
     // time.
     bool check_at_end = false;
-    // Exception thrown by a callback. It is rethrown at the end of the call.
-    std::exception_ptr thrown;
-    const auto call_back = [&thrown](auto&& call) {
-        try {
-            return call();
-        } catch (...) {
-            thrown = std::current_exception();
-            return false;
-        }
-    };
+    Callbacks callbacks;
     // With ranks, the sums of this rank are added to those of all ranks by join_records.
     Balance& balance = world.ranks.on() ? world.ranks.share.balance : world.record.balance;
     bool& stops = world.ranks.stops;  // true if a callback has asked to end the call
@@ -275,7 +317,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         if (forces.on() && seconds != 0) forces.add_drift(model, seconds, world.scratch);
     };
     while (left > 0) {
-        if (go_on && !stops && !call_back([&] { return go_on(std::as_const(report)); })) stops = true;
+        if (go_on && !stops && !callbacks.run([&] { return go_on(std::as_const(report)); })) stops = true;
         // Every step informs all ranks if one of them stops, and all end the call after this step.
         if (world.ranks.on() ? world.ranks.all.stop : stops) {
             report.status = StepStatus::stopped;
@@ -283,11 +325,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         }
         if (model.force_rate_moves) note_force_rates(model);
         if (model.of_ranks.moves) reduce_limits(world);
-        Index stiffest = no_index;
-        const Real trusted = trusted_step(model, &stiffest);
-        if (!(std::min(trusted, attempt.at_most()) > std::numeric_limits<Real>::epsilon() * end)) {
-            world.scratch.findings.verdict = {StepFault::too_stiff, place_of_stiffest(world, stiffest), no_index,
-                                              trusted};
+        if (is_too_stiff(world, attempt, end)) {
             blame(world, report);
             break;
         }
@@ -311,25 +349,12 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             break;
         }
         if (outcome != StepOutcome::committed) continue;
-        world.drawn_behind = world.scratch.parameters.draws_late;
-        if (world.scratch.findings.rest.bodies > 0) world.draw(true);
-        if (world.scratch.findings.released_ties > 0) release_ties(world);
-        report.crossed += static_cast<Index>(world.cache.crossings.let_through - let_through);
-        note_committed_step(world, report);
+        complete_step(world, let_through, report);
         left = plan.steps > 1 || within < left ? left - plan.h : 0;
         move_on_in_long_step(plan, clock.long_step);
         balance.work += std::exchange(stiffened, Real(0));
-        if (keep_watch(world)) {
-            world.draw();
-            if (!world.scratch.left_out)
-                find_self_crossings(*world.executor, model, clock.time, world.scratch.self_crossing_places,
-                                    world.record.self_crossings);
-            if (clock.offset == 0)
-                check_balance_after_motion(world);
-            else
-                check_at_end = true;
-        }
-        const bool heard = call_back([&] {
+        if (keep_watch(world) && !check_after_rounds(world)) check_at_end = true;
+        const bool heard = callbacks.run([&] {
             show_contact_problem(world, start);
             if (world.record.step_watch) world.record.step_watch(std::as_const(report));
             return true;
@@ -356,7 +381,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     world.query_trees.forget();
     if (left == 0) clock.time = end;
     if (check_at_end) check_balance_after_motion(world);
-    if (thrown) std::rethrow_exception(thrown);
+    callbacks.rethrow();
     return report;
 }
 

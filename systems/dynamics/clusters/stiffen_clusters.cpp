@@ -151,7 +151,7 @@ Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, R
 }
 
 /// Calls stiffen_block() for the blocks of awake bodies with clusters for which is_due(block) is true. Returns the
-/// added kinetic energy [J].
+/// added kinetic energy without that of ghosts [J].
 template <class IsDue>
 Real stiffen(const ElementInputs& elements, const StiffenInputs& bodies, const StepForces* forces,
              const StiffenOutputs& out, IsDue&& is_due) {
@@ -160,8 +160,12 @@ Real stiffen(const ElementInputs& elements, const StiffenInputs& bodies, const S
         if (!(bodies.body_cluster_step[body] > 0) || bodies.body_asleep[body]) continue;
         const Real beta = inertia_of_stiffness(bodies.body_cluster_step[body]);
         const Range blocks = bodies.body_blocks[body];
-        for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
-            if (is_due(b)) energy += stiffen_block(elements, bodies, beta, b, forces, out);
+        const bool counts = !bodies.ghosts.contain(static_cast<Index>(body));
+        for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+            if (!is_due(b)) continue;
+            const Real added = stiffen_block(elements, bodies, beta, b, forces, out);
+            if (counts) energy += added;
+        }
     }
     return energy;
 }

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "components/body_table.h"
+#include "components/ghost_marks.h"
 #include "components/node_clusters.h"
 #include "components/node_table.h"
 #include "jobs/access.h"
@@ -18,6 +19,7 @@ struct StiffenInputs {
     std::span<const std::uint8_t> body_asleep;
     std::span<const Vec3> position, velocity;
     std::span<const Real> inverse_mass;
+    GhostMarks ghosts = {};  // their elements are stiffened, but the energy leaves them out
 
     static StiffenInputs bind(const Binder& binder, const BodyTable& body, const NodeTable& node) {
         return {.body_blocks = binder.read(body.blocks),
@@ -25,7 +27,8 @@ struct StiffenInputs {
                 .body_asleep = binder.read(body.asleep),
                 .position = binder.read(node.position),
                 .velocity = binder.read(node.velocity),
-                .inverse_mass = binder.read(node.inverse_mass)};
+                .inverse_mass = binder.read(node.inverse_mass),
+                .ghosts = {binder.read(body.ghost)}};
     }
 };
 
@@ -47,7 +50,7 @@ struct StiffenOutputs {
 
 /// Raises the assumed stiffness of implicit elements whose present stiffness has come close to it: to twice the present
 /// stiffness. Updates the inertia matrices of the clusters concerned. Returns the kinetic energy that the larger
-/// inertia adds at unchanged velocities [J]. Sequential, in element order.
+/// inertia adds at unchanged velocities, without that of ghosts [J]. Sequential, in element order.
 ///
 /// A stiffened element retains the momentum of its deformation, not the velocity. The difference is an impulse of the
 /// step (docs/methods/clusters.md 6). It is added to the element forces, which act for the time `kick` [s], and to the
@@ -57,7 +60,7 @@ Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies
                       const StiffenOutputs& out);
 
 /// Raises the assumed stiffness of implicit elements between two steps. Tests every implicit element and leaves
-/// velocities unchanged. Returns the kinetic energy that the larger inertia adds [J].
+/// velocities unchanged. Returns the kinetic energy that the larger inertia adds, without that of ghosts [J].
 Real stiffen_all_clusters(const ElementInputs& elements, const StiffenInputs& bodies, const StiffenOutputs& out);
 
 }  // namespace skerry

@@ -83,7 +83,8 @@ void move_tables(Model& from, Model& to) {
 
 /// Finds bodies whose old rows are replaced by added rows, and maps their old rows to the new ones. Data that refer to
 /// these bodies then remain valid. Returns marks of these bodies, by new row.
-std::vector<std::uint8_t> find_exchanged(const Model& before, std::span<const Index> place_before, const Model& now,
+std::vector<std::uint8_t> find_exchanged(std::span<const OfBodyTables<Range>> rows_before,
+                                         std::span<const Index> place_before, const Model& now,
                                          std::span<const Index> place_now, RowMoves& moves) {
     constexpr auto range_of = OfBodyTables<Range>::members();
     constexpr auto index_of = OfBodyTables<Index>::members();
@@ -94,7 +95,7 @@ std::vector<std::uint8_t> find_exchanged(const Model& before, std::span<const In
         if (moves.body_now[b] == no_index) continue;
         const auto row = static_cast<std::size_t>(moves.body_now[b]);
         exchanged[row] = 1;
-        const OfBodyTables<Range> old = rows_of_body(before, b), fresh = rows_of_body(now, row);
+        const OfBodyTables<Range> old = rows_before[b], fresh = rows_of_body(now, row);
         for (std::size_t table = 0; table < range_of.size(); ++table)
             moves.down[b].*index_of[table] = (old.*range_of[table]).begin - (fresh.*range_of[table]).begin;
     }
@@ -250,14 +251,18 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                   const WantsPair& keeps_pair) {
     Model& model = world.model;
     RankState& ranks = world.ranks;
-    const Column<Index> place_before = ranks.place;
+    // The composition frees the tables of the world, except BodyTable.
+    const Column<Index> place_before = ranks.place, body_of_node = model.nodes.body;
+    std::vector<OfBodyTables<Range>> rows_before;
+    for (std::size_t b = 0; b < place_before.size(); ++b) rows_before.push_back(rows_of_body(model, b));
     std::vector<RowSource> sources{{.model = &model,
                                     .place = place_before,
                                     .marked = kept,
                                     .watched = model.watch.body,
                                     .kept = model.watch.kept,
                                     .look = model.watch.look,
-                                    .gives_common = true}};
+                                    .gives_common = true,
+                                    .is_used_up = true}};
     for (BodyRows& rows : added)
         sources.push_back({.model = &rows.model,
                            .place = rows.place,
@@ -270,10 +275,10 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
     Model fresh;
     ranks.place = compose_rows(sources, ranks.whole, fresh);
     RowMoves& moves = sources[0].moves;
-    const std::vector<std::uint8_t> exchanged = find_exchanged(model, place_before, fresh, ranks.place, moves);
+    const std::vector<std::uint8_t> exchanged = find_exchanged(rows_before, place_before, fresh, ranks.place, moves);
     moves.collider_now.resize(model.colliders.slot.size());
     std::iota(moves.collider_now.begin(), moves.collider_now.end(), Index{0});
-    keep_contacts(moves, model.nodes.body, keeps_pair, world);
+    keep_contacts(moves, body_of_node, keeps_pair, world);
     forget_candidates(exchanged, world.cache.pairs);
     Model before;
     move_tables(model, before);
