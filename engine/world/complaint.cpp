@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -52,8 +53,10 @@ SceneError error_at(const Complaint& place, const SceneError& inner) {
 }
 
 std::string short_text(Real value, int digits) {
+    constexpr int written_out = 6;  // numbers of up to this many digits have no exponent
     char text[32];
     std::snprintf(text, sizeof text, "%.*g", digits, value);
+    std::snprintf(text, sizeof text, "%.*g", std::max(digits, written_out), std::strtod(text, nullptr));
     return text;
 }
 
