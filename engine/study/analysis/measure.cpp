@@ -165,6 +165,13 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
         r.sentence = sentence;
     };
     const StudyColumn& scene = family.scene->columns[column];
+    if (const Real within = family.zero_within[column]; within > 0) {
+        r.error = within;
+        r.mesh = r.step = r.contact = r.noise = r.best = r.best_error = no_value;
+        return decide(StudyVerdict::zero,
+                      "a run with a lower tolerance or shorter steps has less than a tenth of this, so the value is an "
+                      "error of the contact solver or of the steps");
+    }
     if (figure != StudyFigure::agreed && !scene.is_statistic && quantity.noise > agreement_share * r.scale) {
         r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
         return decide(StudyVerdict::chaotic,
@@ -271,6 +278,23 @@ StudyFamily::StudyFamily(const std::vector<StudyRun>& runs)
         if (run.status == StudyRunStatus::ok && run.time.size() == scene->time.size() &&
             std::ranges::equal(run.columns, scene->columns, same_column))
             comparable.push_back(&run);
+    find_zeros();
+}
+
+void StudyFamily::find_zeros() {
+    constexpr Real vanishing = 0.1;  // share of the size that is left of an error; a value changes little
+    std::vector<Real> largest = sizes, least = sizes;
+    for (const StudyRun* run : comparable) {
+        const std::vector<Real> of_run = column_sizes(*run);
+        const StudyVariant& v = run->variant;
+        const bool is_finer = (is_step(v) && v.step < 1) || (is_contact(v) && v.tolerance < 1);
+        for (std::size_t c = 0; c < sizes.size(); ++c) {
+            largest[c] = std::max(largest[c], of_run[c]);
+            if (is_finer) least[c] = std::min(least[c], of_run[c]);
+        }
+    }
+    for (std::size_t c = 0; c < sizes.size(); ++c)
+        zero_within.push_back(least[c] < vanishing * sizes[c] ? largest[c] : 0);
 }
 
 PerturbedRuns StudyFamily::perturbed() const {
@@ -362,7 +386,8 @@ MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFig
 
 Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant) {
     const StudyQuantity& r = quantity.result;
-    if (std::isnan(r.error) || r.verdict == StudyVerdict::singular) return r.error;
+    if (std::isnan(r.error) || r.verdict == StudyVerdict::singular || r.verdict == StudyVerdict::zero)
+        return r.error;
     const auto at = [](const Convergence& convergence, Real h, Real otherwise) {
         return convergence.shape() == ConvergenceShape::unmeasured ? otherwise : convergence.error_at(h);
     };

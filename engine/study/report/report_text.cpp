@@ -19,6 +19,7 @@ std::string quantity_line(const StudyQuantity& q, std::size_t width) {
     const auto with_space = [](const std::string& unit) { return unit.empty() ? unit : " " + unit; };
     std::string line =
         "  " + q.name + std::string(width - q.name.size(), ' ') + " = " + text.value + with_space(text.unit);
+    if (q.verdict == StudyVerdict::zero) return line + "\n";
     if (text.error.empty()) return line + ", " + std::string(name_of(q.verdict)) + "\n";
     line += " +- " + text.error;
     if (!text.parts.empty()) line += " (" + (text.share.empty() ? "" : text.share + ": ") + text.parts + ")";
@@ -35,10 +36,10 @@ bool is_negligible(const StudyQuantity& q, double wanted) {
     return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error <= wanted * q.scale;
 }
 
-/// True for a quantity that mostly repeats another one: means over time, velocities, and sizes of forces.
+/// True for a quantity that is zero or mostly repeats another one: means over time, velocities, and sizes of forces.
 bool is_minor(const StudyQuantity& q) {
     static constexpr std::array<std::string_view, 3> minor{".velocity_", ".largest_force_", ".pressing_force_"};
-    return q.name.ends_with("_mean") || std::ranges::any_of(minor, [&](std::string_view part) {
+    return q.verdict == StudyVerdict::zero || q.name.ends_with("_mean") || std::ranges::any_of(minor, [&](std::string_view part) {
                return q.name.find(part) != std::string::npos;
            });
 }

@@ -71,6 +71,10 @@ QuantityText quantity_text(const StudyQuantity& q) {
     };
     QuantityText text;
     text.unit = q.unit == "1" ? "" : prefix + q.unit;
+    if (q.verdict == StudyVerdict::zero) {
+        text.value = "zero within " + part(q.error);
+        return text;
+    }
     text.value = std::isfinite(q.value) ? to_digit_of(in_unit(q.value), in_unit(q.error)) : "unknown";
     if (has_error) text.error = in_unit(q.error) > 0 ? part(q.error) : "0";
     constexpr Real shown_share = 0.01;  // smaller parts of an error bar are not shown

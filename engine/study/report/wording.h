@@ -13,7 +13,7 @@ std::string variant_text(const StudyVariant& variant);
 
 /// Numbers of a quantity as text. All have the same SI prefix, so that they can be compared.
 struct QuantityText {
-    std::string value, error, unit;  // error: empty if unknown
+    std::string value, error, unit;  // error: empty if unknown, or if the value is "zero within" a number
     std::string parts;               // parts of the error, for example "mesh 2.6, step 0.1"; empty if zero or unknown
     std::string best, best_error;    // empty if unknown
     std::string share;               // error relative to the scale [%], with the scale if it is not the value
