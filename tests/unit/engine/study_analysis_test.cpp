@@ -138,6 +138,17 @@ TEST_CASE("differences that do not fall as the theory says give a long bar and n
     CHECK(std::isnan(q.best));
 }
 
+TEST_CASE("the bars of meshes that lock hold the error while differences grow", "[unit][study]") {
+    for (const Real stiffening : {5, 12, 30, 60}) {  // excess of stiffness on the mesh of the scene
+        const auto value = [stiffening](Real h) { return 1 / (1 + stiffening * h * h); };
+        const Convergence convergence({{1, value(1)}, {0.5, value(0.5)}, {0.25, value(0.25)}}, {2, 2}, 0, value(1));
+        CAPTURE(stiffening);
+        CHECK(convergence.shape() == ConvergenceShape::coarse);
+        CHECK(convergence.error() > 1 - value(1));
+        CHECK(convergence.error() < 3 * (1 - value(1)));
+    }
+}
+
 TEST_CASE("a change of the sign by a second term of the error leaves a bar that is not much longer", "[unit][study]") {
     // The difference of the coarser two levels has another sign than that of the finer two.
     const auto value = [](Real h) { return h * h - 0.6 * h * h * h; };
