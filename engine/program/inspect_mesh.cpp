@@ -235,7 +235,8 @@ int report_surface(const InspectOptions& options, const SurfaceMesh& surface) {
     std::cout << options.file.string() << ": a surface of " << grouped(report.triangles) << " triangles, "
               << grouped(report.nodes) << " nodes\n"
               << "  size          " << short_text(size.x()) << " x " << short_text(size.y()) << " x "
-              << short_text(size.z()) << " m from " << short_text(report.lower) << " m, area " << short_text(report.area) << " m^2"
+              << short_text(size.z()) << " m from " << short_text(report.lower) << " m, area "
+              << short_text(report.area) << " m^2"
               << (report.volume > 0 ? ", volume " + short_text(report.volume) + " m^3" : "") << "\n"
               << "  edges         mean " << with_unit(report.mean_edge, "m") << ", " << with_unit(report.min_edge, "m")
               << " to " << with_unit(report.max_edge, "m") << "\n"

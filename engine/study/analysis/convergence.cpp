@@ -43,8 +43,7 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         shape_ = ConvergenceShape::coarse;
         used_order_ = 0;
         // The larger of both values, at most `size` plus the difference: a position may have a large offset.
-        least_error_ =
-            std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
+        least_error_ = std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
     };
     const bool differs_much = std::abs(difference) > coarse_share * size;
     constexpr Real same_ratio = 1e-6;

@@ -62,16 +62,6 @@ TheoryOrder step_theory(const StudyRun& scene) {
     return scene.integrator == Integrator::leapfrog && scene.max_contacts == 0 ? TheoryOrder{2, 2} : TheoryOrder{1, 2};
 }
 
-/// The reasons why the runs that `belongs` selects are missing, each once.
-template <class Belongs>
-std::string reasons_of(const StudyFamily& family, const Belongs& belongs) {
-    std::string text;
-    for (const StudyRun& run : *family.all)
-        if (belongs(run.variant) && !run.message.empty() && text.find(run.message) == std::string::npos)
-            text += (text.empty() ? "" : "; ") + run.message;
-    return text.empty() ? "the runs for it are missing" : text;
-}
-
 bool is_mesh(const StudyVariant& v) {
     return v.step == 1 && v.tolerance == 1 && !v.element && v.draw == 0;
 }
@@ -184,21 +174,23 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
     }
     if (!std::isfinite(r.value)) return decide(StudyVerdict::not_measured, "the run has no value");
     if (std::isnan(r.mesh)) {
-        const std::string reason =
-            reasons_of(family, [](const StudyVariant& v) { return is_mesh(v) && v.refine != 0; });
         if (quantity.elements.empty())
-            return decide(StudyVerdict::not_measured, "the mesh error is unknown: " + reason);
+            return decide(StudyVerdict::not_measured,
+                          "the mesh error is unknown, because no run with another mesh has a result");
         r.mesh = 0;
         for (const auto& [variant, value] : quantity.elements) r.mesh = std::max(r.mesh, std::abs(value - r.value));
         r.mesh += quantity.shape;
         r.error = r.mesh + r.step + r.contact + r.noise;
-        return decide(StudyVerdict::not_measured,
-                      "the mesh error is only guessed from other elements on the same mesh: " + reason);
+        return decide(
+            StudyVerdict::not_measured,
+            "the mesh error is only guessed from other elements, because no run with another mesh has a result");
     }
     if (std::isnan(r.step))
-        return decide(StudyVerdict::not_measured, "the step error is unknown: " + reasons_of(family, is_step));
+        return decide(StudyVerdict::not_measured,
+                      "the step error is unknown, because no run with other steps has a result");
     if (std::isnan(r.contact))
-        return decide(StudyVerdict::not_measured, "the contact error is unknown: " + reasons_of(family, is_contact));
+        return decide(StudyVerdict::not_measured,
+                      "the contact error is unknown, because no run with another tolerance has a result");
     constexpr Real share_of_wanted = 0.1;  // smaller irregular parts do not matter
     decide(StudyVerdict::known, "");
     const auto check = [&](const char* name, const Convergence& part, Real error) {
@@ -386,8 +378,7 @@ MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFig
 
 Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant) {
     const StudyQuantity& r = quantity.result;
-    if (std::isnan(r.error) || r.verdict == StudyVerdict::singular || r.verdict == StudyVerdict::zero)
-        return r.error;
+    if (std::isnan(r.error) || r.verdict == StudyVerdict::singular || r.verdict == StudyVerdict::zero) return r.error;
     const auto at = [](const Convergence& convergence, Real h, Real otherwise) {
         return convergence.shape() == ConvergenceShape::unmeasured ? otherwise : convergence.error_at(h);
     };

@@ -39,9 +39,8 @@ bool is_negligible(const StudyQuantity& q, double wanted) {
 /// True for a quantity that is zero or mostly repeats another one: means over time, velocities, and sizes of forces.
 bool is_minor(const StudyQuantity& q) {
     static constexpr std::array<std::string_view, 3> minor{".velocity_", ".largest_force_", ".pressing_force_"};
-    return q.verdict == StudyVerdict::zero || q.name.ends_with("_mean") || std::ranges::any_of(minor, [&](std::string_view part) {
-               return q.name.find(part) != std::string::npos;
-           });
+    return q.verdict == StudyVerdict::zero || q.name.ends_with("_mean") ||
+           std::ranges::any_of(minor, [&](std::string_view part) { return q.name.find(part) != std::string::npos; });
 }
 
 /// True for a figure of a column that summarises all bodies.
