@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <utility>
@@ -56,7 +57,8 @@ std::string short_text(Real value, int digits) {
     constexpr int written_out = 6;  // numbers of up to this many digits have no exponent
     char text[32];
     std::snprintf(text, sizeof text, "%.*g", digits, value);
-    std::snprintf(text, sizeof text, "%.*g", std::max(digits, written_out), std::strtod(text, nullptr));
+    if (const Real rounded = std::strtod(text, nullptr); std::abs(rounded) >= 1)
+        std::snprintf(text, sizeof text, "%.*g", std::max(digits, written_out), rounded);
     return text;
 }
 
