@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -61,8 +62,11 @@ SceneError error_at(const Complaint& place, const SceneError& inner) {
 }
 
 std::string short_text(Real value, int digits) {
+    constexpr int written_out = 6;  // numbers of up to this many digits have no exponent
     char text[32];
     std::snprintf(text, sizeof text, "%.*g", digits, value);
+    if (const Real rounded = std::strtod(text, nullptr); std::abs(rounded) >= 1)
+        std::snprintf(text, sizeof text, "%.*g", std::max(digits, written_out), rounded);
     return text;
 }
 

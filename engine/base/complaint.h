@@ -27,7 +27,7 @@ void require_finite(std::string_view object, std::string_view field, const Vec3&
 /// names no file, they get the file and the object of the place, and its field in front of the field of `inner`.
 SceneError error_at(const Complaint& place, const SceneError& inner);
 
-/// Formats a number with `digits` significant digits, like %.*g of printf.
+/// Formats a number with `digits` significant digits, and from 0.0001 to a million without an exponent.
 std::string short_text(Real value, int digits = 3);
 /// Formats a vector as (x, y, z).
 std::string short_text(const Vec3& value, int digits = 3);

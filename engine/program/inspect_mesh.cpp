@@ -114,7 +114,8 @@ int report_mesh(const InspectOptions& options, const Mesh& mesh, const std::vect
     std::cout << options.file.string() << ": " << grouped(report.tetrahedra) << " tetrahedra, " << grouped(report.nodes)
               << " nodes, " << grouped(report.boundary_triangles) << " boundary triangles\n"
               << "  size          " << short_text(size.x()) << " x " << short_text(size.y()) << " x "
-              << short_text(size.z()) << " m, volume " << short_text(report.volume) << " m^3\n"
+              << short_text(size.z()) << " m from " << short_text(report.lower) << " m, volume "
+              << short_text(report.volume) << " m^3\n"
               << "  edges         mean " << with_unit(report.mean_edge, "m") << ", " << with_unit(report.min_edge, "m")
               << " to " << with_unit(report.max_edge, "m") << "; smallest altitude "
               << with_unit(report.min_altitude, "m") << "\n"
@@ -236,7 +237,8 @@ int report_surface(const InspectOptions& options, const SurfaceMesh& surface) {
     std::cout << options.file.string() << ": a surface of " << grouped(report.triangles) << " triangles, "
               << grouped(report.nodes) << " nodes\n"
               << "  size          " << short_text(size.x()) << " x " << short_text(size.y()) << " x "
-              << short_text(size.z()) << " m, area " << short_text(report.area) << " m^2"
+              << short_text(size.z()) << " m from " << short_text(report.lower) << " m, area "
+              << short_text(report.area) << " m^2"
               << (report.volume > 0 ? ", volume " + short_text(report.volume) + " m^3" : "") << "\n"
               << "  edges         mean " << with_unit(report.mean_edge, "m") << ", " << with_unit(report.min_edge, "m")
               << " to " << with_unit(report.max_edge, "m") << "\n"

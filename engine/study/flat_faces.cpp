@@ -134,14 +134,26 @@ std::vector<FlatBody> flat_bodies(const SceneFile& file, const World& world) {
     return found;
 }
 
-std::string flat_text(const FlatBody& body) {
+std::vector<std::string> flat_texts(std::span<const FlatBody> bodies) {
     constexpr Real degrees = 180 / std::numbers::pi;
-    return "Body '" + body.name + "': refined meshes keep the flat faces of the file, which turn by up to " +
-           short_text(body.faces.angle * degrees, 2) + " degrees and deviate from a smooth surface by " +
-           percent(body.faces.share) + " of its radius. " +
-           (body.is_held ? "The mesh errors of this body contain three times that share of each value"
-                         : "The error bars leave out this error of the shape") +
-           ". A file with finer faces lowers it.";
+    std::map<std::string, std::size_t> counts;                 // number of bodies with a remark
+    std::vector<std::pair<std::string, std::string>> remarks;  // name of the first body, and its remark
+    for (const FlatBody& body : bodies) {
+        const std::string text =
+            ": refined meshes keep the flat faces of the file, which turn by up to " +
+            short_text(body.faces.angle * degrees, 2) + " degrees and deviate from a smooth surface by " +
+            percent(body.faces.share) + " of its radius. " +
+            (body.is_held ? "The mesh errors of displacements and stresses contain three times that share of each value"
+                          : "The error bars leave out this error of the shape") +
+            ". A file with finer faces lowers it.";
+        if (++counts[text] == 1) remarks.emplace_back(body.name, text);
+    }
+    std::vector<std::string> texts;
+    for (const auto& [name, text] : remarks) {
+        const std::size_t others = counts[text] - 1;
+        texts.push_back("Body '" + name + "'" + (others > 0 ? " and " + std::to_string(others) + " more" : "") + text);
+    }
+    return texts;
 }
 
 }  // namespace skerry

@@ -33,7 +33,7 @@ struct FlatBody {
 /// Returns the bodies of the scene file that have curved surfaces. Bodies of included scenes are omitted.
 std::vector<FlatBody> flat_bodies(const SceneFile& file, const World& world);
 
-/// Returns the remark of a study on a body.
-std::string flat_text(const FlatBody& body);
+/// Returns the remarks of a study on these bodies. Bodies with the same mesh and supports share one.
+std::vector<std::string> flat_texts(std::span<const FlatBody> bodies);
 
 }  // namespace skerry

@@ -156,7 +156,7 @@ void keep_to_budget(double budget, int threads, std::size_t first, std::span<Pla
         if (wall <= budget) continue;
         stage.pop_back();
         plan[i].reason = "with it the study would take about " + short_text(wall) +
-                         " times as long as one run, more than the budget of " + short_text(budget);
+                         " times as long as one run, more than the budget of " + short_text(budget) + " (--budget)";
     }
 }
 

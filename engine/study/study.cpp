@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <utility>
 
 #include "engine/output/number_text.h"
@@ -156,9 +157,7 @@ private:
                 runs_[0].columns[c].shape_error = scene_.shape_errors[c];
         StudyResult result = analyse(std::move(runs_), settings_);
         add_load_sentences(result.runs, result.sentences);
-        constexpr std::size_t most_bodies = 3;  // number of bodies with a remark
-        for (std::size_t i = 0; i < std::min(most_bodies, scene_.flat.size()); ++i)
-            result.sentences.push_back(flat_text(scene_.flat[i]));
+        std::ranges::move(flat_texts(scene_.flat), std::back_inserter(result.sentences));
         if (result.cheapest)
             result.cheapest->assignments = variant_assignments(scene_, result.cheapest->variant, mean_step_);
         return result;

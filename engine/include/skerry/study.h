@@ -95,15 +95,17 @@ enum class StudyVerdict {
     irregular,     // the differences do not behave so; the error bar is a multiple of the largest difference
     singular,      // the largest stress grows without limit as the mesh is refined; `error` is infinite
     chaotic,       // differences of 1e-12 m at the start change the value; see StudyQuantity::agree_until
+    zero,          // the value is an error of the contact solver or of the steps; `error` bounds its absolute value
     not_measured,  // the runs that could show the error are missing
 };
 template <>
 struct EnumNames<StudyVerdict> {
-    static constexpr std::array<std::pair<StudyVerdict, std::string_view>, 5> table{{
+    static constexpr std::array<std::pair<StudyVerdict, std::string_view>, 6> table{{
         {StudyVerdict::known, "known"},
         {StudyVerdict::irregular, "irregular"},
         {StudyVerdict::singular, "singular"},
         {StudyVerdict::chaotic, "chaotic"},
+        {StudyVerdict::zero, "zero"},
         {StudyVerdict::not_measured, "not_measured"},
     }};
 };

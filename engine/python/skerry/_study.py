@@ -41,7 +41,7 @@ class StudyQuantity:
     agree_until: time until which runs with a start 1e-12 m apart agree, infinite if they agree to the end [s].
     run_values: value of each run, in the order of Study.runs.
     run_errors: half width of the error bar of each run.
-    verdict: "known", "irregular", "singular", "chaotic" or "not_measured".
+    verdict: "known", "irregular", "singular", "chaotic", "zero" or "not_measured".
     sentence: the verdict in words.
     """
 

@@ -124,7 +124,7 @@ std::optional<CheapestSettings> cheapest_settings(const StudyFamily& family,
                                     " quantities are within it";
     if (const std::size_t others = quantities.size() - best->counted; others > 0)
         result.sentence += "; " + std::to_string(others) + (others > 1 ? " quantities" : " quantity") +
-                           " without a finite error do" + (others > 1 ? "" : "es") + " not count";
+                           " with another verdict than known or irregular do" + (others > 1 ? "" : "es") + " not count";
     return result;
 }
 

@@ -39,17 +39,17 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         shape_ = ConvergenceShape::equal;
         return;
     }
+    const auto be_coarse = [&] {
+        shape_ = ConvergenceShape::coarse;
+        used_order_ = 0;
+        // The larger of both values, at most `size` plus the difference: a position may have a large offset.
+        least_error_ = std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
+    };
+    const bool differs_much = std::abs(difference) > coarse_share * size;
     constexpr Real same_ratio = 1e-6;
     if (n == 2 || std::abs(levels_[n - 3].h / middle.h - ratio) > same_ratio * ratio) {
         shape_ = ConvergenceShape::two_levels;
-        if (std::abs(difference) > coarse_share * size) {
-            shape_ = ConvergenceShape::coarse;
-            used_order_ = 0;
-            // The larger of both values, at most `size` plus the difference. The limit is needed because a position may
-            // have a large offset.
-            least_error_ =
-                std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
-        }
+        if (differs_much) be_coarse();
         return;
     }
     const Real coarse_difference = levels_[n - 3].value - middle.value;
@@ -66,6 +66,12 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
         used_order_ = 0;
         remainder_ = std::abs(coarse_difference + difference);
         if (order_ > 0) remainder_ = std::min(remainder_, remainder(order_));
+        if (order_ > 0 || !differs_much) return;
+        // Levels that lock, such as a single layer of linear elements, change more from level to level until they are
+        // fine enough. The bound assumes that the difference grows once more, and falls after that.
+        be_coarse();
+        const Real growth = std::min(std::abs(difference / coarse_difference), std::pow(ratio, theory.most));
+        remainder_ = std::max(remainder_, growth * (std::abs(difference) + remainder(theory.least)));
     } else {
         shape_ = fast ? ConvergenceShape::fast : ConvergenceShape::regular;
         used_order_ = std::min(order_, theory.most);

@@ -22,7 +22,8 @@ struct TheoryOrder {
 /// Behaviour of the differences between successive levels.
 /// - unmeasured: there is one level only.
 /// - two_levels: two levels give a difference and no order.
-/// - coarse: two levels differ so much that the error of neither is small.
+/// - coarse: two levels differ so much that the error of neither is small, and no third level shows that the
+///   differences fall.
 /// - regular: the observed order is near that of the theory.
 /// - equal: the differences are not above the noise.
 /// - slow: the observed order is far below that of the theory, or the differences grow.

@@ -62,16 +62,6 @@ TheoryOrder step_theory(const StudyRun& scene) {
     return scene.integrator == Integrator::leapfrog && scene.max_contacts == 0 ? TheoryOrder{2, 2} : TheoryOrder{1, 2};
 }
 
-/// Reasons why the runs for which belongs() is true are missing, without duplicates.
-template <class Belongs>
-std::string reasons_of(const StudyFamily& family, const Belongs& belongs) {
-    std::string text;
-    for (const StudyRun& run : *family.all)
-        if (belongs(run.variant) && !run.message.empty() && text.find(run.message) == std::string::npos)
-            text += (text.empty() ? "" : "; ") + run.message;
-    return text.empty() ? "the runs for it are missing" : text;
-}
-
 bool is_mesh(const StudyVariant& v) {
     return v.step == 1 && v.tolerance == 1 && !v.element && v.draw == 0;
 }
@@ -82,30 +72,47 @@ bool is_contact(const StudyVariant& v) {
     return v.refine == 0 && v.step == 1 && !v.element && v.draw == 0;
 }
 
-/// Verdict on a stress that grows without limit, empty if it has a limit. A stress that follows h^-a grows by the same
-/// factor in each level. The factor of a stress that converges falls towards 1.
-std::string singular_text(const StudyFamily& family, std::size_t column, StudyFigure figure) {
-    const StudyColumn& scene = family.scene->columns[column];
-    if (scene.what.unit != "Pa" || scene.node == no_index) return {};
-    std::vector<const StudyRun*> levels;
-    for (const StudyRun* run : family.comparable)
-        if (is_mesh(run->variant)) levels.push_back(run);
-    if (levels.size() < 3) return {};
-    std::ranges::sort(levels, {}, [](const StudyRun* run) { return run->variant.refine; });
-    Real rate[2];  // growth exponents of the two finest levels
-    for (std::size_t i = 0; i < 2; ++i) {
-        const StudyRun &coarse = *levels[levels.size() - 3 + i], &fine = *levels[levels.size() - 2 + i];
-        const Real growth = figure_value(fine, column, figure, 0) / figure_value(coarse, column, figure, 0);
-        rate[i] = growth > 0 ? std::log2(growth) / (fine.variant.refine - coarse.variant.refine) : 0;
+/// Growth of a largest stress from mesh to mesh.
+struct StressGrowth {
+    std::vector<Real> rates{};  // growth exponent of each level of the mesh, from coarse to fine
+    bool same_place = false;    // true if the finest two meshes have the largest stress at one place
+
+    StressGrowth(const StudyFamily& family, std::size_t column, StudyFigure figure) {
+        const StudyColumn& scene = family.scene->columns[column];
+        if (scene.what.unit != "Pa" || scene.node == no_index) return;
+        std::vector<const StudyRun*> levels;
+        for (const StudyRun* run : family.comparable)
+            if (is_mesh(run->variant)) levels.push_back(run);
+        std::ranges::sort(levels, {}, [](const StudyRun* run) { return run->variant.refine; });
+        for (std::size_t i = 1; i < levels.size(); ++i) {
+            const StudyRun &coarse = *levels[i - 1], &fine = *levels[i];
+            const Real growth = figure_value(fine, column, figure, 0) / figure_value(coarse, column, figure, 0);
+            rates.push_back(growth > 0 ? std::log2(growth) / (fine.variant.refine - coarse.variant.refine) : 0);
+        }
+        if (rates.empty()) return;
+        constexpr Real near = 0.25;
+        const StudyColumn& before = levels[levels.size() - 2]->columns[column];
+        same_place = (levels.back()->columns[column].place - before.place).norm() <= near * scene.size;
     }
-    // If the stress converges, the exponent falls from level to level, by a factor of 0.5 with order 1 and 0.7 with
-    // order 1/2.
-    constexpr Real least_rate = 0.1, least_steadiness = 0.75, same_place = 0.25;
-    const StudyColumn& fine = levels.back()->columns[column];
-    const StudyColumn& before = levels[levels.size() - 2]->columns[column];
-    if (!(std::min(rate[0], rate[1]) > least_rate) || !(rate[1] > least_steadiness * rate[0])) return {};
-    if ((fine.place - before.place).norm() > same_place * scene.size) return {};
-    return "grows " + short_text(std::exp2(rate[1])) + " times with each halving of the edges, at node " +
+
+    bool grows(std::size_t levels) const {
+        constexpr Real least_rate = 0.1;
+        return same_place && rates.size() >= levels &&
+               std::all_of(rates.end() - static_cast<std::ptrdiff_t>(levels), rates.end(),
+                           [](Real rate) { return rate > least_rate; });
+    }
+    /// True for a stress without a limit. A stress that follows h^-a grows by the same factor in each level. The factor
+    /// of a stress that converges falls towards 1: the exponent falls to a half with order 1, to 0.7 with order 1/2.
+    bool is_singular() const {
+        constexpr Real least_steadiness = 0.75;
+        return grows(2) && rates.back() > least_steadiness * rates[rates.size() - 2];
+    }
+    /// True if there are too few meshes to decide whether the stress has a limit.
+    bool is_undecided() const { return rates.size() == 1 && grows(1); }
+};
+
+std::string singular_text(const StudyColumn& scene, const StressGrowth& growth) {
+    return "grows " + short_text(std::exp2(growth.rates.back())) + " times with each halving of the edges, at node " +
            std::to_string(scene.node) + " " + short_text(scene.place) +
            " m. Sharp inner corners, edges of clamps and point loads have no finite stress: round the corner, spread "
            "the load, or measure the stress elsewhere";
@@ -166,34 +173,44 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
         r.sentence = sentence;
     };
     const StudyColumn& scene = family.scene->columns[column];
+    if (const Real within = family.zero_within[column]; within > 0) {
+        r.error = within;
+        r.mesh = r.step = r.contact = r.noise = r.best = r.best_error = no_value;
+        return decide(StudyVerdict::zero,
+                      "a run with a lower tolerance or shorter steps has less than a tenth of this, so the value is an "
+                      "error of the contact solver or of the steps");
+    }
     if (figure != StudyFigure::agreed && !scene.is_statistic && quantity.noise > agreement_share * r.scale) {
         r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
         return decide(
             StudyVerdict::chaotic,
             "runs whose starts differ by 1e-12 m end with different values, so this value depends on rounding errors");
     }
-    if (const std::string text = singular_text(family, column, figure); !text.empty()) {
+    const StressGrowth growth(family, column, figure);
+    if (growth.is_singular()) {
         r.error = r.mesh = infinity;
         r.best = r.best_error = no_value;
-        return decide(StudyVerdict::singular, text);
+        return decide(StudyVerdict::singular, singular_text(scene, growth));
     }
     if (!std::isfinite(r.value)) return decide(StudyVerdict::not_measured, "the run has no value");
     if (std::isnan(r.mesh)) {
-        const std::string reason =
-            reasons_of(family, [](const StudyVariant& v) { return is_mesh(v) && v.refine != 0; });
         if (quantity.elements.empty())
-            return decide(StudyVerdict::not_measured, "the mesh error is unknown: " + reason);
+            return decide(StudyVerdict::not_measured,
+                          "the mesh error is unknown, because no run with another mesh has a result");
         r.mesh = 0;
         for (const auto& [variant, value] : quantity.elements) r.mesh = std::max(r.mesh, std::abs(value - r.value));
         r.mesh += quantity.shape;
         r.error = r.mesh + r.step + r.contact + r.noise;
-        return decide(StudyVerdict::not_measured,
-                      "the mesh error is only guessed from other elements on the same mesh: " + reason);
+        return decide(
+            StudyVerdict::not_measured,
+            "the mesh error is only guessed from other elements, because no run with another mesh has a result");
     }
     if (std::isnan(r.step))
-        return decide(StudyVerdict::not_measured, "the step error is unknown: " + reasons_of(family, is_step));
+        return decide(StudyVerdict::not_measured,
+                      "the step error is unknown, because no run with other steps has a result");
     if (std::isnan(r.contact))
-        return decide(StudyVerdict::not_measured, "the contact error is unknown: " + reasons_of(family, is_contact));
+        return decide(StudyVerdict::not_measured,
+                      "the contact error is unknown, because no run with another tolerance has a result");
     constexpr Real share_of_wanted = 0.1;  // smaller irregular parts do not matter
     decide(StudyVerdict::known, "");
     const auto check = [&](const char* name, const Convergence& part, Real error) {
@@ -201,6 +218,13 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
             decide(StudyVerdict::irregular,
                    (r.sentence.empty() ? "" : r.sentence + "; ") + irregular_text(name, part.shape()));
     };
+    if (growth.is_undecided()) {
+        r.best = r.best_error = no_value;
+        decide(
+            StudyVerdict::irregular,
+            "the stress grows from mesh to mesh, and only a third mesh shows whether it has a limit; if not, as at a "
+            "sharp inner corner, the error exceeds every error bar");
+    }
     check("mesh", quantity.mesh, r.mesh);
     check("step", quantity.step, r.step);
     for (const StudyRun& run : *family.all)
@@ -273,6 +297,23 @@ StudyFamily::StudyFamily(const std::vector<StudyRun>& runs)
         if (run.status == StudyRunStatus::ok && run.time.size() == scene->time.size() &&
             std::ranges::equal(run.columns, scene->columns, same_column))
             comparable.push_back(&run);
+    find_zeros();
+}
+
+void StudyFamily::find_zeros() {
+    constexpr Real vanishing = 0.1;  // share of the size that is left of an error; a value changes little
+    std::vector<Real> largest = sizes, least = sizes;
+    for (const StudyRun* run : comparable) {
+        const std::vector<Real> of_run = column_sizes(*run);
+        const StudyVariant& v = run->variant;
+        const bool is_finer = (is_step(v) && v.step < 1) || (is_contact(v) && v.tolerance < 1);
+        for (std::size_t c = 0; c < sizes.size(); ++c) {
+            largest[c] = std::max(largest[c], of_run[c]);
+            if (is_finer) least[c] = std::min(least[c], of_run[c]);
+        }
+    }
+    for (std::size_t c = 0; c < sizes.size(); ++c)
+        zero_within.push_back(least[c] < vanishing * sizes[c] ? largest[c] : 0);
 }
 
 PerturbedRuns StudyFamily::perturbed() const {
@@ -364,7 +405,7 @@ MeasuredQuantity measure(const StudyFamily& family, std::size_t column, StudyFig
 
 Real error_with(const MeasuredQuantity& quantity, const StudyVariant& variant) {
     const StudyQuantity& r = quantity.result;
-    if (std::isnan(r.error) || r.verdict == StudyVerdict::singular) return r.error;
+    if (std::isnan(r.error) || r.verdict == StudyVerdict::singular || r.verdict == StudyVerdict::zero) return r.error;
     const auto at = [](const Convergence& convergence, Real h, Real otherwise) {
         return convergence.shape() == ConvergenceShape::unmeasured ? otherwise : convergence.error_at(h);
     };

@@ -24,9 +24,15 @@ struct StudyFamily {
     // Runs that ended well and have the columns and the number of rows of `scene`; includes `scene`.
     std::vector<const StudyRun*> comparable{};
     std::vector<Real> sizes{};  // size of the values of each column, see column_sizes()
+    // Largest size of any run for columns whose values are errors of the contact solver or of the steps; 0 for others.
+    // In a run with a lower tolerance or shorter steps, such values nearly vanish.
+    std::vector<Real> zero_within{};
 
     explicit StudyFamily(const std::vector<StudyRun>& runs);
     PerturbedRuns perturbed() const;
+
+private:
+    void find_zeros();
 };
 
 /// A quantity, and the behaviour of its value in each family of runs.

@@ -74,13 +74,9 @@ Json summary_table(const StudyResult& result) {
         const auto with_bar = [](const std::string& value, const std::string& error) {
             return error.empty() ? value : value + " \u00b1 " + error;
         };
-        std::string parts;
-        for (const auto& [name, part] : {std::pair{"mesh ", text.mesh}, std::pair{"step ", text.step},
-                                         std::pair{"contacts ", text.contact}, std::pair{"start ", text.noise}})
-            if (!part.empty()) parts += (parts.empty() ? "" : ", ") + (name + part);
         // The notes above the table contain the sentences of all quantities with another verdict than `known`.
         rows.push_back({q.name, with_bar(text.value, text.error) + " " + text.unit, text.share, name_of(q.verdict),
-                        parts, with_bar(text.best, text.best_error), text.orders,
+                        text.parts, with_bar(text.best, text.best_error), text.orders,
                         q.verdict == StudyVerdict::known ? q.sentence : std::string()});
     }
     return without_empty_columns(rows);

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "engine/output/number_text.h"
 #include "engine/study/report/wording.h"
@@ -17,21 +19,10 @@ std::string quantity_line(const StudyQuantity& q, std::size_t width) {
     const auto with_space = [](const std::string& unit) { return unit.empty() ? unit : " " + unit; };
     std::string line =
         "  " + q.name + std::string(width - q.name.size(), ' ') + " = " + text.value + with_space(text.unit);
+    if (q.verdict == StudyVerdict::zero) return line + "\n";
     if (text.error.empty()) return line + ", " + std::string(name_of(q.verdict)) + "\n";
     line += " +- " + text.error;
-    std::string parts;
-    struct BarPart {
-        const char* name;
-        Real error;
-        const std::string& text;
-    };
-    constexpr double shown_share = 0.01;  // smaller parts of an error bar are not shown
-    for (const auto& [name, error, part] :
-         {BarPart{"mesh", q.mesh, text.mesh}, BarPart{"step", q.step, text.step},
-          BarPart{"contacts", q.contact, text.contact}, BarPart{"start", q.noise, text.noise}})
-        if (error > shown_share * q.error && !part.empty())
-            parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + part;
-    if (!parts.empty()) line += " (" + (text.share.empty() ? "" : text.share + ": ") + parts + ")";
+    if (!text.parts.empty()) line += " (" + (text.share.empty() ? "" : text.share + ": ") + text.parts + ")";
     // The extrapolated value is shown if it is much more exact.
     constexpr double much = 0.7;
     if (!text.best.empty() && q.best_error < much * q.error) line += ", best " + text.best + " +- " + text.best_error;
@@ -45,10 +36,11 @@ bool is_negligible(const StudyQuantity& q, double wanted) {
     return q.verdict == StudyVerdict::known && std::abs(q.value) + q.error <= wanted * q.scale;
 }
 
-/// True for a quantity that mostly repeats another one: means over time, and sizes of forces.
+/// True for a quantity that is zero or mostly repeats another one: means over time, velocities, and sizes of forces.
 bool is_minor(const StudyQuantity& q) {
-    return q.name.ends_with("_mean") || q.name.find(".largest_force_") != std::string::npos ||
-           q.name.find(".pressing_force_") != std::string::npos;
+    static constexpr std::array<std::string_view, 3> minor{".velocity_", ".largest_force_", ".pressing_force_"};
+    return q.verdict == StudyVerdict::zero || q.name.ends_with("_mean") ||
+           std::ranges::any_of(minor, [&](std::string_view part) { return q.name.find(part) != std::string::npos; });
 }
 
 /// True for a figure of a column that summarises all bodies.

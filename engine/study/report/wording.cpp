@@ -36,14 +36,6 @@ std::string to_digit_of(Real value, Real error) {
     return text;
 }
 
-/// Formats a fraction in percent with two digits; large fractions are written as whole numbers.
-std::string share_text(Real share) {
-    constexpr Real whole = 99.5, most_written_out = 1e6;  // [%]
-    const Real percents = 100 * share;
-    const bool is_whole = percents >= whole && percents < most_written_out;
-    return (is_whole ? std::to_string(std::lround(percents)) : short_text(percents, 2)) + " %";
-}
-
 std::string order_text(const char* name, Real order, Real expected) {
     if (!std::isfinite(order)) return {};
     // Where the theory has a lowest and a highest order, `expected` is the lowest one.
@@ -79,18 +71,23 @@ QuantityText quantity_text(const StudyQuantity& q) {
     };
     QuantityText text;
     text.unit = q.unit == "1" ? "" : prefix + q.unit;
+    if (q.verdict == StudyVerdict::zero) {
+        text.value = "zero within " + part(q.error);
+        return text;
+    }
     text.value = std::isfinite(q.value) ? to_digit_of(in_unit(q.value), in_unit(q.error)) : "unknown";
     if (has_error) text.error = in_unit(q.error) > 0 ? part(q.error) : "0";
-    text.mesh = part(q.mesh);
-    text.step = part(q.step);
-    text.contact = part(q.contact);
-    text.noise = part(q.noise);
+    constexpr Real shown_share = 0.01;  // smaller parts of an error bar are not shown
+    for (const auto& [name, error] : {std::pair{"mesh ", q.mesh}, std::pair{"step ", q.step},
+                                      std::pair{"contacts ", q.contact}, std::pair{"start ", q.noise}})
+        if (error > shown_share * q.error && !part(error).empty())
+            text.parts += (text.parts.empty() ? "" : ", ") + (name + part(error));
     if (std::isfinite(q.best) && std::isfinite(q.best_error)) {
         text.best = to_digit_of(in_unit(q.best), in_unit(q.best_error));
         text.best_error = in_unit(q.best_error) > 0 ? part(q.best_error) : "0";
     }
     if (has_error && in_unit(q.error) > 0 && q.scale > 0) {
-        text.share = share_text(q.error / q.scale);
+        text.share = short_text(100 * q.error / q.scale, 2) + " %";
         // The share refers to the scale, which the text names unless it is close to the value.
         constexpr Real near = 0.1;
         if (std::abs(std::abs(q.value) - q.scale) > near * q.scale) {

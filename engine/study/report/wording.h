@@ -13,11 +13,11 @@ std::string variant_text(const StudyVariant& variant);
 
 /// Numbers of a quantity as text. All have the same SI prefix, so that they can be compared.
 struct QuantityText {
-    std::string value, error, unit;          // error: empty if unknown
-    std::string mesh, step, contact, noise;  // parts of the error; empty if zero or unknown
-    std::string best, best_error;            // empty if unknown
-    std::string share;                       // error relative to the scale [%], with the scale if it is not the value
-    std::string orders;                      // for example "order 1.9 (2 expected)"; empty if unknown
+    std::string value, error, unit;  // error: empty if unknown, or if the value is "zero within" a number
+    std::string parts;               // parts of the error, for example "mesh 2.6, step 0.1"; empty if zero or unknown
+    std::string best, best_error;    // empty if unknown
+    std::string share;               // error relative to the scale [%], with the scale if it is not the value
+    std::string orders;              // for example "order 1.9 (2 expected)"; empty if unknown
 };
 QuantityText quantity_text(const StudyQuantity& quantity);
 

@@ -180,6 +180,8 @@ class ProgramInspectTest(ProgramCase):
             self.assertLess(right / 1.5, stiffness)
             self.assertLess(stiffness, 1.5 * right)
         self.assertEqual(found("mesh.box.size=[0.05,0.01,0.005]", "mesh.box.cells=[20,4,2]"), [])
+        [stiff] = found("mesh.box.size=[0.5,0.1,0.001]", "element=linear")
+        self.assertRegex(stiff, r"about \d{3,5} times as stiff in bending")  # without an exponent
         plate = self.bad_box("plate.msh", cells=8, kept={(x, y, 0) for x in range(8) for y in range(8)})
         self.assertIn("problem       a part 125 mm thick", self.skerry("inspect", plate).stdout)
 

@@ -391,9 +391,9 @@ class ProgramRunTest(ProgramCase):
             process.send_signal(signal.SIGTERM)
             process.communicate(timeout=60)
         self.assertEqual(process.returncode, 128 + signal.SIGTERM)
-        self.assertRegex(lines[0], r"^skerry: 1e\+05 s to simulate, about [\d,]+ steps of [\d.]+ ms$")
+        self.assertRegex(lines[0], r"^skerry: 100000 s to simulate, about [\d,]+ steps of [\d.]+ ms$")
         for line in lines[1:]:
-            self.assertRegex(line, r"after [\d.]+ s: .* of 1e\+05 s .* steps; about .* left$")
+            self.assertRegex(line, r"after [\d.]+ s: .* of 100000 s .* steps; about .* left$")
         steps = [int(re.search(r"([\d,]+) steps", line)[1].replace(",", "")) for line in lines[1:]]
         self.assertGreater(steps[1], steps[0])
 

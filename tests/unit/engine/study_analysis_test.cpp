@@ -139,6 +139,17 @@ TEST_CASE("differences that do not fall as the theory says give a long bar and n
     CHECK(std::isnan(q.best));
 }
 
+TEST_CASE("the bars of meshes that lock hold the error while differences grow", "[unit][study]") {
+    for (const Real stiffening : {5, 12, 30, 60}) {  // excess of stiffness on the mesh of the scene
+        const auto value = [stiffening](Real h) { return 1 / (1 + stiffening * h * h); };
+        const Convergence convergence({{1, value(1)}, {0.5, value(0.5)}, {0.25, value(0.25)}}, {2, 2}, 0, value(1));
+        CAPTURE(stiffening);
+        CHECK(convergence.shape() == ConvergenceShape::coarse);
+        CHECK(convergence.error() > 1 - value(1));
+        CHECK(convergence.error() < 3 * (1 - value(1)));
+    }
+}
+
 TEST_CASE("a change of the sign by a second term of the error leaves a bar that is not much longer", "[unit][study]") {
     // The difference of the coarser two levels has another sign than that of the finer two.
     const auto value = [](Real h) { return h * h - 0.6 * h * h * h; };
@@ -261,12 +272,13 @@ TEST_CASE("a quantity that swings has its largest value beside that at the end",
 }
 
 TEST_CASE("a stress that grows with every level is singular, one that converges slowly is not", "[unit][study]") {
-    const auto stress = [](const std::function<Real(Real)>& of_edge) {
+    std::vector<StudyVariant> variants = all_variants;
+    const auto stress = [&variants](const std::function<Real(Real)>& of_edge) {
         StudyColumn largest = column("largest_von_mises", "Pa");
         largest.node = 12;
         largest.place = {0, 0.1, 0};
         return only_quantity(analyse(
-            runs_of({largest}, all_variants,
+            runs_of({largest}, variants,
                     [&](const StudyVariant& v, Real t) { return std::vector<Real>{1e6 * t * of_edge(edge(v))}; }),
             {}));
     };
@@ -280,6 +292,15 @@ TEST_CASE("a stress that grows with every level is singular, one that converges 
     CHECK(stress([](Real h) { return 1 - 0.4 * h; }).verdict == StudyVerdict::known);
     CHECK(stress([](Real h) { return h == 2 ? 1.0 : h == 1 ? 0.8 : 0.9; }).verdict == StudyVerdict::irregular);
     CHECK(stress([](Real h) { return 1 - 0.6 * std::sqrt(h); }).verdict != StudyVerdict::singular);
+    // With two meshes both look alike.
+    std::erase(variants, StudyVariant{.refine = -1});
+    for (const StudyQuantity& q :
+         {stress([](Real h) { return 0.5 + std::pow(h, -0.4555); }), stress([](Real h) { return 1 - 0.3 * h; })}) {
+        CHECK(q.verdict == StudyVerdict::irregular);
+        CHECK(q.sentence.find("only a third mesh shows whether it has a limit") != std::string::npos);
+        CHECK(std::isnan(q.best));
+    }
+    CHECK(stress([](Real h) { return 1 + 0.1 * h; }).verdict == StudyVerdict::known);
 }
 
 TEST_CASE("a chaotic scene has single values until its runs part, and statistics", "[unit][study]") {
@@ -365,7 +386,29 @@ TEST_CASE("a small load has the relative errors of a large one", "[unit][study]"
     CHECK(share(1e-6) == Approx(share(1)));
 }
 
-TEST_CASE("an error that no run shows is not measured, with the reason", "[unit][study]") {
+TEST_CASE("a moment that is an error of the contact solver is zero, and without a share", "[unit][study]") {
+    const std::vector<StudyColumn> columns{column("displacement_z", "m"), column("moment_x", "N m", "table"),
+                                           column("moment_y", "N m", "table"), column("moment_x", "N m", "hand")};
+    const StudyResult result =
+        analyse(runs_of(columns, all_variants,
+                        [](const StudyVariant& v, Real t) {
+                            const Real solver = 8e-6 * v.tolerance * v.step * edge(v);
+                            return std::vector<Real>{t, solver * t, -0.1 * solver, 2e-6 * t * (1 + 0.4 * v.tolerance)};
+                        }),
+                {.error = 0.7});
+    std::size_t zeros = 0;
+    for (const StudyQuantity& q : result.quantities) {
+        CHECK((q.verdict == StudyVerdict::zero) == q.name.starts_with("table."));
+        if (q.verdict != StudyVerdict::zero) continue;
+        ++zeros;
+        CHECK(q.error == Approx(16e-6));  // the value on the coarser mesh
+    }
+    REQUIRE(zeros == 2);
+    CHECK(result.cheapest->reaches);  // zeros do not count
+    CHECK_THAT(study_text(result), Catch::Contains("table.moment_x_end     = zero within 16 uN m\n"));
+}
+
+TEST_CASE("an error that no run shows is not measured", "[unit][study]") {
     std::vector<StudyRun> runs = displacement_runs(-0.2, 2, 0.05, 1, 0.001);
     for (StudyRun& run : runs)
         if (run.variant.refine != 0) {
@@ -374,7 +417,7 @@ TEST_CASE("an error that no run shows is not measured, with the reason", "[unit]
         }
     const StudyQuantity q = only_quantity(analyse(runs, {}));
     CHECK(q.verdict == StudyVerdict::not_measured);
-    CHECK(q.sentence == "the mesh error is unknown: it would take 3 h");
+    CHECK(q.sentence == "the mesh error is unknown, because no run with another mesh has a result");
     CHECK(std::isnan(q.error));
     // Another kind of element gives an idea of the error.
     runs.push_back(runs[0]);

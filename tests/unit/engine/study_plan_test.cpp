@@ -31,7 +31,7 @@ TEST_CASE("the budget leaves out the costly runs, which are the less important o
     CHECK(made == std::vector<bool>{true, true, true, false, false, true});
     CHECK(plan[3].reason == "no coarser meshes");
     CHECK(plan[4].reason ==
-          "with it the study would take about 20 times as long as one run, more than the budget of 10");
+          "with it the study would take about 20 times as long as one run, more than the budget of 10 (--budget)");
     keep_to_budget(1, 1, plan.size(), plan);  // runs that are made already stay
     CHECK(plan[5].reason.empty());
 }

@@ -63,7 +63,8 @@ TEST_CASE("the text of a study has a line per quantity, the verdicts and the che
           "left out: mesh 2 levels finer: it needs 4 min, and the budget has 1 min left\n"
           "cheapest settings for an error of 5 %: mesh 1 level finer, steps x 0.5\n"
           "  predicted error 4.95 %, CPU time 32 s (the scene as it is: 1 s); the largest error is that of "
-          "tip.displacement_z_end; 1 quantity without a finite error does not count\n");
+          "tip.displacement_z_end; 1 quantity with another verdict than known or "
+          "irregular does not count\n");
 }
 
 TEST_CASE("the page of a study has all runs, quantities and series", "[unit][study]") {

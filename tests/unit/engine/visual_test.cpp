@@ -177,7 +177,7 @@ TEST_CASE("a surface in other units, or far from its body, is reported", "[unit]
     const auto warning = [&](VisualSurface surface) {
         return bind_visual(std::move(surface), box.nodes, box.tetrahedra).fit.warning;
     };
-    CHECK_THAT(warning(fine_ball(600)), Contains("1.2e+03 times as large as the body; check the units"));
+    CHECK_THAT(warning(fine_ball(600)), Contains("1200 times as large as the body; check the units"));
     VisualSurface away = fine_ball();
     for (Vec3& node : away.nodes) node.x() += 4;
     CHECK_THAT(warning(away), Contains("up to 4.1 m outside of the body"));

@@ -90,13 +90,14 @@ function make_plot(host, times, series, format, pick) {
     const step = text.tick(span, 4);
     pen.textBaseline = "top";
     pen.textAlign = "left";
-    let free = 0;  // left end of the space for the next label
+    let free = 0, before = "";  // left end of the space for the next label, and the label before it
     for (let i = Math.ceil(first / step); i * step <= first + span * 1.000001; ++i) {
       const label = text.si(i * step, "s"), wide = pen.measureText(label).width;
       const left = Math.min(x_of(i * step) - wide / 2, size.width - 1 - wide);
-      if (left < free) continue;
+      if (left < free || label === before) continue;
       pen.fillText(label, left, size.height - margin.bottom + 6);
       free = left + wide + 6;
+      before = label;
     }
   }
   function show(number) {
