@@ -160,9 +160,8 @@ std::string StepReport::message() const {
 std::string StepReport::warning() const {
     std::string text;
     if (limited > 0)
-        text = "step_size exceeds the stable step of body '" + limited_by +
-               "': steps that were shortened to at most " + short_text(limited_step) +
-               " s: " + std::to_string(limited);
+        text = "step_size exceeds the stable step of body '" + limited_by + "': steps that were shortened to at most " +
+               short_text(limited_step) + " s: " + std::to_string(limited);
     if (inverted > 0)
         text += (text.empty() ? "" : "; ") + std::string("inverted elements: ") + std::to_string(inverted) +
                 ", the first of them element " + std::to_string(inverted_element) + " of body '" + inverted_name + "'";

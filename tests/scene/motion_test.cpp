@@ -178,8 +178,7 @@ TEST_CASE("an element that is pressed inside out is reported with its body, and 
     CHECK(report.inverted == 1);
     CHECK(report.inverted_body == body);
     CHECK(report.inverted_element == 0);
-    CHECK_THAT(report.warning(),
-               Catch::Contains("inverted elements: 1, the first of them element 0 of body 'tet'"));
+    CHECK_THAT(report.warning(), Catch::Contains("inverted elements: 1, the first of them element 0 of body 'tet'"));
     CHECK(report.shortened >= 2);  // down to a quarter of the stable step, then the inversion is accepted
     CHECK(world.report().inversions == 1);
     CHECK(world.report().inverted == 1);
