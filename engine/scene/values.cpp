@@ -196,7 +196,7 @@ void Value<FilePath>::read(const Json& json, const Place& place, const KeyDoc& d
     std::error_code error;
     if (!std::filesystem::exists(out.path, error))
         place.refuse("the path of a missing file, " + in_quotes(out.path.string()),
-                     "the path of an existing file, relative to the folder of this file");
+                     "the path of an existing file, relative to the folder of the file that contains it");
     if (std::filesystem::is_directory(out.path, error))
         place.refuse("the path of a folder, " + in_quotes(out.path.string()), "the path of a file");
 }

@@ -58,9 +58,8 @@ void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     report.folded += ratios.near_inversion;
 }
 
-/// Energy below which differences are rounding errors [J]. It is the elastic energy of a strain too small to show in
-/// the digits of the positions, accumulated over ten thousand steps. Bodies at rest without weight have at most this
-/// energy.
+/// Differences of energy below this value are rounding errors [J]: the elastic energy of the strain that rounding
+/// errors of the positions can add up to in ten thousand steps. Bodies at rest without weight have at most this energy.
 Real energy_of_rounding(const Model& model) {
     constexpr Real digits = 1e4 * std::numeric_limits<Real>::epsilon();
     Real sum = 0;

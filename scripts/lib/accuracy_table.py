@@ -47,7 +47,7 @@ def used(row):
 
 
 def named(rows):
-    """The rows with "the same" at the start of a name replaced by the object that the rows before are about."""
+    """Replaces "the same" at the start of a name by the last full name above, up to its first comma."""
     thing = ""
     for row in rows:
         if row["name"].startswith("the same"):

@@ -55,8 +55,8 @@ public:
     CableState state(CableHandle cable) const;
     /// Settings of an equal cable that is added now: points have their present positions.
     CableSettings settings(CableHandle cable) const;
-    /// Replaces the control. A control equal to the present one changes no bit of the state. A new rate starts at the
-    /// present length, except if the old control was also a rate.
+    /// Replaces the drive. A drive equal to the present one changes no bit of the state. A rate that replaces another
+    /// kind of drive starts at the present length; a rate that replaces a rate continues from the prescribed length.
     void set_drive(CableHandle cable, const CableDrive& drive);
 };
 

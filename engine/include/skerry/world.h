@@ -169,8 +169,8 @@ public:
     std::vector<Real> tetrahedron_steps(BodyHandle body) const;
     /// Name of a body (BodySettings::name).
     const std::string& name(BodyHandle body) const;
-    /// Returns the kind of the elements of a body. For a body added as `smoothed` it is the kind that was chosen; if
-    /// the choice depends on the material, it is edge_node_smoothed.
+    /// Returns the kind of the elements of a body. For a body added as `smoothed` this is the kind that was chosen, or
+    /// edge_node_smoothed if the choice differs between materials of the body.
     ElementKind element(BodyHandle body) const;
     /// Present kind of a body. For a body added with `automatic` it is the kind that was chosen.
     BodyDynamics dynamics(BodyHandle body) const;

@@ -152,8 +152,7 @@ private:
     void read_cells(bool& has_rows) {
         if (!has_points_)
             reader_.complain({}, "cells before the points", "the section POINTS before the sections of cells");
-        if (std::exchange(has_rows, true))
-            reader_.complain({}, "a second section of this name", "only one section of this name");
+        if (std::exchange(has_rows, true)) reader_.complain({}, "a second section of cells of the same name", "one");
         const std::size_t first = read_count("count", 1), second = read_count("size", 1);
         reader_.peek_word() == "OFFSETS" ? read_new_cells(first, second) : read_old_cells(first, second);
     }

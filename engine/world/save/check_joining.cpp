@@ -167,7 +167,8 @@ void check_cables(const SavedFile& file, const Model& model) {
     for (std::size_t c = 0; c < table.size(); ++c) {
         const Range of = table.points[c];
         if (of.begin != end || of.size() < 2)
-            file.complain("cables/points", at_row("points that begin at row " + std::to_string(of.begin), c),
+            file.complain("cables/points",
+                          at_row(std::to_string(of.size()) + " points from row " + std::to_string(of.begin) + " on", c),
                           "at least two points from row " + std::to_string(end) + " on");
         if (table.keys[c].size() < 1) file.complain("cables/keys", at_row("no keys", c), "at least one key");
         for (const TimeKey& key : table.keys_of(c))

@@ -29,7 +29,7 @@ struct RunRecord {
     std::vector<StartMove> start_moves;
     std::vector<SelfCrossing> self_crossings;  // see WorldReport::self_crossings
     StepLimits limits;
-    HeldDepth held;  // largest overlap of held surfaces in any step
+    HeldDepth held;  // largest overlap in any step of surfaces whose motion is prescribed
     Balance balance;
     Trace trace;
     bool tracing = false;

@@ -100,7 +100,8 @@ inline bool can_be_taken(const StepVerdict& verdict, Index crossings, const Inve
     return verdict.fault == StepFault::none && crossings == 0 && !inverts(inversions, parameters);
 }
 
-/// Copy of the state from which the contact problem of a step is exported, and which the step itself overwrites.
+/// Copy of the state at the start of a step, from which its contact problem is exported. The step overwrites the
+/// original.
 struct KeptVelocities {
     Column<Vec3> velocity;       // node velocities at the start of the step [m/s]
     Column<Vec3> velocity_next;  // predicted [m/s]

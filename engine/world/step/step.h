@@ -58,9 +58,10 @@ void join_reports(WorldState& world, StepReport& report);
 // ranks/sleep_over_ranks.cpp
 
 /// Lists the stages by which sets of touching bodies on several ranks fall asleep and wake as in an undivided world.
-void list_wakes(WorldState& world, TaskGraph& graph);         // finds bodies that this rank wakes; before the reduction
-void list_joined_wakes(WorldState& world, TaskGraph& graph);  // joins these bodies of all ranks; before wake_bodies
-void list_joined_sets(WorldState& world, TaskGraph& graph);   // joins the sets of all ranks; before rest_bodies
+void list_wakes(WorldState& world, TaskGraph& graph);  // finds bodies that this rank wakes; runs before the reduction
+void list_joined_wakes(WorldState& world,
+                       TaskGraph& graph);                    // joins these bodies of all ranks; runs before wake_bodies
+void list_joined_sets(WorldState& world, TaskGraph& graph);  // joins sets of touching bodies; runs before rest_bodies
 
 // ranks/reduce_findings.cpp
 

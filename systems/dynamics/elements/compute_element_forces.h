@@ -25,7 +25,7 @@ struct ElementInputs {
     std::span<const Mat3> orientation = {};   // empty if no material is anisotropic
     std::span<const Index> body = {};         // row of BodyTable by block; may be empty if no body is left out
     std::span<const Real> viscous_time = {};  // viscous time by block; empty if no element is viscous [s]
-    // Relaxing part of the stress; empty if no stress relaxes.
+    // The next four spans describe the part of the stress that relaxes; they are empty if none does.
     std::span<const RelaxationRates> relaxation_rate = {};
     std::span<const ElementLane> own_frequency = {};  // 1/s
     std::span<const Real> relaxing_share = {};

@@ -133,7 +133,7 @@ public:
     /// Elastic energy [J]: u.K u / 2 for the displacements u, or by the material laws of the elements if strain is
     /// `large`. `displacement`: by node of the body [m].
     Real elastic_energy(std::span<const Vec3> displacement, bool large) const;
-    /// Removes the rigid-body motion of the rest shape from velocities, by node of the body [m/s].
+    /// Removes from the velocities of the nodes of the body [m/s] their rigid-body motion about the rest shape.
     void take_rigid_motion(std::span<Vec3> velocity) const;
     /// Computes node positions and lever arms (BodyShape) of the shape with the given displacements.
     void find_shape(const Displacements& displacement, BodyShape& shape) const;

@@ -25,8 +25,9 @@ public:
         normal_.noalias() += weight * row.transpose() * row;
     }
 
-    /// The value at the origin is the sum over the samples of weight * (row . terms at the offset) * sample, with the
-    /// row returned here. It is zero without samples. `rank`: number of terms that were not dropped.
+    /// Returns the row with which the fitted polynomial has the value sum of weight * (row . terms at the offset) *
+    /// sample at the origin, summed over the samples. Without samples the row is zero. `rank`: number of terms that
+    /// were kept; a term that nearly depends on earlier ones is dropped.
     Eigen::Matrix<Real, 1, terms> row_of_origin(int& rank) const {
         // Cholesky decomposition, row by row. The diagonal after elimination of the earlier terms, over its first
         // value, is the squared sine of the angle between a term and the earlier terms, over all samples.

@@ -100,8 +100,9 @@ private:
 
     void sweep(Real asked) {
         if (sweep_rows(region_.tolerance * region_.tolerance * asked, false)) return;
-        // Joints and ties can hold a contact that needs a push. They take precedence: with an error in their positions
-        // the next velocity solve would demand a motion that the contact forbids.
+        // Joints and ties can prevent a contact from being pushed apart. They take precedence, so the last sweeps are
+        // over joints and ties only: with an error in their positions the next velocity solve would demand a motion
+        // that the contact forbids.
         constexpr Real rounding = 1e-24;  // squared
         sweep_rows(rounding * asked, true);
     }

@@ -377,7 +377,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
                 self._warn(self.report().distrust, "distrust", crossed, wrong)
 
     def _warn_of_run(self) -> None:
-        """Warns of doubts that only a report of the world shows."""
+        """Warns of self-crossings, which reports of steps do not contain."""
         for crossing in self.report().self_crossings:
             self._warn(crossing.message, "self_crossing", crossing.name)
 
