@@ -49,15 +49,20 @@ class MpirunTest(ProgramCase):
         return job
 
     def process_of(self, job, rank):
-        children = subprocess.run(["pgrep", "-P", str(job.pid)], capture_output=True, text=True, check=True).stdout
-        return next(pid for pid in map(int, children.split()) if f"OMPI_COMM_WORLD_RANK={rank}".encode() in
-                    pathlib.Path(f"/proc/{pid}/environ").read_bytes().split(b"\0"))
+        """Open MPI starts the processes of the ranks itself, MPICH through another process."""
+        names = {f"{name}={rank}".encode() for name in ("OMPI_COMM_WORLD_RANK", "PMI_RANK")}
+        found = [job.pid]
+        for pid in found:
+            found += map(int, subprocess.run(["pgrep", "-P", str(pid)], capture_output=True, text=True,
+                                             check=False).stdout.split())
+        return next(pid for pid in found[1:]
+                    if names & set(pathlib.Path(f"/proc/{pid}/environ").read_bytes().split(b"\0")))
 
     def status_of(self, job, rank):
         """Content of /proc/PID/status; empty if the process has not started yet."""
         try:
             return pathlib.Path(f"/proc/{self.process_of(job, rank)}/status").read_text()
-        except (StopIteration, subprocess.CalledProcessError, OSError):
+        except (StopIteration, OSError):
             return ""
 
     def stats_of(self, run, *arguments):
