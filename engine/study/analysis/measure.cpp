@@ -173,7 +173,9 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
         r.sentence = sentence;
     };
     const StudyColumn& scene = family.scene->columns[column];
-    if (const Real within = family.zero_within[column]; within > 0) {
+    // Sizes of energies and lengths are changes; their values may have an offset. Rounding errors need no verdict.
+    if (const Real within = family.zero_within[column];
+        std::abs(r.value) <= within && within > agreement_share * r.scale) {
         r.error = within;
         r.mesh = r.step = r.contact = r.noise = r.best = r.best_error = no_value;
         return decide(StudyVerdict::zero,
