@@ -47,7 +47,11 @@ MaterialPoint find_point(const ProbeEntry& entry, const Mesh& mesh) {
     const auto found = follow_point(mesh.nodes, mesh.tetrahedra, *entry.point, reach * (upper - lower).norm());
     if (found) return *found;
     const Vec3& nearest = mesh.nodes[static_cast<std::size_t>(nearest_node(mesh.nodes, *entry.point).first)];
-    const auto text = [](const Vec3& v) { return Json{v.x(), v.y(), v.z()}.dump(); };
+    constexpr int digits = 6;
+    const auto text = [](const Vec3& v) {
+        return "[" + short_text(v.x(), digits) + ", " + short_text(v.y(), digits) + ", " + short_text(v.z(), digits) +
+               "]";
+    };
     entry.place.key("point").refuse(text(*entry.point), "a point inside the body",
                                     "move the point; the nearest node is at " + text(nearest));
 }

@@ -173,12 +173,14 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
         r.sentence = sentence;
     };
     const StudyColumn& scene = family.scene->columns[column];
-    if (const Real within = family.zero_within[column]; within > 0) {
+    // Sizes of energies and lengths are changes; their values may have an offset. Rounding errors need no verdict.
+    if (const Real within = family.zero_within[column];
+        std::abs(r.value) <= within && within > agreement_share * r.scale) {
         r.error = within;
         r.mesh = r.step = r.contact = r.noise = r.best = r.best_error = no_value;
         return decide(StudyVerdict::zero,
-                      "a run with a lower tolerance or shorter steps has less than a tenth of this, so the value is an "
-                      "error of the contact solver or of the steps");
+                      "a run with a lower tolerance or shorter steps has less than a third of it, so it is an error of "
+                      "the contact solver or of the steps");
     }
     if (figure != StudyFigure::agreed && !scene.is_statistic && quantity.noise > agreement_share * r.scale) {
         r.error = r.mesh = r.step = r.contact = r.best = r.best_error = no_value;
@@ -301,7 +303,8 @@ StudyFamily::StudyFamily(const std::vector<StudyRun>& runs)
 }
 
 void StudyFamily::find_zeros() {
-    constexpr Real vanishing = 0.1;  // share of the size that is left of an error; a value changes little
+    // Share of the size below which the size vanishes. Errors of order 1 fall to a quarter with a quarter of the step.
+    constexpr Real vanishing = 1.0 / 3;
     std::vector<Real> largest = sizes, least = sizes;
     for (const StudyRun* run : comparable) {
         const std::vector<Real> of_run = column_sizes(*run);

@@ -25,7 +25,7 @@ struct StudyFamily {
     std::vector<const StudyRun*> comparable{};
     std::vector<Real> sizes{};  // size of the values of each column, see column_sizes()
     // Largest size of any run for columns whose values are errors of the contact solver or of the steps; 0 for others.
-    // In a run with a lower tolerance or shorter steps, such values nearly vanish.
+    // In a run with a lower tolerance or shorter steps, such values fall below a third.
     std::vector<Real> zero_within{};
 
     explicit StudyFamily(const std::vector<StudyRun>& runs);

@@ -121,7 +121,7 @@ SCENES = [
     ("motion of nobody", "probes", probe(quantity="motion"), ['no key "body"', '"motion"']),
     ("motion of a body that there is not", "probes", probe(quantity="motion", body="blok"), ['"blok"', '"block"']),
     ("motion of a point outside", "probes", probe(quantity="motion", body="block", point=[0, 0, 9]),
-     ["probes[0].point", "[0.0,0.0,9.0]", "inside the body", "the nearest node is at"]),
+     ["probes[0].point", "[0, 0, 9]", "inside the body", "the nearest node is at"]),
     ("motion of a point of two numbers", "probes", probe(quantity="motion", body="block", point=[0, 0]),
      ["probes[0].point", "3 numbers"]),
     ("a force on nobody", "probes", probe(quantity="force"),
