@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace skerry {
 
@@ -13,6 +14,14 @@ template <class T>
     const char* const bytes = reinterpret_cast<const char*>(first);
 #pragma GCC unroll 16
     for (std::size_t at = 0; at < count * sizeof(T); at += line) __builtin_prefetch(bytes + at);
+}
+
+/// Prefetches the cache lines of `count` items that come `ahead` items after `current`. These may be past the end of
+/// the array: prefetching there does no harm.
+template <class T>
+[[gnu::always_inline]] inline void ask_for_lines_ahead(const T* current, std::size_t ahead, std::size_t count) {
+    // The sum of a pointer and an offset would be undefined past the end of the array.
+    ask_for_lines(reinterpret_cast<const T*>(reinterpret_cast<std::uintptr_t>(current) + ahead * sizeof(T)), count);
 }
 
 }  // namespace skerry

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "components/ask_for_lines.h"
 #include "components/element_table.h"
 #include "components/lanes.h"
 #include "systems/material/relaxation.h"
@@ -145,20 +146,30 @@ struct MaxwellStep {
 
 /// Relaxes the springs of a block by backward Euler. `strain`: twice Green's strain in this step. `relaxes_volume`:
 /// step length times the rate of the bulk viscosity. `last`: springs in the last step; `next` receives those of this
-/// step. Returns the second Piola-Kirchhoff stress of all springs, divided by step.modulus.
+/// step. Returns the second Piola-Kirchhoff stress of all springs, divided by step.modulus. Springs of the block that
+/// comes `ahead` blocks later are prefetched.
 ///
 /// The dashpots dissipate, per volume, the mean of the spring stresses in the last and this step, times the strain
 /// change of the dashpots. `dissipated` receives this energy density since the last step, divided by a quarter of
 /// step.modulus.
 [[gnu::always_inline]] inline LaneSymmetric<Float8> relax(const MaxwellStep& step, const LaneSymmetric<Float8>& strain,
                                                           const Float8& relaxes_volume, const SpringStrain& last,
-                                                          SpringStrain& next, Float8& dissipated) {
-    const SixFloats now = six_of(strain), change = now - load_six(&last[0]);
-    store_six(now, &next[0]);
+                                                          SpringStrain& next, std::size_t ahead, Float8& dissipated) {
+    // Prefetches are spread over the function, because processors have few buffers for outstanding cache misses.
+    const std::size_t entries_ahead = ahead * last.size();
+    const auto load = [&](std::size_t entry) __attribute__((always_inline)) {
+        ask_for_lines_ahead(&last[entry], entries_ahead, 6);
+        return load_six(&last[entry]);
+    };
+    const auto store = [&](const SixFloats& six, std::size_t entry) __attribute__((always_inline)) {
+        ask_for_lines_ahead(&next[entry], entries_ahead, 6);
+        store_six(six, &next[entry]);
+    };
+    const SixFloats now = six_of(strain), change = now - load(0);
+    store(now, 0);
     const auto spring = [&](std::size_t k, Float8 & energy) __attribute__((always_inline)) {
-        const SixFloats before = load_six(&last[6 + 6 * k]), after = step.kept[k] * (before + change),
-                        twice_mean = before + after;
-        store_six(after, &next[6 + 6 * k]);
+        const SixFloats before = load(6 + 6 * k), after = step.kept[k] * (before + change), twice_mean = before + after;
+        store(after, 6 + 6 * k);
         energy = step.relaxes[k] * (step.shear * inner_product(twice_mean, after) +
                                     step.trace * (skerry::trace(twice_mean) * skerry::trace(after)));
         return after;
@@ -170,6 +181,8 @@ struct MaxwellStep {
         sum = sum + spring(k, energy);
         dissipated = dissipated + energy;
     }
+    ask_for_lines_ahead(&last[bulk_entry], entries_ahead, 1);
+    ask_for_lines_ahead(&next[bulk_entry], entries_ahead, 1);
     const Float8 before = *reinterpret_cast<const Float8InMemory*>(last[bulk_entry].lane),
                  after = (before + skerry::trace(change)) / (1.0F + relaxes_volume);
     *reinterpret_cast<Float8InMemory*>(next[bulk_entry].lane) = after;

@@ -20,8 +20,8 @@ namespace skerry {
 
 namespace {
 
-// Number of blocks by which prefetching is ahead of the computation.
-constexpr std::size_t blocks_ahead = 6;
+// Numbers of blocks and of their rows by which prefetching is ahead of the computation.
+constexpr std::size_t blocks_ahead = 6, rows_ahead = 32;
 
 // Number of node positions (16 kB) that fit into a local buffer, which stays in the L1 cache. Larger patches use
 // patches.position instead.
@@ -47,26 +47,12 @@ struct Run {
         return {patches.slot.data() + row, elements.gradient.data() + row, elements.count[block]};
     }
 
-    /// Prefetches the rows of a later block, which may belong to the next patch. Processors do not recognise that these
-    /// rows are consecutive, because other loads lie between them.
-    [[gnu::always_inline]] void ask_for_rows_ahead_of(std::size_t current) const {
-        const std::size_t block = current + blocks_ahead;
-        if (block >= elements.blocks()) return;
-        const auto row = static_cast<std::size_t>(elements.first[block]);
-        const auto rows = static_cast<std::size_t>(elements.count[block]);
-        ask_for_lines(elements.gradient.data() + row + 1, rows - 1);
-        ask_for_lines(patches.slot.data() + row, rows);
-        ask_for_lines(elements.volume.data() + block, 1);
-    }
-
-    /// Prefetches the springs of that later block. This is a second call because processors have few buffers for
-    /// outstanding cache misses: one call for everything would fill them, and the next load would wait.
-    [[gnu::always_inline]] void ask_for_springs_ahead_of(std::size_t current) const {
-        const std::size_t block = current + blocks_ahead;
-        if (block >= elements.blocks() || !relaxes()) return;
-        ask_for_lines(elements.spring_strain.data() + block, 1);
-        ask_for_lines(next.spring_strain.data() + block, 1);
-        ask_for_lines(elements.own_frequency.data() + block, 1);
+    /// Prefetches a later row of nodes, which may belong to another patch. Processors do not recognise that these rows
+    /// are consecutive, because other loads lie between them. The distance is constant, because a loop over the rows of
+    /// a later block takes more instructions than its prefetches.
+    [[gnu::always_inline]] static void ask_for_row_ahead_of(const BlockNodes& nodes, Index k) {
+        ask_for_lines_ahead(nodes.gradient + k, rows_ahead, 1);
+        ask_for_lines_ahead(nodes.node + k, rows_ahead, 1);
     }
 
     template <class T>
@@ -94,7 +80,8 @@ struct Run {
         Float8 dissipated;
         const LaneSymmetric<Float8> stress =
             relax(maxwell, {floats_of(xx), floats_of(yy), floats_of(zz), floats_of(xy), floats_of(yz), floats_of(zx)},
-                  floats_of(relaxes_volume), elements.spring_strain[block], next.spring_strain[block], dissipated);
+                  floats_of(relaxes_volume), elements.spring_strain[block], next.spring_strain[block], blocks_ahead,
+                  dissipated);
 #pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part)
             relaxed[part] = relaxed[part] + scale[part] * part_of(dissipated, part);
@@ -285,6 +272,7 @@ struct Run {
     [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) const {
         const BlockNodes nodes = nodes_of(block);
         const auto take = [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) __attribute__((always_inline)) {
+            if (part == 0) ask_for_row_ahead_of(nodes, k);
             add_lanes(f, nodes.node[k].lane + lanes_of<KernelReal> * part, force);
         };
         for_each_force(Q, nodes, take);
@@ -301,9 +289,7 @@ struct Run {
     with_law(run.material.model, [&](auto law) {
         Parts<LaneMat3<KernelReal>> F = run.fetch(run.begin);
         for (std::size_t block = run.begin; block < run.end; ++block) {
-            run.ask_for_rows_ahead_of(block);
             const Parts<LaneMat3<KernelReal>> Q = run.stress_of(law, block, F, relaxed);
-            run.ask_for_springs_ahead_of(block);
             const bool goes_on = block + 1 < run.end;
             if (ahead && goes_on) F = run.fetch(block + 1);
             run.add(block, Q);
