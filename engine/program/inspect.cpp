@@ -314,19 +314,19 @@ int inspect_scene(const InspectOptions& options) {
         return exit_ok;
     }
     std::string joined;
-    for (const auto& [count, name] : std::initializer_list<std::pair<std::size_t, const char*>>{
-             {plan.joints.size(), "joints"},
-             {plan.ties.size(), "ties"},
-             {plan.cables.size(), "cables"},
-             {plan.cavities.size(), "cavities"},
-             {plan.pipes.size(), "pipes"},
-             {plan.loads.size(), "loads"},
-             {plan.fibres.size(), plan.fibres.size() == 1 ? "family of fibres" : "families of fibres"},
-             {plan.springs.size(), "springs"},
-             {plan.pairs.size(), "pairs of materials"},
-             {surfaces, "surface sets"}})
-        if (count > 0) joined += ", " + grouped(count) + " " + name;
-    std::cout << scene.name << ": " << scene.description << "\n"
+    for (const auto& [count, one, several] : std::initializer_list<std::tuple<std::size_t, const char*, const char*>>{
+             {plan.joints.size(), "joint", "joints"},
+             {plan.ties.size(), "tie", "ties"},
+             {plan.cables.size(), "cable", "cables"},
+             {plan.cavities.size(), "cavity", "cavities"},
+             {plan.pipes.size(), "pipe", "pipes"},
+             {plan.loads.size(), "load", "loads"},
+             {plan.fibres.size(), "family of fibres", "families of fibres"},
+             {plan.springs.size(), "spring", "springs"},
+             {plan.pairs.size(), "pair of materials", "pairs of materials"},
+             {surfaces, "surface set", "surface sets"}})
+        if (count > 0) joined += ", " + grouped(count) + " " + (count == 1 ? one : several);
+    std::cout << scene.name << (scene.description.empty() ? "" : ": ") << scene.description << "\n"
               << "  bodies        " << grouped(report.bodies) << ", " << grouped(report.nodes) << " nodes, "
               << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders)
               << (report.colliders == 1 ? " collider" : " colliders") << joined << "\n"

@@ -34,7 +34,7 @@ class ProgramInspectTest(ProgramCase):
             "sliders": [{"name": "moon", "load": "weight", "low": 0, "high": 1}],
             "springs": [{"first": {"body": "pad"}, "second": {"point": [0, 0, 1]}, "stiffness": 1}]})
         text = self.skerry("inspect", scene).stdout
-        self.assertIn(" collider, 1 loads, 1 springs, 1 pairs of materials, 1 surface sets\n  step ", text)
+        self.assertIn(" collider, 1 load, 1 spring, 1 pair of materials, 1 surface set\n  step ", text)
         found = json.loads(self.skerry("inspect", scene, "--json").stdout)
         self.assertEqual([found[key] for key in ("pipes", "loads", "springs", "pairs", "surfaces")], [0, 1, 1, 1, 1])
         self.assertIn("  slider        moon: from 0 to 1\n", text)
