@@ -99,8 +99,8 @@ class Mesh:
         physical groups by name, or surface_N and the like without one (Gmsh); arrays NAME of zeros and ones, and NAME_N
         for each number N of other arrays of whole numbers (VTK); node_marker_N and face_marker_N (TetGen); node_ref_N
         and face_ref_N (Medit); sets and surfaces by name, after INSTANCE and a dot (Abaqus). Inverted tetrahedra are
-        turned. A warning Doubt reports what was divided, dropped or turned. scale: factor for all coordinates, 0.001 for
-        a file in millimetres. SceneError: the file cannot be read, or has no tetrahedra."""
+        turned. A warning Doubt reports what was divided, dropped or turned. scale: factor for all coordinates, 0.001
+        for a file in millimetres. SceneError: the file cannot be read, or has no tetrahedra."""
         core, notes = _core.read_mesh(path_text(path, "path"), _scale(scale))
         _warn(notes)
         return Mesh._of(core)
