@@ -183,9 +183,9 @@ Json rule_schema(SchemaBook& book, const RuleTable& rule) {
     return object_of({{"$ref", "#/$defs/" + name}});
 }
 
-void Value<std::string>::read(const Json& json, const Place& place, const KeyDoc&, std::string& out) {
+void Value<std::string>::read(const Json& json, const Place& place, const KeyDoc& doc, std::string& out) {
     if (!json.is_string() || json.get_ref<const std::string&>().empty())
-        place.refuse(described(json), "a text that is not empty");
+        place.refuse(described(json), "a text that is not empty: " + std::string(doc.meaning));
     out = json.get<std::string>();
 }
 
