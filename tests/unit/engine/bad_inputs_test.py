@@ -42,7 +42,7 @@ SCENES = [
     ("a body without a mesh", "bodies.0.mesh", REMOVED, ['body "block"', '"mesh"']),
     ("a material that there is not", "bodies.0.material", "ruber", ['body "block"', '"ruber"', '"rubber"']),
     ("a material in place of its name", "bodies.0.material", {"E": 1e5},
-     ["bodies[0].material", "an object", "name of one of the materials"]),
+     ["bodies[0].material", "found the object", "name of one of the materials"]),
     ("two bodies of one name", "bodies.1.name", "block",
      ['"block", which is already the name of a body', "a different name for every body"]),
     ("a body without a name", "bodies.0.name", "", ["bodies[0].name", "empty"]),
