@@ -287,11 +287,14 @@ def test_an_object_is_named_when_it_is_added(make: Callable[[sk.World], Any], me
     item = make(world)
     given = item.settings
     item.remove()
-    assert getattr(world, method)(**given, name="mine").name == "mine"
+    named = getattr(world, method)(**given, name="mine")
+    assert named.name == "mine"
     before = world.to_bytes()
     for name in ("", "two\nlines"):
         with pytest.raises(sk.SceneError, match="name: found '.*', expected a text of at least one character"):
             getattr(world, method)(**given, name=name)
+        with pytest.raises(sk.SceneError, match="name: found '.*', expected a text of at least one character"):
+            named.name = name
     assert world.to_bytes() == before
     assert world.add_surface_set(world.bodies["cube"], nodes=[0], name="sole").name == "sole"
 
