@@ -21,7 +21,7 @@ import sources
 PASSED_OVER = re.compile(r"engine/program/.*|systems/kernels/kernel_sets\.cpp")
 PRIVATE = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
 NAME = re.compile(r"^(?:[A-Za-z_\[][^;={]*?\b(\w+)(?:\(|\{| =)|(?:struct|class|enum class|using) (\w+))", re.MULTILINE)
-CALLED = re.compile(r"(?<![\w.:>])(\w+)[<({]")
+CALLED = re.compile(r"(?<![\w.:>])(\w+)(?:[<({]|>\()")  # also as a template argument: reduce<add>(...)
 
 
 def private_names(text):
