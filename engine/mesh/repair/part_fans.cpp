@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "components/union_find.h"
+#include "engine/mesh/manifold_fault.h"
 
 namespace skerry::mesh {
 
@@ -33,22 +34,6 @@ std::vector<Face> faces_of(const Mesh& mesh) {
         }
     std::ranges::sort(faces, {}, [](const Face& face) { return std::tuple(face.node, face.corner); });
     return faces;
-}
-
-/// Returns the number of connected components, where tetrahedra that share a node are connected.
-std::size_t count_parts(const Mesh& mesh) {
-    UnionFind parts;
-    parts.start(mesh.nodes.size());
-    std::vector<bool> used(mesh.nodes.size());
-    for (const auto& corners : mesh.tetrahedra)
-        for (const Index n : corners) {
-            parts.join(corners[0], n);
-            used[static_cast<std::size_t>(n)] = true;
-        }
-    std::size_t count = 0;
-    for (std::size_t n = 0; n < used.size(); ++n)
-        count += used[n] && parts.root(static_cast<Index>(n)) == static_cast<Index>(n);
-    return count;
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ Real smallest_altitude(const NewBody& body) {
 
 /// The table rows of a new body, the lane of each of its elements in the element blocks, and for each lane the
 /// tetrahedra that its element covers.
-struct BodyRows {
+struct RowsOfBody {
     Index row;
     Range nodes, tetrahedra;
     ElementPlaces places;
@@ -117,7 +117,7 @@ struct BodyRows {
 /// Builds the elements of a body and appends them to the tables. `known`: elements of an equal body, or null. The list
 /// of elements is freed at once, because it is a third as large as all tables of the body.
 void append_elements_of(Model& model, const NewBody& body, std::span<const MaterialZone> zones,
-                        const KnownElements* known, BodyRows& rows) {
+                        const KnownElements* known, RowsOfBody& rows) {
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
     add_guards({body.tetrahedra, body.nodes}, zones, list);
     rows.places = known ? known->places : find_places(list, rows_of(model.nodes.rest_position, rows.nodes));
@@ -171,7 +171,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     const Range nodes = append_nodes(model, body, row);
     stiffness_sum.resize(model.nodes.position.size());
     set_masses_and_motion(model, body, nodes);
-    BodyRows rows{row, nodes, {}, {}, {}, {}};
+    RowsOfBody rows{row, nodes, {}, {}, {}, {}};
     rows.tetrahedra = append_tetrahedra(body.tetrahedra, body.nodes, nodes.begin, model.tetrahedra);
     const std::vector<MaterialZone> all_zones = zones_of(model, body);
     // Rigid and implicit bodies have tetrahedra, but no rows in the element tables.
