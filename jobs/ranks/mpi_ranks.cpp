@@ -1,6 +1,7 @@
 #include "jobs/ranks/mpi_ranks.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
@@ -46,7 +47,8 @@ void combine_records(void* from, void* into, int* count, MPI_Datatype* type) {
 
 class MpiRanks final : public Ranks {
 public:
-    MpiRanks(MPI_Comm world, bool ends_mpi) : ends_mpi_(ends_mpi) {
+    MpiRanks(MPI_Comm world, bool ends_mpi, std::atomic<const char*>* last_words)
+        : ends_mpi_(ends_mpi), last_words_(last_words) {
         int level = MPI_THREAD_SINGLE;
         MPI_Query_thread(&level);
         if (level < MPI_THREAD_SERIALIZED)
@@ -133,7 +135,13 @@ public:
         return all;
     }
     [[noreturn]] void abort(std::string_view message, int code) override {
-        std::cerr << message << std::endl;
+        std::array<char, MPI_MAX_PROCESSOR_NAME> host{};
+        int length = 0;
+        MPI_Get_processor_name(host.data(), &length);
+        std::cerr << "skerry: rank " << rank_ << " on " << host.data() << ": " << message << "\n";
+        if (const char* const words = last_words_ == nullptr ? nullptr : last_words_->exchange(nullptr))
+            std::cerr << words;
+        std::cerr << std::flush;
         MPI_Abort(world_, code);
         std::exit(code);
     }
@@ -183,6 +191,7 @@ private:
     }
 
     bool ends_mpi_;
+    std::atomic<const char*>* last_words_;
     MPI_Comm world_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
     MPI_Op combine_ = MPI_OP_NULL;
@@ -192,16 +201,16 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Ranks> start_mpi() {
+std::unique_ptr<Ranks> start_mpi(std::atomic<const char*>* last_words) {
     // Open MPI then yields the core while it waits. Otherwise a waiting rank takes time from the threads of others.
     setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
     int level = MPI_THREAD_SINGLE;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);
-    return std::make_unique<MpiRanks>(MPI_COMM_WORLD, true);
+    return std::make_unique<MpiRanks>(MPI_COMM_WORLD, true, last_words);
 }
 
 std::unique_ptr<Ranks> join_mpi(int communicator) {
-    return std::make_unique<MpiRanks>(MPI_Comm_f2c(communicator), false);
+    return std::make_unique<MpiRanks>(MPI_Comm_f2c(communicator), false, nullptr);
 }
 
 }  // namespace skerry

@@ -10,6 +10,8 @@ import math
 import os
 import pathlib
 import random
+import re
+import resource
 import subprocess
 import sys
 
@@ -22,6 +24,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 RADIUS = 0.05  # of the balls of drop_ball.msh [m]
 WEAK = 1000    # balls of each rank
 STRONG = 10000  # balls of all ranks
+COUNTED = 125   # balls of the runs in which --instructions counts instructions
 
 
 def write_pile(file, balls):
@@ -53,21 +56,58 @@ def launched(ranks, command):
     return ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", *command]
 
 
-def run(command, stats, environment):
-    """Runs the program. Returns its statistics."""
-    subprocess.run([*command, "--quiet", "--stats", str(stats)], check=True, env=environment)
-    return json.loads(stats.read_text())
+def run(command, stats, **environment):
+    """Runs the program. Returns its statistics, with its CPU time and that of its children."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    subprocess.run([*command, "--quiet", "--stats", str(stats)], check=True,
+                   env=os.environ | {"OMP_NUM_THREADS": "1"} | environment)
+    return json.loads(stats.read_text()) | {"cpu": resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before}
+
+
+def settled(arguments, balls):
+    """Runs a pile until its lowest balls carry load. Returns the file with its state."""
+    scene, start = arguments.out / f"pile_{balls}.json", arguments.out / f"pile_{balls}.skerry"
+    write_pile(scene, balls)
+    run([arguments.program, "run", str(scene), "--seconds", str(arguments.settle), "--checkpoint", str(start)],
+        arguments.out / "start.json")
+    return start
+
+
+def instructions_of(program, profile):
+    """Instructions that a profile of callgrind counts in the program itself. Waiting is in the libraries of MPI."""
+    table = subprocess.run(["callgrind_annotate", "--threshold=100", str(profile)], check=True, capture_output=True,
+                           text=True).stdout
+    own = re.compile(rf"^ *([\d,]+) .*\[\S*/{re.escape(pathlib.Path(program).name)}\]$", re.MULTILINE)
+    return sum(int(count.replace(",", "")) for count in own.findall(table))
+
+
+def count_instructions(arguments):
+    """Counts the instructions of the steps of a small pile on one rank and on two. Returns those of a copy of a ball,
+    as a share of those of a ball."""
+    start = settled(arguments, COUNTED)
+    counts = []
+    for ranks in (1, 2):
+        for old in arguments.out.glob("callgrind.*"):
+            old.unlink()
+        command = ["valgrind", "--tool=callgrind", "--collect-atstart=no",
+                   "--toggle-collect=skerry::World::advance(double,*",
+                   f"--callgrind-out-file={arguments.out}/callgrind.%p", arguments.program, "run", "--restart",
+                   str(start), "--threads", "1", "--seconds", str(arguments.settle + arguments.seconds)]
+        run(launched(ranks, command) if ranks > 1 else command, arguments.out / "counted.json",
+            SKERRY_INSTRUCTION_SET="x86-64-v3")  # valgrind does not know wider registers
+        counts.append([instructions_of(arguments.program, file) for file in arguments.out.glob("callgrind.*")])
+    (one,), two = counts
+    print(f"instructions of {COUNTED} balls: {one / 1e6:.0f} million on one rank, "
+          f"{' and '.join(f'{n / 1e6:.0f}' for n in sorted(two))} million on two; one rank has "
+          f"{one / max(two):.2f} times those of the busier one of two\n")
+    copies = 2 * volume(COUNTED, 2, Costs(body=0)).ghosts
+    return (sum(two) - one) / (copies * one / COUNTED)
 
 
 def measure(arguments):
     """Runs the pile on each number of ranks, several times in turns. Returns one row for each number."""
     out = arguments.out
-    scene, start = out / "pile.json", out / "pile.skerry"
-    write_pile(scene, arguments.balls)
-    environment = os.environ | {"OMP_NUM_THREADS": "1"}
-    settled, begin = arguments.settle, arguments.settle + 1e-5
-    run([arguments.program, "run", str(scene), "--seconds", str(settled), "--checkpoint", str(start)],
-        out / "start.json", environment)
+    start, begin = settled(arguments, arguments.balls), arguments.settle + 1e-5
     runs = {ranks: [] for ranks in arguments.ranks}
     if arguments.plain:
         runs[0] = []  # the build without MPI
@@ -76,12 +116,13 @@ def measure(arguments):
             def advance(end, name):
                 command = [arguments.program if ranks else arguments.plain, "run", "--restart", str(start),
                            "--threads", "1", "--seconds", str(end)]
-                return run(launched(ranks, command) if ranks else command, out / name, environment)
+                return run(launched(ranks, command) if ranks else command, out / name)
             empty = advance(begin, "empty.json")
-            full = advance(settled + arguments.seconds, f"ranks_{ranks}.json")
+            full = advance(arguments.settle + arguments.seconds, f"ranks_{ranks}.json")
             steps = full["steps"] - empty["steps"]
             done.append({"ranks": ranks, "hash": full["state_hash"], "steps": steps,
                          "wall": (full["seconds_wall"] - empty["seconds_wall"]) / steps,
+                         "cpu": (full["cpu"] - empty["cpu"]) / steps,
                          "contacts": full["contacts"]["mean"], "of_ranks": full.get("ranks", {})})
     hashes = {row["hash"] for done in runs.values() for row in done}
     if len(hashes) != 1:
@@ -116,12 +157,12 @@ def print_measured(rows, costs, balls):
 
 
 def costs_of(measured, balls):
-    """Time of a ball, and of a copy of a ball of another rank: the time that two ranks compute beyond that of one. The
-    machine must have two idle cores."""
+    """Time of a ball, which is CPU time because other programs disturb it less, and of a copy of a ball of another
+    rank: the time that two ranks compute beyond that of one. For the latter the machine must have two idle cores."""
     row = {r["ranks"]: r for r in measured}
     x, y, z = block_of(balls)
     touching = (x - 1) * y * z + x * (y - 1) * z + x * y * (z - 1) + x * y + 2 * x * z + 2 * y * z  # with the walls
-    costs = Costs(body=row[1]["wall"] / balls, contacts=row[1]["contacts"] / touching)
+    costs = Costs(body=row[1]["cpu"] / balls, contacts=row[1]["contacts"] / touching)
     if 2 not in row:
         return costs
     computing = 2 * row[2]["wall"] * (1 - row[2]["of_ranks"]["waiting"])
@@ -178,6 +219,8 @@ def main():
     parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 4, 8])
     parser.add_argument("--settle", type=float, default=0.05, help="simulated time before the measured steps [s]")
     parser.add_argument("--seconds", type=float, default=0.02, help="simulated time of the measured steps [s]")
+    parser.add_argument("--instructions", action="store_true",
+                        help="measure the cost of a copy by counting instructions, for a busy machine; needs valgrind")
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/profiling/ranks"))
     parser.add_argument("--figures", action="append", default=[], help="folder for the plot; may be given repeatedly")
@@ -187,6 +230,8 @@ def main():
     print(f"messages: {1e6 * here.latency:.1f} us, {here.bandwidth / 1e9:.1f} GB/s\n")
     measured = measure(arguments)
     costs = costs_of(measured, arguments.balls)
+    if arguments.instructions:
+        costs = dataclasses.replace(costs, ghost=count_instructions(arguments))
     print(f"a ball takes {1e6 * costs.body:.1f} us of a step, a copy {costs.ghost:.2f} of it\n")
     print_measured(measured, costs, arguments.balls)
     rows = predictions(costs)

@@ -1,16 +1,19 @@
 // Bodies of a divided world: their owners, and their moves between ranks.
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/world/ranks/hold/ghosts.h"
 #include "skerry/ranks.h"
 #include "tests/ranks/rank_scenes.h"
 #include "tests/ranks/thread_ranks.h"
+#include "tests/support/count_allocations.h"
 #include "tests/support/draws.h"
 #include "tests/support/message_of.h"
 
@@ -226,6 +229,50 @@ TEST_CASE("bodies keep their meshes, labels and sets on the ranks to which they 
         }
     });
     CHECK(compared >= 3 * 9);
+}
+
+/// A run in which an allocation of rank 1 fails.
+struct FailedAllocation {
+    bool happened = false;  // false: rank 1 needs fewer allocations
+    std::string error;      // the error that ends the job
+};
+
+/// Calls act() on both ranks of a divided world. The allocation of this number fails on rank 1.
+FailedAllocation fail_allocation(long number, const RankScene& scene, const std::function<void(World&)>& act) {
+    FailedAllocation failed;
+    try {
+        run_on_ranks(2, [&](Ranks& ranks) {
+            World world = scene.make(1);
+            distribute(world, ranks);
+            const bool fails = ranks.rank() == 1;
+            if (fails) allocations_until_failure = number;
+            act(world);
+            if (fails) failed.happened = std::exchange(allocations_until_failure, -1) < 0;
+        });
+    } catch (const std::exception& error) {
+        return {true, error.what()};
+    }
+    return failed;
+}
+
+TEST_CASE("a rank that runs out of memory ends the job, before its world can be seen", "[ranks]") {
+    const RankScene scene = own_scene("thrown");
+    const std::function<void(World&)> acts[] = {[&](World& world) { world.advance(scene.seconds / 4); },
+                                                [](World& world) { gathered(world); }};
+    for (const std::function<void(World&)>& act : acts) {
+        int ended = 0;
+        for (long number = 0;; number += 1 + number / 8) {
+            const FailedAllocation failed = fail_allocation(number, scene, act);
+            if (!failed.happened) break;
+            if (failed.error.empty()) continue;  // std::stable_sort manages without this memory
+            INFO(number);
+            CHECK(failed.error ==
+                  "rank 1 ends with code 1: found too little memory, expected enough for the bodies of this rank (use "
+                  "more machines)");
+            ++ended;
+        }
+        CHECK(ended > 10);
+    }
 }
 
 /// Two boxes that fly towards each other and collide after 0.095 s.

@@ -20,7 +20,7 @@ int main(int argument_count, char* arguments[]) {
         try {
             test.run(*ranks);
         } catch (const std::exception& error) {
-            ranks->abort("rank " + std::to_string(ranks->rank()) + ", " + test.name + ": " + error.what(), 1);
+            ranks->abort(std::string(test.name) + ": " + error.what(), 1);
         }
     }
     if (ranks->rank() == 0) std::cout << skerry::test::ranks_cases().size() << " cases passed\n";

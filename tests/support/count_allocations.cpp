@@ -1,4 +1,4 @@
-// Replaces operator new of a whole program by one that counts.
+// Replaces operator new of a whole program by one that counts, and that can fail.
 #include "tests/support/count_allocations.h"
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 namespace skerry::test {
 
 std::atomic<long> allocations{0};
+thread_local long allocations_until_failure = -1;
 
 }  // namespace skerry::test
 
@@ -15,6 +16,8 @@ namespace {
 
 void* counted(std::size_t size, std::size_t alignment) {
     ++skerry::test::allocations;
+    if (skerry::test::allocations_until_failure >= 0 && skerry::test::allocations_until_failure-- == 0)
+        throw std::bad_alloc();
     void* const memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
     if (!memory) throw std::bad_alloc();
     return memory;

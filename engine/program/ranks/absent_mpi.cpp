@@ -4,7 +4,7 @@
 
 namespace skerry {
 
-std::unique_ptr<Ranks> start_mpi() {
+std::unique_ptr<Ranks> start_mpi(std::atomic<const char*>*) {
     refuse("skerry run", {}, "several processes, started by mpirun or srun",
            "one process, because this program was built without MPI",
            "build it with SKERRY_MPI=ON; for independent runs use `skerry sweep`");

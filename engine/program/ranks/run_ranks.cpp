@@ -115,7 +115,7 @@ void take_larger(int& into, int from) {
 RunRanks RunRanks::join() {
     const Share tasks = task_share(std::getenv);
     if (tasks.of == 1) return {};
-    std::unique_ptr<Ranks> ranks = start_mpi();
+    std::unique_ptr<Ranks> ranks = start_mpi(&signal_note);
     if (ranks->size() != tasks.of)
         refuse(tasks.said_by, {},
                std::to_string(tasks.of) + " processes, of which MPI has connected " + std::to_string(ranks->size()),
@@ -285,10 +285,7 @@ int RunRanks::fail(const std::exception& error) {
         if (is_first()) std::cerr << "skerry: " << error.what() << std::endl;
         return agreed != nullptr ? agreed->code : code_of(error);
     }
-    if (divided_)
-        ranks_->abort("skerry: " + rank_name(static_cast<std::size_t>(ranks_->rank()), host_name()) + ": " +
-                          error.what() + "\n" + last_words_[0],
-                      exit_failed);
+    if (divided_) ranks_->abort(error.what(), exit_failed);
     try {
         agree({{"host", host_name()}, {"error", error.what()}, {"code", code_of(error)}});
     } catch (const AgreedError& known) {

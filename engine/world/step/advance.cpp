@@ -8,6 +8,7 @@
 #include "engine/base/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/kernels.h"
+#include "engine/world/ranks/act_together.h"
 #include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/step/step.h"
 #include "jobs/arithmetic_scope.h"
@@ -253,29 +254,9 @@ private:
     bool& advancing_;
 };
 
-}  // namespace
-
-Real lag_between_steps(const WorldState& world) {
-    // With leapfrog, a drift at the end of the call removes the lag of the velocities.
-    if (world.model.settings.integrator == Integrator::leapfrog) return 0;
-    const Real before = world.clock.step_before;
-    const Real step = before > 0 ? before : trusted_step(world.model);
-    return std::isfinite(step) ? step / 2 : 0;  // a world without bodies does not limit the step, and has no velocities
-}
-
-StepReport World::advance(Real dt) {
-    return advance(dt, {});
-}
-
-StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>& go_on) {
-    WorldState& world = *state_;
-    world.require_between_steps("advance");
-    if (!(dt >= 0) || !std::isfinite(dt)) refuse("advance", "dt", short_text(dt), "a time >= 0 (s)");
-    // Sets the floating-point mode for the code that runs between the stages. This code must not depend on the mode of
-    // the caller.
-    const ArithmeticScope arithmetic;
-    settle_start();
-    const AdvanceScope scope(world.advancing);
+/// Advances a world whose start is complete (World::advance).
+StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const StepReport&)>& go_on,
+                      Callbacks& callbacks) {
     Model& model = world.model;
     Clock& clock = world.clock;
     SearchMemory& search = world.cache.search.memory;
@@ -302,7 +283,6 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     // With leapfrog, the balance is checked only at the end of the call, when positions and velocities belong to one
     // time.
     bool check_at_end = false;
-    Callbacks callbacks;
     // With ranks, the sums of this rank are added to those of all ranks by join_records.
     Balance& balance = world.ranks.on() ? world.ranks.share.balance : world.record.balance;
     bool& stops = world.ranks.stops;  // true if a callback has asked to end the call
@@ -381,6 +361,35 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     world.query_trees.forget();
     if (left == 0) clock.time = end;
     if (check_at_end) check_balance_after_motion(world);
+    return report;
+}
+
+}  // namespace
+
+Real lag_between_steps(const WorldState& world) {
+    // With leapfrog, a drift at the end of the call removes the lag of the velocities.
+    if (world.model.settings.integrator == Integrator::leapfrog) return 0;
+    const Real before = world.clock.step_before;
+    const Real step = before > 0 ? before : trusted_step(world.model);
+    return std::isfinite(step) ? step / 2 : 0;  // a world without bodies does not limit the step, and has no velocities
+}
+
+StepReport World::advance(Real dt) {
+    return advance(dt, {});
+}
+
+StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>& go_on) {
+    WorldState& world = *state_;
+    world.require_between_steps("advance");
+    if (!(dt >= 0) || !std::isfinite(dt)) refuse("advance", "dt", short_text(dt), "a time >= 0 (s)");
+    // Sets the floating-point mode for the code that runs between the stages. This code must not depend on the mode of
+    // the caller.
+    const ArithmeticScope arithmetic;
+    settle_start();
+    const AdvanceScope scope(world.advancing);
+    Callbacks callbacks;
+    StepReport report;
+    act_together(world.ranks.ranks, [&] { report = take_steps(world, dt, go_on, callbacks); });
     callbacks.rethrow();
     return report;
 }

@@ -124,10 +124,10 @@ bool run_stages(WorldState& world) {
 }
 
 /// Makes the element rotations and spring strains of this step the input of the next step, by swapping columns. For
-/// unstrained bodies the swapped columns contain equal values.
+/// unstrained bodies the swapped columns contain equal values. Those of led ghosts are never read.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
-    if (!world.model.any_idle) {
+    if (!world.model.any_asleep) {
         elements.rotation.swap(elements.rotation_next);
         elements.spring_strain.swap(elements.spring_strain_next);
         return;

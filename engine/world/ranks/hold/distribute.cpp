@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/complaint.h"
+#include "engine/world/ranks/act_together.h"
 #include "engine/world/ranks/hold/ghosts.h"
 #include "engine/world/ranks/rows/body_rows.h"
 #include "engine/world/ranks/rows/put_record.h"
@@ -214,27 +215,8 @@ std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSetti
     return extents;
 }
 
-}  // namespace
-
-void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
-    WorldState& undivided = WorldAccess::state_of(world);
-    undivided.require_between_steps("distribute");
-    if (undivided.ranks.on())
-        refuse_division("world", "a world that is already divided", "an undivided world",
-                        "call distribute() only once");
-    if (ranks.size() == 1) return require_divisible(undivided);
-    const ArithmeticScope arithmetic;  // same rounding as in advance(), because clusters may be chosen here
-    const std::vector<BodyExtent> extents =
-        ranks.rank() == 0 ? send_parts(world, ranks, settings) : receive_part(world, ranks, settings);
-    WorldState& state = WorldAccess::state_of(world);
-    note_holders(state.ranks, extents);
-    note_ghosts(state);
-    list_step_again(state);
-}
-
-std::optional<World> gathered(const World& world) {
-    WorldState& state = WorldAccess::state_of(const_cast<World&>(world));  // rows are read, not changed
-    if (!state.ranks.on()) return world.clone();
+/// Returns the complete world on rank 0. `state`: the part of this rank.
+std::optional<World> gather_parts(WorldState& state) {
     const RankState& mine = state.ranks;
     std::vector<std::uint8_t> sent;
     for (const Index place : mine.place) sent.push_back(mine.whole.owner[place] == mine.rank);
@@ -259,6 +241,34 @@ std::optional<World> gathered(const World& world) {
     copy.ranks = {};
     note_ghosts(copy);
     copy.model.of_ranks = {};
+    return whole;
+}
+
+}  // namespace
+
+void distribute(World& world, Ranks& ranks, const RankSettings& settings) {
+    WorldState& undivided = WorldAccess::state_of(world);
+    undivided.require_between_steps("distribute");
+    if (undivided.ranks.on())
+        refuse_division("world", "a world that is already divided", "an undivided world",
+                        "call distribute() only once");
+    if (ranks.size() == 1) return require_divisible(undivided);
+    const ArithmeticScope arithmetic;  // same rounding as in advance(), because clusters may be chosen here
+    act_together(&ranks, [&] {
+        const std::vector<BodyExtent> extents =
+            ranks.rank() == 0 ? send_parts(world, ranks, settings) : receive_part(world, ranks, settings);
+        WorldState& state = WorldAccess::state_of(world);
+        note_holders(state.ranks, extents);
+        note_ghosts(state);
+        list_step_again(state);
+    });
+}
+
+std::optional<World> gathered(const World& world) {
+    WorldState& state = WorldAccess::state_of(const_cast<World&>(world));  // rows are read, not changed
+    if (!state.ranks.on()) return world.clone();
+    std::optional<World> whole;
+    act_together(state.ranks.ranks, [&] { whole = gather_parts(state); });
     return whole;
 }
 
