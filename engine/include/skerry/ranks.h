@@ -44,9 +44,9 @@ struct RankSettings {
 /// replaced by parts of this world, with the same handles; only their backend, number of threads and callback of
 /// watch_steps() stay. So the other ranks need not build anything. Afterwards each rank simulates the bodies that it
 /// owns. All ranks must then make the same calls of advance() and gathered(). An error of one rank alone, such as too
-/// little memory, ends all ranks with a message and exit code 1. Calls that change objects throw SceneError, and so does
-/// distribute() on all ranks if they cannot divide the world. Functions that read a divided world, such as energy() or
-/// state_hash(), use only the bodies that this rank holds; read results from gathered().
+/// little memory, ends all ranks with a message and exit code 1. Calls that change objects throw SceneError, and so
+/// does distribute() on all ranks if they cannot divide the world. Functions that read a divided world, such as
+/// energy() or state_hash(), use only the bodies that this rank holds; read results from gathered().
 void distribute(World& world, Ranks& ranks, const RankSettings& settings = {});
 
 /// Returns the complete world on rank 0 and nothing on the other ranks. All ranks must call the function. The result
