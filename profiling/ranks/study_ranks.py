@@ -89,7 +89,7 @@ def count_instructions(arguments):
     for ranks in (1, 2):
         for old in arguments.out.glob("callgrind.*"):
             old.unlink()
-        command = ["valgrind", "--tool=callgrind", "--collect-atstart=no",
+        command = ["valgrind", "-q", "--tool=callgrind", "--collect-atstart=no",
                    "--toggle-collect=skerry::World::advance(double,*",
                    f"--callgrind-out-file={arguments.out}/callgrind.%p", arguments.program, "run", "--restart",
                    str(start), "--threads", "1", "--seconds", str(arguments.settle + arguments.seconds)]
