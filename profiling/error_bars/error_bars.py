@@ -192,8 +192,9 @@ def write_page(rows):
     DOCS.with_suffix(".md").write_text(PAGE.format(
         all=len(rows), checks=len(checks), estimates=estimates, **shares(rows),
         **{f"check_{name}": share for name, share in shares(check_rows).items()},
-        doubted=", ".join(f"`{row['item']}` (known value {row['formula']}, doubt {100 * row['doubt'] / abs(row['known']):.2g} %)"
-                          for row in known if row["error"] > row["bar"] + EXACT * abs(row["known"]) and row["inside"]),
+        doubted=", ".join(f"`{row['item']}` (known value {row['formula']}, doubt "
+                          f"{100 * row['doubt'] / abs(row['known']):.2g} %)" for row in known
+                          if row["error"] > row["bar"] + EXACT * abs(row["known"]) and row["inside"]),
         verdicts=" or ".join(sorted({f"`{item.verdict}`" for item in all_items() if item.verdict})), failures=failures))
 
 
