@@ -34,8 +34,7 @@ CRITERIA = """- **1**: A block of 1 t on a block of 1 g comes to rest without pe
   impulses only.
 - **13**: A block with the friction coefficient 1000 does not slide.
 - **14**: Stacks with restitution 0, and stacks with restitution 1, gain no energy.
-- **16**: The contact solver converges for one region of 100,000 contacts.
-- **17**: The contact solver converges for 100,000 regions of one contact each.
+- **16, 17**: The contact solver converges for one region of 100,000 contacts, and for 100,000 regions of one contact.
 - **18**: Input values that are NaN are refused; the message names object and field.
 - **19**: A stack of twenty bodies stands.
 - **20**: Bodies that rest for a long time neither drift nor gain energy.
