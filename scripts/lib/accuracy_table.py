@@ -15,9 +15,10 @@ writes this page. An *item* is a known solution. [accuracy.csv](accuracy/accurac
 shows the {shown} items that come nearest to a tolerance, each by its worst check. Errors and tolerances in % are
 relative, others absolute.
 
-In the formulas `n` is a number of elements, `h` the time step or, in some items, a length, `a` an angle, `R` a radius,
-`theta_0` a start angle. Bars have the length `L`, cross-section `A`, second moment of area `I` and wave speed `c`. `E*`
-is `E/(1 - nu^2)`. Items without a formula use a run with a fine mesh of quadratic tetrahedra.
+In the table `n` is a number of elements, `h` the time step or a length, `a` an angle or a radius, `b` an outer radius,
+`R` a radius, `t` a thickness, `m` a mass, `v` a speed, `F` a force, `p` a pressure, `theta_0` a start angle. Bars have
+the length `L`, cross-section `A`, second moment of area `I` and wave speed `c`. `E*` is `E/(1 - nu^2)`. Items without a
+formula use a run with a fine mesh of quadratic tetrahedra.
 
 | item | checks | quantity | formula | expected | found | error | tolerance |
 |---:|---:|---|---|---:|---:|---:|---:|
