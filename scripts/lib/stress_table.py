@@ -12,8 +12,8 @@ This page lists extreme inputs that the engine withstands. `scripts/stress` runs
 this page, and lists all {checks} checks in `build/stress/stress.csv`. {failed} of the checks failed.
 
 In all tests the engine takes each step or refuses it with a message, the state stays finite, no scene gains more than
-a hundredth of its energy, and unsolved contact regions are flagged. The list numbers the tests. In `stress.csv`,
-test 0 checks problems that users of other engines reported.
+a hundredth of its energy, and unsolved contact regions are flagged. In `stress.csv`, test 0 checks
+problems that users of other engines reported.
 
 """
 COLUMNS = ["item", "scene", "criterion", "found", "passed", "file", "test"]
