@@ -119,21 +119,22 @@ ESTIMATE_REASONS = {
     "cantilever_release": "the period converges from both sides: coarse meshes are too stiff, finer ones too soft",
     "elastica": "large deflections depend less on the stiffness than small ones",
     "toppling": REASONS["toppling"],
-    "confined_column_stress": "recovery has order 1 at the held end",
+    "confined_column_stress": "the recovered stress has order 1 at the held end",
     "bounce": "errors of three impacts cancel by accident",
-    "pendulum": "at this time it moves across the measured direction",
+    "pendulum": "at this time the pendulum moves perpendicular to the measured direction",
     "tapered_rod": "formula too uncertain for this ratio",
 }
 
 PAGE = """# Error bars against known solutions
 
 This page shows how far you can trust the error bars of [`skerry study`](study.md) and the
-[error estimates](methods/error_estimates.md) of every run. `scripts/error_bars` studies {all} items with known
-solutions and writes this page. The scenes have coarse meshes and default settings. They were fixed
-before the first study, except some quantities, and the stiff block and slow push of `incline_slide`. The last
-{checks} items ([check_items.py](../profiling/error_bars/check_items.py)) were not used to choose the rules. Their first
-study led to three corrections: one item needs friction, one formula is less exact, one holds for finite strain.
-[error_bars.csv](error_bars/error_bars.csv) lists values, formulas and orders.
+[error estimates](methods/error_estimates.md) of every run. `scripts/error_bars` studies {all} items (quantities with
+known values) and writes this page. [error_bars.csv](error_bars/error_bars.csv) lists values, formulas and orders.
+
+The scenes have coarse meshes and default settings. Scenes and quantities were fixed before the first study, except some
+quantities, and the stiff block and slow push of `incline_slide`. The rules of studies were chosen without the last
+{checks} items ([check_items.py](../profiling/error_bars/check_items.py)). After the first study three faults of these
+items were corrected: a missing friction, an inexact formula, and a formula not valid for finite strain.
 
 | claim | all items | the last {checks} |
 |---|---:|---:|
@@ -141,11 +142,12 @@ study led to three corrections: one item needs friction, one formula is less exa
 | the error bar is at most 3 times the true error | {sharp} | {check_sharp} |
 | the estimate of the run is within a factor of 3 of the true error | {estimated} | {check_estimated} |
 
-Errors below 0.001 % count as 0.001 %. Some known values have errors themselves, up to 7 % for an
-impact after Hertz. The column `doubt` lists these errors, which the first line adds to the error bar. Without them
-these items would be outside:
-{doubted}. An item without a finite value meets the first two lines if the study names it as {verdicts}. The third line
-leaves out items with an error below their doubt.
+Errors below 0.001 % count as 0.001 %. Some known values have errors themselves, up to 7 % for an impact by the theory
+of Hertz. The column `doubt` of `error_bars.csv` lists these errors. The first claim adds them to the error bar. Without
+this addition the error bars of these items would be too small: {doubted}.
+
+An item with an infinite exact value meets the first two claims if the study
+calls it {verdicts}. The third claim leaves out items with an error below their doubt.
 
 Items that miss one of the first two claims, in % of the known value:
 
@@ -189,8 +191,8 @@ def write_page(rows):
     DOCS.with_suffix(".md").write_text(PAGE.format(
         all=len(rows), checks=len(checks), estimates=estimates, **shares(rows),
         **{f"check_{name}": share for name, share in shares(check_rows).items()},
-        doubted=", ".join(f"`{row['item']}` (doubt {100 * row['doubt'] / abs(row['known']):.2g} %, {row['formula']})"
-                          for row in known if row["error"] > row["bar"] + EXACT * abs(row["known"]) and row["inside"]),
+        doubted=", ".join(f"`{row['item']}` (doubt {100 * row['doubt'] / abs(row['known']):.2g} %)" for row in known
+                          if row["error"] > row["bar"] + EXACT * abs(row["known"]) and row["inside"]),
         verdicts=" or ".join(sorted({f"`{item.verdict}`" for item in all_items() if item.verdict})), failures=failures))
 
 

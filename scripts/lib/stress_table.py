@@ -8,12 +8,12 @@ from records import rows_of, write_csv
 
 HEADER = """# Stress
 
-The engine withstands these inputs. `scripts/stress` runs the tests tagged `[stress]`, writes
+This page lists extreme inputs that the engine withstands. `scripts/stress` runs the tests tagged `[stress]`, writes
 this page, and lists all {checks} checks in `build/stress/stress.csv`. {failed} of the checks failed.
 
 In all tests the engine takes each step or refuses it with a message, the state stays finite, no scene gains more than
-a hundredth of its energy, and unsolved contact regions are flagged. The
-checks of item 0 are problems that users of other engines reported.
+a hundredth of its energy, and unsolved contact regions are flagged. In `stress.csv`, test 0 checks
+problems that users of other engines reported.
 
 """
 COLUMNS = ["item", "scene", "criterion", "found", "passed", "file", "test"]
@@ -28,19 +28,19 @@ CRITERIA = """- **1**: A block of 1 t on a block of 1 g comes to rest without pe
 - **7**: A `step_size` of 2 or 10 times the stability limit is shortened, and the report says so.
 - **8**: A sheet with one layer of elements stops a ball that flies at 100 m/s.
 - **9**: A body that starts half inside another body leaves it with at most twice the push-out speed.
-- **10**: A hundred copies of every contact give the same motion as one copy.
+- **10**: If every contact occurs a hundred times, the motion is the same as with single contacts.
 - **11**: Contact search ignores triangles without area and edges without length.
-- **12**: Without friction, solving normal and tangential rows gives the same result as solving normal rows only.
+- **12**: Without friction, solving for normal and tangential impulses gives the same result as solving for normal
+  impulses only.
 - **13**: A block with the friction coefficient 1000 does not slide.
 - **14**: Stacks with restitution 0, and stacks with restitution 1, gain no energy.
-- **16**: The solver converges for one region of 100,000 contacts.
-- **17**: The solver converges for 100,000 regions of one contact each.
+- **16, 17**: The contact solver converges for one region of 100,000 contacts, and for 100,000 regions of one contact.
 - **18**: Input values that are NaN are refused; the message names object and field.
 - **19**: A stack of twenty bodies stands.
 - **20**: Bodies that rest for a long time neither drift nor gain energy.
 - **21**: A sheet pinched between two plates stays still and flat.
 - **22**: Regions of jammed contacts with the friction coefficient 3 are solved, or flagged as unsolved.
-- **23**: The solver converges for contacts of 10,000 points with one triangle.
+- **23**: The contact solver converges for contacts of 10,000 points with one triangle.
 - **24**: Worlds that are empty, at rest, or of one tetrahedron run.
 - **25**: A body is pressed to a tenth of its height. All inverted elements are reported.
 - **26**: Steps are refused far from the origin, where rounding of coordinates is too coarse
@@ -54,8 +54,8 @@ CRITERIA = """- **1**: A block of 1 t on a block of 1 g comes to rest without pe
 In tests 29 to 31 no step is refused. At the end no element is inverted, and bodies have their undeformed shapes up to
 a hundredth of an edge length.
 
-**20**: Without `sleep`, a heap can creep in each step by `tolerance` times the distance that it would fall without
-contacts.
+Test 20 uses the default setting `sleep`. Without it, a heap can creep in each step by `tolerance` times the distance
+that it would fall without contacts.
 """
 
 

@@ -100,7 +100,7 @@ TEST_CASE("a rigid flat punch is pressed into a block", "[scene][accuracy]") {
         const std::string which =
             ", Poisson ratio " + std::to_string(c.nu).substr(0, 4) + ", " + std::string(name_of(c.kind));
         accuracy::check({.item = 38,
-                         .name = "flat punch on a block, force over E, width and way" + which,
+                         .name = "flat punch on a block, force over E, width and displacement" + which,
                          .formula = "fine mesh of quadratic elements",
                          .expected = c.expected,
                          .found = found.stiffness,
