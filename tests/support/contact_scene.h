@@ -132,7 +132,7 @@ struct ContactScene {
 };
 
 /// Adds two sheets of size x size points. Each inner point touches a triangle of the other sheet: 2 (size - 2)^2
-/// contacts in one region, an oblique impact with uneven masses (docs/methods/measuring.md 4.1).
+/// contacts in one region, an oblique impact with uneven masses (docs/methods/measuring.md 3.1).
 inline void add_sheets(ContactScene& scene, int size, Real mu, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<Real> noise;
