@@ -16,7 +16,7 @@ namespace skerry {
 namespace {
 
 template <class T>
-void copy(std::span<const T> from, Column<T>& to) {
+void keep_column(std::span<const T> from, Column<T>& to) {
     to.resize(from.size());
     std::copy(from.begin(), from.end(), to.begin());
 }
@@ -49,16 +49,16 @@ std::vector<HeldDirection> held_directions(const AttachmentTable& attachments, s
 
 void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
                      std::span<const Vec3> position, const KeptFrames& frames, KeptVelocities& kept) {
-    copy(velocity, kept.velocity);
-    copy(velocity_next, kept.velocity_next);
+    keep_column(velocity, kept.velocity);
+    keep_column(velocity_next, kept.velocity_next);
     if (frames.center.empty()) return;
-    copy(position, kept.position);
-    copy(frames.center, kept.center);
-    copy(frames.rotation, kept.rotation);
-    copy(frames.axes, kept.axes);
-    copy(frames.angular_momentum, kept.angular_momentum);
-    copy(frames.deforming, kept.deforming);
-    copy(frames.deforming_before, kept.deforming_before);
+    keep_column(position, kept.position);
+    keep_column(frames.center, kept.center);
+    keep_column(frames.rotation, kept.rotation);
+    keep_column(frames.axes, kept.axes);
+    keep_column(frames.angular_momentum, kept.angular_momentum);
+    keep_column(frames.deforming, kept.deforming);
+    keep_column(frames.deforming_before, kept.deforming_before);
 }
 
 void show_contact_problem(const WorldState& world, Real time) {
