@@ -242,7 +242,8 @@ JointHandle Joints::add(const JointSettings& joint) {
     table.first[row] = first;
     table.second[row] = second;
     table.first_frame[row] = frame_on(model, first, joint.point, axes);
-    // The frame on the second body is where that on the first body is at coordinate 0.
+    // At coordinate 0 the two frames coincide. The frame on the second body is therefore the given frame, moved back by
+    // the coordinate.
     if (joint.kind == JointKind::hinge)
         table.second_frame[row] =
             frame_on(model, second, joint.point, Eigen::AngleAxis<Real>(-joint.coordinate, axis) * axes);

@@ -164,7 +164,7 @@ MassProperties mass_properties(const Model& model, const NewBody& body) {
 
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
-    // All nodes of a body that shares its mass can move. share_mass replaces their masses.
+    // The inverse masses of all nodes must be those of nodes that can move. share_mass replaces these masses later.
     if (body.tetrahedra.empty() || body.mass) std::ranges::fill(rows_of(nodes.mass, range), Real(1));
     add_lumped_mass(body.tetrahedra, body.shape_of_masses(), densities(model, body), rows_of(nodes.mass, range));
     // A round body is drawn with a mesh that lies inside the exact shape and has less volume. The masses of its nodes
@@ -195,7 +195,7 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     // Frame masses are chosen for linear elements only. The mass forms of smoothed elements already allow steps near
     // the stability limit. Still closer to this limit, the energies of the highest frequencies are less accurate.
     const Real by_either = by_forms > by_shares ? by_forms : by_shares;
-    // Frame masses do not follow plastic flow either.
+    // A body that yields gets no frame masses either, because they do not follow plastic flow.
     const auto b = static_cast<std::size_t>(row);
     if (model.body_records[b].element != ElementKind::linear || model.yields(b)) return by_either;
     // Least ratio of the stable step with frame masses to the stable step without them. A smaller gain does not justify

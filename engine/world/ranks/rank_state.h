@@ -51,7 +51,8 @@ struct RankSleep {
     Column<Real> still_time;      // by body [s]
     Column<Index> woken;          // places of the bodies with several holders that this rank wakes
     Column<SetMember> members;    // entries for the sets that this rank has found
-    // A node of `joined` for each place, and for each set of the message that is being read; no_index: none yet.
+    // A node of `joined` for each row of the undivided world, and for each set of the message that is being read;
+    // no_index: none yet.
     Column<Index> node_of_place, node_of_set;
     Column<std::uint8_t> restless;  // for each node of `joined`: 1 if its set must stay awake
     UnionFind joined;               // sets of all ranks, joined where they share a body
@@ -109,7 +110,9 @@ struct RankState {
     // For each row of BodyTable: distance by which the body may move before its holders must be found again; infinite
     // for ghosts. `moved`: bound of the distance by which it has moved since they were found [m].
     Column<Real> margin, moved;
-    Column<Real> tried_speed;  // by row of BodyTable: greatest speed in the last attempt at a step [m/s]
+    // For each row of the undivided world: number of pieces of the stable-step checks of all bodies before it
+    // (count_pieces).
+    Column<Real> tried_speed;
     WholeWorld whole;          // empty if `ranks` is null
     // For each place: number of pieces of the stable-step checks of all bodies before it (count_pieces).
     Column<std::uint64_t> pieces_before;
@@ -132,7 +135,7 @@ struct RankState {
     bool on() const { return ranks != nullptr; }
     bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == rank; }
     Index place_of(Index row) const { return on() && row != no_index ? place[row] : row; }
-    /// Row of BodyTable of the body at a place of the undivided world; no_index if this rank does not hold it.
+    /// Row of BodyTable of the body in a row of the undivided world; no_index if this rank does not hold it.
     Index row_of(Index of_place) const { return on() ? row_of_place(place, of_place) : of_place; }
 };
 

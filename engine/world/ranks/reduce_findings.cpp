@@ -116,7 +116,8 @@ Index or_none(Index place) {
     return place == RankFindings::nobody ? no_index : place;
 }
 
-/// Replaces the findings of the stages by those of all ranks. Bodies are named by their place afterwards.
+/// Replaces the findings of the stages by those of all ranks. Bodies are named by their rows in the undivided world
+/// afterwards.
 void take_findings(const RankFindings& all, const StageFindings& found) {
     found.verdict = {.fault = all.fault,
                      .body = or_none(all.fault_body),

@@ -132,7 +132,8 @@ void keep_frames(WorldState& world) {
         elements.spring_strain.swap(elements.spring_strain_next);
         return;
     }
-    // The elements that the stages of this step computed. Bodies that fall asleep or wake count from the next step on.
+    // Applies to the elements that the stages of this step computed. Bodies that fall asleep or wake count from the
+    // next step on.
     keep_memory(*world.executor, world.model.awake_elements(), elements);
 }
 

@@ -52,7 +52,7 @@ struct AttemptLimits {
     bool letting_through = false;  // true if the next attempt is the last, which accepts crossings and inversions
     // Cause of the bound `longest`: the last cause for which an attempt was shortened, apart from speed.
     StepLimit limit = StepLimit::inversion;
-    Index body = no_index;  // body that caused the bound `longest`, by its place in the undivided world
+    Index body = no_index;  // body that caused the bound `longest`, as row of the undivided world
 
     Real at_most() const { return std::min(longest, slow_enough); }
 };

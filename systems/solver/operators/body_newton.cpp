@@ -280,8 +280,9 @@ Mat3 sticking(const RigidPart& part) {
     return scaled * scaled.transpose();
 }
 
-/// The answer of a contact with the velocity u to the impulse `start - u / soft`. If friction depends on the direction,
-/// this is Coulomb's law in scaled variables; the derivative is with respect to `-u / soft`.
+/// Impulse that the law of a contact gives for the velocity u and the trial impulse `start - u / soft`, and its
+/// derivative. If friction depends on the direction, this is Coulomb's law in scaled variables; the derivative is with
+/// respect to `-u / soft`.
 Answer answer_at(const RigidPart& part, const Vec3& start, const Vec3& u, Real soft, FrictionLimits mu) {
     if (part.across == 1) return answer_coulomb_at(start - u / soft, part.frame[0].head<3>(), mu);
     const Mat3 scaled = scaled_frame(part);

@@ -18,8 +18,8 @@ namespace {
 constexpr int searches_of_requests = 8;
 /// Greatest number of steps between two rank searches.
 constexpr std::uint64_t steps_between_searches = 1000;
-/// Least number of steps for which the margin of a body lasts. The edge length of explicit elements, which is a part of
-/// the margin, lasts longer, because waves cross it in one step.
+/// Least number of steps after which a body may have moved by its margin (margin_of). It does not bound the mean edge
+/// length in the margin, because waves cross an element in one step.
 constexpr Real steps_of_margin = 20;
 /// Cost of a contact, in units of the cost of an explicit element. The solver visits a contact several times.
 constexpr Real contact_cost = 10;

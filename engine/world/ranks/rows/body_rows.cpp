@@ -251,7 +251,7 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                   const WantsPair& keeps_pair) {
     Model& model = world.model;
     RankState& ranks = world.ranks;
-    // The composition frees the tables of the world, except BodyTable.
+    // Copies of data that are needed below, because the composition frees all tables of the world except BodyTable.
     const Column<Index> place_before = ranks.place, body_of_node = model.nodes.body;
     std::vector<OfBodyTables<Range>> rows_before;
     for (std::size_t b = 0; b < place_before.size(); ++b) rows_before.push_back(rows_of_body(model, b));

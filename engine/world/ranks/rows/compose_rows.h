@@ -29,7 +29,8 @@ struct RowSource {
 };
 
 /// Fills the tables of bodies, attachments and rows that join bodies of an empty model with the rows that the sources
-/// give, in the order of the undivided world. Sets RowSource::moves. Returns the place of each body.
+/// give, in the order of the undivided world. Sets RowSource::moves. Returns the row of each body in the undivided
+/// world.
 Column<Index> compose_rows(std::span<RowSource> sources, const WholeWorld& whole, Model& to);
 
 /// Appends a row to all columns that have one row per row of the table.
