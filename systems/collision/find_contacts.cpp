@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "components/ask_for_lines.h"
+#include "components/prefetch_lines.h"
 #include "components/write_contact.h"
 #include "jobs/parallel_for.h"
 #include "systems/collision/contact_rows.h"
@@ -98,7 +98,7 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
 /// Waiting for them would take a considerable part of the time of this stage.
 void prefetch_list(const PairTable& pairs, Index p) {
     constexpr std::size_t begin = 32;
-    if (p < static_cast<Index>(pairs.size())) ask_for_lines(pairs.asleep_until[p].data(), begin);
+    if (p < static_cast<Index>(pairs.size())) prefetch_lines(pairs.asleep_until[p].data(), begin);
 }
 
 void test_block(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index b, PairTable& pairs) {

@@ -34,14 +34,14 @@ struct CableSettings {
 
 /// Present state of a cable.
 struct CableState {
-    std::vector<Anchor> points;      // the points of the settings, at their present positions [m]
-    std::vector<Real> tension;       // tension of each segment in the last step [N]
-    Real length = 0;                 // present length [m]
-    Real rate = 0;                   // present rate of the length [m/s]
+    std::vector<Anchor> points;  // the points of the settings, at their present positions [m]
+    std::vector<Real> tension;   // tension of each segment in the last step [N]
+    Real length = 0;             // present length [m]
+    Real rate = 0;               // present rate of the length [m/s]
     // greatest length that the cable can have now; empty if its tension is prescribed [m]
     std::optional<Real> released{};
-    Real work = 0;                   // work of the drive on the cable since the cable was added [J]
-    Real dissipated = 0;             // energy dissipated by friction at the points since the cable was added [J]
+    Real work = 0;        // work of the drive on the cable since the cable was added [J]
+    Real dissipated = 0;  // energy dissipated by friction at the points since the cable was added [J]
 };
 
 extern template class __attribute__((visibility("default"))) ObjectView<CableHandle>;

@@ -113,7 +113,7 @@ struct RankState {
     // For each row of the undivided world: number of pieces of the stable-step checks of all bodies before it
     // (count_pieces).
     Column<Real> tried_speed;
-    WholeWorld whole;          // empty if `ranks` is null
+    WholeWorld whole;  // empty if `ranks` is null
     // For each place: number of pieces of the stable-step checks of all bodies before it (count_pieces).
     Column<std::uint64_t> pieces_before;
     // For each row of BodyTable: 1 if this rank sends the predicted velocities of the body to its holders

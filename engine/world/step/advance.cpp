@@ -386,9 +386,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     return report;
 }
 
-void World::watch_steps(std::function<void(const StepReport&)> look) {
+void World::watch_steps(std::function<void(const StepReport&)> observe) {
     state_->require_between_steps("watch_steps");
-    state_->record.step_watch = std::move(look);
+    state_->record.step_watch = std::move(observe);
 }
 
 }  // namespace skerry

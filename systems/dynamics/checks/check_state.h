@@ -51,7 +51,8 @@ struct CheckInputs {
     // Factor on max_strain_step; empty means 1 for all tetrahedra.
     std::span<const ElementLane> tetrahedron_leeway = {};
     std::span<const Range> body_blocks = {};  // tetrahedra, from BodyTable; if empty, check_state tests node speeds
-    // ElementBlockTable and ElementNodeTable. If empty, the tetrahedra are the elements.
+    // The next two spans are columns of ElementBlockTable and ElementNodeTable. If they are empty, the tetrahedra are
+    // the elements.
     std::span<const Range> body_element_blocks = {};
     std::span<const Index> element_first = {}, element_count = {};
     std::span<const NodeLane> element_node = {};
@@ -60,7 +61,7 @@ struct CheckInputs {
     std::span<const ElementPart> element_part = {};  // empty if no element is an inversion barrier
     // column of BodyTable; empty if the frames of all bodies are at rest
     std::span<const MovingFrame> body_frame = {};
-    GhostMarks ghosts = {};  // the deformation rates of their elements are not checked
+    GhostMarks ghosts = {};  // ghosts, for which deformation rates are not checked
 
     /// `pushed`: true if a contact pushes nodes out of penetration in this step.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "components/ask_for_lines.h"
 #include "components/check.h"
+#include "components/prefetch_lines.h"
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/geometry/lane_mask.h"
@@ -82,8 +82,8 @@ struct Body {
             for (std::size_t i = b; i < stop; ++i) {
                 if (travel_bound < uninverted_until[i]) continue;
                 due[due_count++] = i;
-                ask_for_lines(&inputs.tetrahedron_node[i], 1);
-                ask_for_lines(&inputs.tetrahedron_volume[i], 1);
+                prefetch_lines(&inputs.tetrahedron_node[i], 1);
+                prefetch_lines(&inputs.tetrahedron_volume[i], 1);
             }
         });
         for (std::size_t k = 0; k < due_count; ++k)

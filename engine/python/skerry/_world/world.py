@@ -259,14 +259,14 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
             values["worst"] = self._body(values["worst"])
         return RelaxReport(**values)
 
-    def watch_steps(self, look: Callable[[StepReport], object] | None) -> None:
-        """From now on calls `look` after every completed step, with the report so far, on the thread that advances.
-        `look` may read the world, but must not change it. An exception ends advance() between two steps and comes out
+    def watch_steps(self, observe: Callable[[StepReport], object] | None) -> None:
+        """From now on calls `observe` after every completed step, with the report so far, on the thread that advances.
+        `observe` may read the world, but must not change it. An exception ends advance() between two steps and comes out
         of it. None ends the calls."""
         self._core.require_between_steps()
-        if look is not None and not callable(look):
-            raise TypeError(f"look: found {look!r}, expected a function")
-        self._watch = self._told(look)
+        if observe is not None and not callable(observe):
+            raise TypeError(f"observe: found {observe!r}, expected a function")
+        self._watch = self._told(observe)
 
     @contextmanager
     def trace(self, path: str | os.PathLike[str]) -> Iterator[None]:
@@ -360,11 +360,11 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
             first, second = second, first
         return self._own(first, "one of two objects", Body), self._own(second, "second", Body, Collider)
 
-    def _told(self, look: Callable[[StepReport], object] | None) -> Callable[[dict[str, Any]], bool] | None:
-        """A function for the extension module that calls `look` with a report."""
-        if look is None:
+    def _told(self, observe: Callable[[StepReport], object] | None) -> Callable[[dict[str, Any]], bool] | None:
+        """A function for the extension module that calls `observe` with a report."""
+        if observe is None:
             return None
-        return lambda values: not is_false(look(step_report(self, values)))
+        return lambda values: not is_false(observe(step_report(self, values)))
 
     def _warn_of(self, report: StepReport) -> None:
         """Warns of doubts about the steps of a call."""

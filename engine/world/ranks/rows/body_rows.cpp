@@ -22,10 +22,10 @@ BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked,
                                       .marked = marked,
                                       .watched = model.watch.body,
                                       .kept = model.watch.kept,
-                                      .look = model.watch.look,
+                                      .evaluation = model.watch.evaluation,
                                       .gives_common = false}}};
     rows.place = compose_rows(source, world.ranks.whole, rows.model);
-    rows.watch.push_back({rows.model.watch.body, rows.model.watch.kept, rows.model.watch.look});
+    rows.watch.push_back({rows.model.watch.body, rows.model.watch.kept, rows.model.watch.evaluation});
     const Column<Real>& valid_until = world.cache.search.body_valid_until;
     for (std::size_t b = 0; b < world.ranks.place.size(); ++b)
         if (marked[b] != 0)
@@ -74,7 +74,7 @@ void move_tables(Model& from, Model& to) {
     to.springs = std::move(from.springs);
     to.watch.body = from.watch.body;
     to.watch.kept = from.watch.kept;
-    to.watch.look = from.watch.look;
+    to.watch.evaluation = from.watch.evaluation;
     to.watch.position = std::move(from.watch.position);
     to.watch.stiffness_sum = std::move(from.watch.stiffness_sum);
     to.watch.step = std::move(from.watch.step);
@@ -260,7 +260,7 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                                     .marked = kept,
                                     .watched = model.watch.body,
                                     .kept = model.watch.kept,
-                                    .look = model.watch.look,
+                                    .evaluation = model.watch.evaluation,
                                     .gives_common = true,
                                     .is_used_up = true}};
     for (BodyRows& rows : added)
@@ -269,7 +269,7 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                            .marked = {},
                            .watched = rows.watch[0].body,
                            .kept = rows.watch[0].kept,
-                           .look = rows.watch[0].look,
+                           .evaluation = rows.watch[0].evaluation,
                            .gives_common = false,
                            .is_used_up = true});
     Model fresh;

@@ -13,7 +13,7 @@ namespace skerry {
 /// Progress of the checks of the stable steps, for the rows of BodyRows (StepWatch).
 struct WatchProgress {
     Index body = 0, kept = 0;
-    StepEvaluation look;
+    StepEvaluation evaluation;
 };
 
 /// Entry of WorldReport::self_crossings, without the name.

@@ -206,7 +206,7 @@ private:
         if (watch.body < static_cast<Index>(picks_.size()))
             if (const Pick& next = picks_[static_cast<std::size_t>(watch.body)];
                 static_cast<Index>(next.row) == sources_[next.source].watched)
-                watch.look = sources_[next.source].look;
+                watch.evaluation = sources_[next.source].evaluation;
         if (watch.step.size() == picks_.size() && watch.position.size() == to_.nodes.position.size()) return;
         watch = {};
     }
