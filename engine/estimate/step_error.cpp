@@ -188,7 +188,6 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
     const std::span<const Vec3> position = world.positions(body);
     const Real radius = mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - frame.center); });
     const Twist &now = frame.motion, &start = motion.start_velocity;
-    // Free rotation has errors of second order only, so at the start only torques count.
     const bool is_rigid = motion.deformation.displacement.empty();
     const Real turned =
         is_rigid ? (spin_momentum(world, body) - motion.start_spin).norm() / (world.mass(body) * radius * radius)

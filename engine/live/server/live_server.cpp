@@ -71,7 +71,7 @@ private:
 
     mg_connection* connection_;
     int socket_;           // open until Impl::closed() returns
-    bool broken_ = false;  // a message was not sent as a whole
+    bool broken_ = false;  // true if only a part of a message was sent
 };
 
 /// Calls a function for the C library, which no exception may enter. Returns `otherwise` if the function throws.
@@ -112,8 +112,8 @@ int port_of(int socket, Call&& call) {
     return known ? ntohs(place.sin_port) : 0;
 }
 
-/// Returns the socket of a connection, which has no function in the library; -1 if it is not found. `port`: port of the
-/// server.
+/// Returns the socket of a connection, for which the library has no function; -1 if it is not found. `port`: port of
+/// the server.
 int socket_of(const mg_connection* connection, int port) {
     constexpr long most_sockets = 1 << 16;  // numbers that are tried
     const long limit = sysconf(_SC_OPEN_MAX);

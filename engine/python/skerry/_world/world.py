@@ -261,8 +261,8 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
 
     def watch_steps(self, observe: Callable[[StepReport], object] | None) -> None:
         """From now on calls `observe` after every completed step, with the report so far, on the thread that advances.
-        `observe` may read the world, but must not change it. An exception ends advance() between two steps and comes out
-        of it. None ends the calls."""
+        `observe` may read the world, but must not change it. If it raises an exception, advance() ends between two
+        steps and raises it again. None ends the calls."""
         self._core.require_between_steps()
         if observe is not None and not callable(observe):
             raise TypeError(f"observe: found {observe!r}, expected a function")
