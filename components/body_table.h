@@ -86,7 +86,7 @@ struct BodyTable {
     // Number of steps until find_unstrained.h tests again whether the body is strained. Until then the body counts as
     // undeformed and unrotated, so its elements exert no force and are not computed. 0: the elements are computed.
     Column<std::uint16_t> unstrained;
-    // Time since which the body has been still (update_sleep.h) [s].
+    // Time for which the body has been still (update_sleep.h) [s].
     Column<Real> still_time;
     // Measurements of stillness (stillness.h), used if the engine chooses the limits of stillness. The sleep time is
     // divided into two halves. |drift| is the largest distance of a node from its still_position in the current half

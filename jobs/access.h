@@ -24,7 +24,7 @@ struct Access {
 
     bool writes() const { return use == Use::write; }
     bool overlaps(const Access& other) const { return begin < other.end && other.begin < end; }
-    /// Whether a stage with this access and a stage with the other access must run one after the other.
+    /// True if a stage with this access and a stage with the other access must run one after the other.
     bool conflicts_with(const Access& other) const {
         return use != Use::value && other.use != Use::value && (writes() || other.writes()) && overlaps(other);
     }

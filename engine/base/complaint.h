@@ -18,7 +18,7 @@ namespace skerry {
 [[noreturn]] void refuse_in(std::string_view file, std::string_view object, std::string_view field,
                             std::string_view found, std::string_view expected, std::string_view hint = {});
 
-/// Refuses a number that is not good or not finite.
+/// Throws SceneError if `good` is false or the number is not finite.
 void require(bool good, std::string_view object, std::string_view field, Real found, std::string_view expected);
 /// Refuses a vector with a component that is not finite.
 void require_finite(std::string_view object, std::string_view field, const Vec3& found);

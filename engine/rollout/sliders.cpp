@@ -101,7 +101,7 @@ struct FollowCourse {
             const Pose pose = pose_at(slider, target.start, value);
             return Keyframe{time, pose.position, pose.rotation};
         };
-        // Motion between two poses takes the shorter way round. The pose halfway leads it along the slider.
+        // A motion between two poses takes the smaller rotation. The key halfway makes it follow the slider instead.
         const std::array keys{key_at((from.time + to.time) / 2, (from.value + to.value) / 2),
                               key_at(to.time, to.value)};
         std::visit([&](auto object) { follow_poses(world, object, keys); }, control.object);

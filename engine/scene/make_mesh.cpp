@@ -30,7 +30,8 @@ Mesh fill_file(const std::filesystem::path& file, std::optional<Real> edge, int 
     settings.tolerance = entry.tolerance.value_or(settings.tolerance);
     if (doublings > 0) {
         settings.edge = std::ldexp(*edge, doublings);
-        // The distance of a curved surface from flat triangles grows with the square of their size.
+        // Largest tolerance of a coarser filling. The tolerance grows with the square of the size of the triangles, as
+        // the distance between flat triangles and a curved surface does.
         constexpr Real most = 0.1;
         settings.tolerance =
             std::min(std::ldexp(settings.tolerance, 2 * doublings), std::max(settings.tolerance, most));

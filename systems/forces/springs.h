@@ -22,7 +22,7 @@ struct SpringLaw {
     SpringSide side;
     Real stiffness, damping, strength;  // [N/m], [N s/m], [N]
 
-    /// Whether spring and damper act at this extension. `extension`: length minus rest length [m].
+    /// True if spring and damper act at this extension. `extension`: length minus rest length [m].
     bool acts(Real extension) const {
         return side == SpringSide::both || (side == SpringSide::tension ? extension > 0 : extension < 0);
     }

@@ -181,7 +181,7 @@ LaneMat3<T> from_axes(const LaneAxes<T>& axes, const T& x, const T& y, const T& 
             V.c0.z * a + V.c1.z * b + V.c2.z * c};
 }
 
-constexpr Real rounding = 1 + 1e-6;  // covers the error of equal stretches in principal_tangent()
+constexpr Real rounding = 1 + 1e-6;  // factor that covers the error of principal_tangent() for nearly equal stretches
 
 }  // namespace
 

@@ -264,11 +264,10 @@ class StepProblem:
     time: time at the start of the step [s].
     step_size: length of the step [s].
     problem: the problem, without contacts that no impulse can move. Joints, ties and nodes on rollers are eliminated:
-        W and q are those of the bodies that these connect. Slides, motors, limits, passive forces, and cables with
-        friction or a prescribed length act by their impulses of the step.
-    impulse: impulses that the solver found, in the contact frames of `problem`, shape (c, 3) [N s].
-    contact: number of each contact in World.contacts, shape (c,).
-    region: region of each contact, shape (c,).
+    W and q are those of the bodies that these connect. Slides, motors, limits, passive forces, and cables with friction
+    or a prescribed length keep their impulses of the step, whose effect is part of q. impulse: impulses that the solver
+    found, in the contact frames of `problem`, shape (c, 3) [N s]. contact: number of each contact in World.contacts,
+    shape (c,). region: region of each contact, shape (c,).
     """
 
     step: int

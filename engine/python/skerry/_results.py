@@ -96,7 +96,7 @@ class ForceReport:
     most_contacts: largest number of contacts with an impulse in any step.
     seconds: time for which loads acted [s].
     moment_point: reference point of moments, as given to measure_forces(), shape (3,) [m].
-    measured: False if the call was too short to show the force, or took no step. Mean values are then NaN.
+    measured: False if the call was too short for the force to be measured, or took no step. Mean values are then NaN.
     """
 
     impulse: Reals

@@ -233,7 +233,7 @@ class Body(TouchingObject):
         return positions
 
     def tetrahedra_of(self, name: str) -> Indices:
-        """Numbers of the tetrahedra of a set, shape (m,): the listed ones, or those all nodes of which are in the set.
+        """Numbers of the tetrahedra of a set, shape (m,): the listed ones, or those whose nodes are all in the set.
         SceneError: there are none, or no such set."""
         tetrahedra: Indices = self._core.set_tetrahedra(self._handle, name_text(name, "name"))
         return tetrahedra
@@ -354,8 +354,9 @@ class Body(TouchingObject):
         return [attachment for attachment in self._world.attachments if attachment._body_handle == handle]
 
     def reset(self, pose: Pose | None = None) -> None:
-        """Puts the body back into its rest shape, without velocity and memory, at its first pose or at the given one.
-        Attached nodes are held at their new positions; loads stay."""
+        """Puts the body back into its rest shape, without velocity, at its first pose or at the given one. Plastic
+        flow, viscous strains, sleep and stored impulses are reset. Attached nodes are held at their new positions;
+        loads stay."""
         if pose is None:
             self._core.reset(self._handle)
         else:

@@ -55,7 +55,7 @@ class Cavity(NamedObject):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Present arguments of World.add_cavity(): pressure and volume of a filling are those of the present."""
+        """Present arguments of World.add_cavity(): pressure and volume of a filling have their present values."""
         values: dict[str, Any] = self._core.cavity_settings(self._handle)
         return {**values, "body": self._world._body(values["body"])}
 

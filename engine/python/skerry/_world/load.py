@@ -27,7 +27,7 @@ class LoadState:
         for a factor of the weight.
     rate: rate of a drag [1/s].
     scale: present scale.
-    force: sum of the present forces on all nodes [N]; for a factor of the weight, the difference to the whole weight.
+    force: sum of the present forces on all nodes [N]; for a factor of the weight, the difference from the full weight.
     """
 
     kind: LoadKind

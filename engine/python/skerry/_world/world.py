@@ -206,7 +206,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
             follower.require_ready()
         nested, self._advancing = self._advancing, True
         try:
-            values = self._core.advance(dt, self._told(check), self._watch, self._take, self._take_every)
+            values = self._core.advance(dt, self._with_report(check), self._watch, self._take, self._take_every)
         finally:
             self._advancing = nested
             for follower in followers:
@@ -266,7 +266,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
         self._core.require_between_steps()
         if observe is not None and not callable(observe):
             raise TypeError(f"observe: found {observe!r}, expected a function")
-        self._watch = self._told(observe)
+        self._watch = self._with_report(observe)
 
     @contextmanager
     def trace(self, path: str | os.PathLike[str]) -> Iterator[None]:
@@ -360,7 +360,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
             first, second = second, first
         return self._own(first, "one of two objects", Body), self._own(second, "second", Body, Collider)
 
-    def _told(self, observe: Callable[[StepReport], object] | None) -> Callable[[dict[str, Any]], bool] | None:
+    def _with_report(self, observe: Callable[[StepReport], object] | None) -> Callable[[dict[str, Any]], bool] | None:
         """A function for the extension module that calls `observe` with a report."""
         if observe is None:
             return None
