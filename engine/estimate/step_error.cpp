@@ -81,8 +81,8 @@ Real frequency_error(Real z, bool implicit, Real theta) {
     return z * z * (implicit ? 1.0 / 12 + (theta - 0.5) * (theta - 0.5) : 1.0 / 24);
 }
 
-/// Time by which given initial velocities are older than the start: symplectic Euler takes them for those in the middle
-/// of the step before [s].
+/// Time by which given initial velocities are older than the start [s]. Symplectic Euler treats them as velocities in
+/// the middle of the previous step.
 Real start_shift(const World& world, Real first_step) {
     return world.settings().integrator == Integrator::leapfrog ? 0 : first_step / 2;
 }

@@ -19,7 +19,7 @@ namespace {
 
 // largest number of bodies with columns of their own in the report
 constexpr std::size_t most_reported = 20;
-// Largest number of bodies whose places are recorded. For larger scenes only mean, least and largest values are
+// Largest number of bodies whose positions are recorded. For larger scenes only mean, least and largest values are
 // recorded.
 constexpr std::size_t most_recorded = 1000;
 

@@ -136,7 +136,7 @@ struct MaxwellStep {
             kept[k] = static_cast<float>(1 / (1 + h * rates[k]));
         }
         const ViscousModuli moduli = viscous_moduli(material, share);
-        // The volumetric part of a material with Poisson ratio 0 has no stiffness, by which moduli could be divided.
+        // With Poisson's ratio 0 the volumetric part has the modulus 0; this avoids 0 / 0.
         const auto relative = [this](Real of) { return modulus > 0 ? static_cast<float>(of / modulus) : 0; };
         shear = relative(moduli.mu);
         trace = relative(moduli.lambda / 2);

@@ -93,11 +93,9 @@ struct VolumeProbe {
 struct PoseProbe {
     std::variant<BodyHandle, ColliderHandle, AttachmentHandle> object{};  // the recorded object
 };
-/// Divides the world of rank 0 among all ranks, which must all call the function. The worlds of the other ranks are
-/// replaced by parts of this world, with the same handles; only their backend, number of threads and callback of
-/// watch_steps() stay. So the other ranks need not build anything. Afterwards each rank simulates the bodies that it
-/// owns. All ranks must then make the same calls of advance() and gathered(). Calls that change objects throw
-/// SceneError.
+/// Records velocity and angular velocity. For a body they are the velocity of the centre of mass and the angular
+/// velocity of the rigid motion with the same angular momentum. For a collider or an attachment they are those of the
+/// last step, for the origin of its pose.
 struct VelocityProbe {
     std::variant<BodyHandle, ColliderHandle, AttachmentHandle> object{};  // the recorded object
 };

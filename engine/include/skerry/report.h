@@ -303,7 +303,7 @@ struct RunCounters {
     Real worst_error = 0;    // largest relative solver error of a region in any step
     Index worst_region = 0;  // number of contacts of the region with worst_error
     Real dissipated = 0;     // dissipated by contacts, damping, material losses and plastic flow [J]
-    Real plastic_work = 0;   // part of `dissipated`: plastic flow in steps [J]
+    Real plastic_work = 0;   // part of `dissipated`: plastic flow of elements in steps [J]
     Real max_penetration = 0, max_gap_violation = 0;  // largest values in any step; see StepReport [m]
     // Values of max_penetration and max_gap_violation in the first step alone [m].
     Real start_penetration = 0, start_gap_violation = 0;

@@ -53,7 +53,7 @@ struct StudyColumn {
     // diagonal of the bounding box at the start: of the body of the column, or of all bodies if the column has no body
     // [m]
     Real size = 0;
-    // False for a column that gets no error bar of its own, such as the place of one of many bodies.
+    // False for a column that gets no error bar of its own, such as the position of one of many bodies.
     bool reported = true;
     // true for a mean, least or largest value of all bodies, which is meaningful also in a chaotic run
     bool is_statistic = false;

@@ -410,8 +410,8 @@ private:
             if (!set.internal) mesh_.sets[set.name].nodes.assign(set.members.begin(), set.members.end());
     }
 
-    /// Takes over the sets of elements. If a set of nodes has the same name and is not just the nodes of the elements,
-    /// the set of elements gets another name.
+    /// Adds the sets of elements to the mesh. If a set of nodes has the same name and is not just the nodes of the
+    /// elements, the set of elements gets another name.
     void take_element_sets() {
         for (const auto& [key, set] : element_sets_) {
             if (set.internal) continue;
@@ -436,8 +436,8 @@ private:
         }
     }
 
-    /// Takes over the surfaces. Of tetrahedra that were added as a whole, the faces on the boundary of the mesh belong
-    /// to the surface.
+    /// Adds the surfaces that were read to the mesh. If a surface lists whole tetrahedra, it gets those of their faces
+    /// that are on the boundary of the mesh.
     void take_surfaces() {
         const bool whole =
             std::ranges::any_of(surfaces_, [](const auto& item) { return !item.second.tetrahedra.empty(); });

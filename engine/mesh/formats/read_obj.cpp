@@ -3,7 +3,7 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
-// Readers of Wavefront .obj files and of their .mtl files. Of an .obj file they read the lines "v x y z" (node),
+// Readers of Wavefront .obj files and of their .mtl files. In an .obj file they read the lines "v x y z" (node),
 // "vt u v" (texture coordinates), "f a b c ..." (face), "usemtl NAME" and "mtllib FILE". All other lines are ignored.
 namespace skerry::mesh {
 namespace {

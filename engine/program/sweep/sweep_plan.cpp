@@ -11,7 +11,7 @@ namespace skerry {
 
 namespace {
 
-/// Sets a place of a scene to a value.
+/// Sets the value of a key of a scene.
 void try_place(const Place& of, const std::string& place, const Json& value, const std::filesystem::path& scene,
                Json& json) {
     if (place.find('=') != std::string::npos)

@@ -29,8 +29,8 @@ _TETRAHEDRON_PARTS = np.array(
         for a, b, ring in ((4, 9, (5, 6, 7, 8)), (5, 7, (4, 8, 9, 6)), (6, 8, (4, 5, 9, 7)))
     ]
 )
-"""Nodes of the eight parts of a tetrahedron of second order, as positions in the list of its nodes, for each diagonal a
-b."""
+"""Nodes of the eight parts of a tetrahedron of second order, as positions in the list of its nodes, for each choice of
+the diagonal a b."""
 
 
 def require_low_order(object: str, curved: int) -> None:
@@ -112,7 +112,7 @@ def gmsh_groups(
 
 
 def face_keys(nodes: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """A number for each face, equal for faces with equal nodes. `nodes`: ascending node numbers of the faces, shape (k,
-    3)."""
+    """A number for each face, equal for faces with equal nodes. `nodes`: ascending node numbers of the faces, with the
+    shape (k, 3)."""
     keys: NDArray[np.int64] = (nodes[:, 0] * count + nodes[:, 1]) * count + nodes[:, 2]
     return keys

@@ -401,8 +401,10 @@ class WorldOutput:
                 world.run(2)
             recorder.table()["tip.position_z"]
 
-        probes: probes by the name that heads their columns. every: time between rows; 0: one row for each call of
-        advance() [s]. Probes of forces switch on World.measure_forces(). SceneError: a probe or a name is wrong."""
+        probes: probes by the name that heads their columns.
+        every: time between rows; 0: one row for each call of advance() [s]. Probes of forces switch on
+            World.measure_forces().
+        SceneError: a probe or a name is wrong."""
         return Recorder(self, probes, every)  # type: ignore[arg-type]
 
     def error_estimator(self) -> ErrorEstimator:

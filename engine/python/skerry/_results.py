@@ -268,9 +268,11 @@ class WorldResults:
     ) -> SurfaceHit | None:
         """Finds the first surface that a ray hits, from either side, or None.
 
-        origin: start of the ray (3,) [m]. direction: any length except zero (3,). max_distance: length of the ray [m].
+        origin: start of the ray (3,) [m].
+        direction: any length except zero (3,).
+        max_distance: length of the ray [m].
         bodies, colliders: which surfaces are tested; groups: only objects in one of these collision groups; but: all
-        objects except these."""
+            objects except these."""
         rows = self.cast_rays(
             real_array(origin, "origin", (3,))[np.newaxis],
             real_array(direction, "direction", (3,)),

@@ -48,7 +48,7 @@ void copy(std::span<const Row> from, Column<Row>& to) {
 }
 
 /// Lists the sleeping bodies with several holders that this rank wakes. Bodies that are joined to awake ones are left
-/// out, because all holders find them. Also notes whether such a body may fall asleep in this step.
+/// out, because all holders find them. Also notes whether a body with several holders may fall asleep in this step.
 void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                 std::span<const std::uint8_t> driven, const AttachmentTable& attachments, const SleepStep& step,
                 RankSleep& memory, RankFindings& mine) {

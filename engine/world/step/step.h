@@ -17,7 +17,8 @@ void list_step_again(WorldState& world);
 /// Counters of a step alone, after the solve. Sums of energy are zero. `unstrained`: see StepFindings.
 RunCounters count_step(const ContactTable& contacts, const RegionTable& regions, const ContactMeasures& measures,
                        const NewtonCounts& newton, Index unstrained);
-/// Adds the sums of `from` to those of `into`, except for sums of energy, and takes over maxima.
+/// Adds the sums of `from` to those of `into`, except for sums of energy. Each maximum in `into` becomes the
+/// greater of both maxima.
 void add_counters(const RunCounters& from, RunCounters& into);
 /// Adds a committed step to the counters of the run.
 void count_committed_step(const RunCounters& step, RunCounters& run);

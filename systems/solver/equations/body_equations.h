@@ -70,7 +70,7 @@ public:
     Real set_right(std::span<const Real> x);
     /// Adds J^T r to the right-hand side, where r is the impulse of a contact.
     void add_right(Index contact, const Vec3& impulse);
-    /// Begins a round, which is a sequence of Newton steps with fixed start impulses: forgets all sliding directions
+    /// Begins a round, which is a sequence of Newton steps with fixed start impulses: clears all sliding directions
     /// and marks no contact to be stopped.
     void start_round();
 

@@ -20,7 +20,7 @@ struct CableLaw {
     // unused.
     bool is_tie = false;
     bool by_length = false;
-    Real wanted = 0;                   // greatest sum of u [m/s] if `by_length`, else the impulse r_0 [N s]
+    Real wanted = 0;  // upper bound of the sum of the rates u [m/s] if `by_length`, else the impulse r_0 [N s]
     std::span<const Vec3> direction;   // by segment: unit vector to the next point; 0 if the segment has no length
     std::span<const Real> most_ratio;  // by segment: e at the start of the segment
     std::span<const Real> mobility;    // A, row by row [1/kg]

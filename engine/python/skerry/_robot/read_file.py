@@ -29,8 +29,9 @@ def load_robot(path: str | os.PathLike[str], *, packages: Mapping[str, str | os.
     """Reads a robot from a URDF or MJCF file. Needs the package mujoco.
 
     packages: folders of the packages that a URDF names as package://NAME; by default the folders of these names beside
-    the file, or above it. A mesh collides with its convex hull, of which at most 64 corners are used. Robot.warnings
-    lists what is not simulated. SceneError: a file is missing or wrong, or a link has several joints."""
+        the file, or above it. A mesh collides with its convex hull, of which at most 64 corners are used.
+        Robot.warnings lists what is not simulated.
+    SceneError: a file is missing or wrong, or a link has several joints."""
     file = Path(path_text(path, "path"))
     return _Reader(file, {name: Path(folder) for name, folder in (packages or {}).items()}).read()
 

@@ -158,13 +158,16 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
     ) -> PlacedRobot:
         """Adds a robot as rigid bodies and joints, all or none of them.
 
-        robot: the result of load_robot(), or a file for it. material: material of the surfaces. position, rotation:
-        pose of the robot (3,) [m, rad]. coordinates: coordinates of joints by name; default: RobotJoint.rest, or the
-        nearest value within the limits [rad or m]. fixed: True: the base does not move; False: it is free; None: as in
-        the file. motors: False: without motors. With True they hold the coordinates, or have the speed or the force 0.
+        robot: the result of load_robot(), or a file for it.
+        material: material of the surfaces.
+        position, rotation: pose of the robot (3,) [m, rad].
+        coordinates: coordinates of joints by name; default: RobotJoint.rest, or the nearest value within the limits
+            [rad or m].
+        fixed: True: the base does not move; False: it is free; None: as in the file.
+        motors: False: without motors. With True they hold the coordinates, or have the speed or the force 0.
         self_collision: False: links do not collide with each other. With True, only links that a joint joins, and pairs
-        that the file excludes, do not. name: names of bodies and joints are NAME/LINK and NAME/JOINT; default: the name
-        of the robot.
+            that the file excludes, do not.
+        name: names of bodies and joints are NAME/LINK and NAME/JOINT; default: the name of the robot.
 
         SceneError: an error in the file, or a value is out of range, or a body has one of the names."""
         given = robot if isinstance(robot, Robot) else load_robot(robot)
@@ -226,8 +229,9 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
     ) -> None:
         """Advances by `seconds` in calls of advance(dt), of which the last may be shorter.
 
-        each: called with the world after each call; if it returns False, the run ends. progress: writes the time and
-        the share of the run to the standard error output. At the end, doubts about the results become warnings."""
+        each: called with the world after each call; if it returns False, the run ends.
+        progress: writes the time and the share of the run to the standard error output. At the end, doubts about the
+            results become warnings."""
         seconds = checked_seconds(seconds, "run", "seconds")
         dt = checked_seconds(dt, "run", "dt", zero=False)
         if seconds / dt > _MOST_CALLS:
@@ -249,8 +253,9 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
         because a body slides, the world does not change.
 
         tolerance: largest out-of-balance force of a body, relative to the sum of the forces that act on it.
-        max_steps: largest number of steps for each share of the loads. load_steps: if > 1, loads, pressures and
-        tensions grow from zero in this number of steps, which are halved where no equilibrium is found.
+        max_steps: largest number of steps for each share of the loads.
+        load_steps: if > 1, loads, pressures and tensions grow from zero in this number of steps, which are halved where
+            no equilibrium is found.
         BufferError: arrays of views() are in use."""
         values = self._core.relax(
             real(tolerance, "tolerance"), whole(max_steps, "max_steps"), whole(load_steps, "load_steps")

@@ -72,9 +72,9 @@ struct SearchHeader {
 
 /// Facts about the bodies of all ranks.
 struct RankSearch {
-    std::vector<BodyExtent> extents;  // bodies in the order of their places
+    std::vector<BodyExtent> extents;  // bodies in the order of their rows in the undivided world
     std::vector<FetchedUnit> requests;
-    std::vector<Index> stale;  // places of bodies whose copies are outdated
+    std::vector<Index> stale;  // rows in the undivided world of bodies whose copies are outdated
     bool keeps_owners = false;
 };
 

@@ -19,7 +19,7 @@ struct FetchedUnit {
     int searches;  // number of rank searches after which the rank no longer needs the unit
 };
 
-/// The *place* of a body is its row in the undivided world. The rows of a rank are in the order of their places.
+/// The *place* of a body is its row in the undivided world. Bodies of a rank are in the order of their places.
 struct WholeWorld {
     // value of `owner` for a kinematic body, which every rank computes itself
     static constexpr std::int32_t everywhere = -1;

@@ -19,7 +19,7 @@ struct MailedNode {
 
 /// Impulses on the frame of a rigid or implicit body (RigidBodyTable). A record with body == no_index ends a list.
 struct MailedBody {
-    Index body = no_index;  // place of the body: its row in the undivided world
+    Index body = no_index;  // row of the body in the undivided world
     Index deforming = 0;    // number of records MailedDeformation that follow
     Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), push = Vec3::Zero(), push_spin = Vec3::Zero();
 };
@@ -32,7 +32,7 @@ struct MailedDeformation {
 
 /// Impulse of a row that holds a node along a single direction. A record with body == no_index ends a list.
 struct MailedHold {
-    Index body = no_index;  // place of the body: its row in the undivided world
+    Index body = no_index;  // row of the body in the undivided world
     Index entry = 0;        // number of the held node among those of all attachments of the body
     Vec3 impulse = Vec3::Zero();
 };

@@ -18,7 +18,7 @@ namespace skerry {
 
 /// Identifies a node on all ranks, whose table rows differ.
 struct NodeName {
-    Index body = no_index;  // place of the body: its row in the undivided world
+    Index body = no_index;  // row of the body in the undivided world
     Index node = no_index;  // number of the node within the body
 
     auto operator<=>(const NodeName&) const = default;

@@ -227,7 +227,7 @@ void enable_pairs(std::span<const std::uint64_t> keys, WorldState& world) {
     }
 }
 
-/// Takes over the entries of bodies that were added. Their sender has made the last checks of these bodies.
+/// Stores the self-crossings of bodies that were added. Their sender has made the last checks of these bodies.
 void take_self_crossings(std::span<const FoundSelfCrossing> added, WorldState& world) {
     std::vector<SelfCrossing>& crossings = world.record.self_crossings;
     for (const FoundSelfCrossing& found : added) {

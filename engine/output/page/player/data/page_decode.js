@@ -41,7 +41,7 @@ const decode = (() => {
       ended: () => at >= data.length };
   }
   const times = (number, take) => Array.from({ length: number }, take);
-  // Codes of an earlier scale as they are on a later one.
+  // Converts a code on an earlier scale to a code on a later one.
   const shifted = (code, exponent_prev, exponent) => code >> Math.min(exponent - exponent_prev, 31);
   const no_lattice = { origin: [0, 0, 0], step: 1e-6, now: [] };  // of contacts without a body
   const value_of = (code, top) => Math.sign(code) * top * (code / last_code) * (code / last_code);

@@ -60,7 +60,7 @@ function make_contacts(scene, { size, spacing }, scales) {
     }
     copies.upload(count);
   }
-  // The contact at row i as it is shown.
+  // The contact that is shown at row i.
   function at(i) {
     const { list } = shown, strength = Math.hypot(...shown.force.subarray(3 * i, 3 * i + 3));
     const normal = shown.normal[i];
