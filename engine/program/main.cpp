@@ -476,7 +476,7 @@ int run_command_line(int argc, char** argv) {
 /// much memory, and the system would have to clear every page before it is used again.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    // Sizes in bytes. The C library would adapt these two limits by itself, but later.
+    // Sizes in bytes. The C library adapts both limits by itself, but only after large blocks were freed.
     constexpr int largest_kept = 32 << 20, most_kept = 64 << 20;
     mallopt(M_MMAP_THRESHOLD, largest_kept);
     mallopt(M_TRIM_THRESHOLD, most_kept);

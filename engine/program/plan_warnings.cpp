@@ -95,7 +95,7 @@ Real volume_of(const Mesh& mesh) {
     return six_volumes / 6;
 }
 
-/// Warns of the size and the given mass properties of a rigid body.
+/// Warns of an unlikely size and of unlikely mass properties of a rigid body.
 void warn_of_rigid(const BodySettings& body, const Mesh& mesh, const Extent& extent,
                    std::vector<std::string>& warnings) {
     if (body.dynamics != BodyDynamics::rigid || mesh.nodes.empty()) return;

@@ -172,7 +172,8 @@ void LiveServer::Impl::put_page(mg_connection* connection) const {
     mg_write(connection, page.data(), page.size());
 }
 
-/// Frees the slots of browsers that are gone without notice.
+/// Closes connections that received no data for 30 s, because their browsers have probably gone. This makes room for
+/// other browsers.
 void LiveServer::Impl::close_silent_links() {
     const std::lock_guard lock(links_mutex);
     for (const SocketLink* link : links) link->close_if_silent();

@@ -194,8 +194,8 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
 }
 
 /// Exchanges bodies with other ranks after an attempt that lacked some of them. Returns true if the next attempt must
-/// compute the forces anew, because new ghosts have none. The clusters then get their matrices from before the
-/// abandoned attempt: the forces contain the impulses of clusters that become stiffer.
+/// compute the forces anew, because new ghosts have none. The assumed stiffness of clusters is then restored: the next
+/// attempt must stiffen the same clusters again, so that its forces contain the impulses of this change.
 bool fetch_ghosts(WorldState& world) {
     if (!world.ranks.all.bodies_missing && !world.ranks.all.ghosts_expired) return false;
     world.transaction.restore_stiffness(world.model);

@@ -127,7 +127,7 @@ class RobotJoint:
         return self.kind != "ball"
 
     def motion(self, coordinate: float) -> Frame:
-        """Motion of the link relative to its place at a coordinate [rad or m]."""
+        """Motion of the link from its pose at the coordinate `rest` to its pose at `coordinate` [rad or m]."""
         if self.kind == "slider":
             return Frame((coordinate - self.rest) * self.axis)
         rotation = turn((coordinate - self.rest) * self.axis if self.kind == "hinge" else np.zeros(3))
