@@ -7,7 +7,7 @@
 
 namespace skerry::mesh {
 
-/// How meshers are started.
+/// Settings with which meshers are started.
 struct MesherSetup {
     FillLimits limits{};
     std::string python{};  // see FillSettings::python

@@ -42,7 +42,7 @@ struct ForceReport {
     Vec3 force() const { return mean(impulse); }
     /// Mean moment over the call about moment_point [N m]; NaN if the force was not measured.
     Vec3 moment() const { return mean(moment_impulse); }
-    /// Mean moment over the call about another fixed point [N m].
+    /// Mean moment over the call about another fixed point [N m]; NaN if the force was not measured.
     Vec3 moment_about(const Vec3& point) const;
 
 private:

@@ -36,7 +36,7 @@ struct RawMesh {
     std::vector<std::array<Index, 3>> triangle_middle;  // like `middle`, for the triangles
     std::size_t curved_triangles = 0;                   // number of triangles of third or higher order
     std::map<std::string, MeshSet> sets;                // faces are the corners of triangles of any order
-    std::map<std::string, std::vector<Vec3>> vectors;   // of the tetrahedra
+    std::map<std::string, std::vector<Vec3>> vectors;   // by name: a vector for each tetrahedron
     // for an .obj or .ply file: texture coordinates, names of materials, and their indices by triangle
     VisualSurface visual;
     std::size_t flat_triangles = 0;  // number of triangles of an .obj or .ply file that were dropped, as they use a

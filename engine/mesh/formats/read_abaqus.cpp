@@ -45,7 +45,7 @@ AbaqusKind kind_of(const std::string& type) {
 
 /// A part of the file with its own numbers of nodes and elements: an instance, a part without instance, or the rest.
 struct AbaqusScope {
-    std::string prefix{};  // of the names of its sets, for example "Part-1-1."
+    std::string prefix{};  // first part of the names of its sets, for example "Part-1-1."
     std::size_t first_node = 0;
     NodeNumbers nodes{};                                      // rows count from first_node
     std::unordered_map<std::int64_t, std::size_t> element{};  // index of each element by its number

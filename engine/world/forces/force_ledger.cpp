@@ -158,7 +158,7 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
     }
 }
 
-/// Like take_over_reactions, for an attachment that holds its nodes along single directions.
+/// Does the work of take_over_reactions for an attachment that holds its nodes along single directions.
 void ForceLedger::take_over_axes(const Model& model, std::size_t attachment, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     const Mat3& held = model.attachments.held[attachment];

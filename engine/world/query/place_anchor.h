@@ -39,7 +39,7 @@ public:
 
 private:
     const Model& model_;
-    Column<RigidMotion> motion_;  // of colliders
+    Column<RigidMotion> motion_;  // motions of the colliders
 };
 
 }  // namespace skerry

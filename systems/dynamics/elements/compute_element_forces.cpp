@@ -36,7 +36,7 @@ struct Run {
     MaxwellStep maxwell;
     PatchRows<const Real> position;  // positions of the nodes of the patch [m]
     PatchRows<Real> force;           // forces on the nodes of the patch [N]
-    std::span<const Vec3> velocity;  // of all nodes
+    std::span<const Vec3> velocity;  // velocities of all nodes [m/s]
     std::span<const ElementRotation> rotation;
     const ElementMemory& next;
     const PatchForces& patches;

@@ -194,7 +194,7 @@ std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSetti
     for_each_fact(whole, extents, state.model, [&](auto& fact) { take_value(reader, fact); });
     state.model.for_each_joining(
         [&](const char*, auto&, auto&) { take_value(reader, whole.joining_place.emplace_back()); });
-    take_value(reader, whole.joining_place.emplace_back());  // of the attachments
+    take_value(reader, whole.joining_place.emplace_back());  // last list: attachments
     state.model.for_each_joining([&](const char*, auto&, auto& map) {
         for (auto count = reader.take<std::size_t>(); count > 0; --count) {
             const auto slot = reader.take<std::uint32_t>();
