@@ -361,7 +361,7 @@ def _problem_of_blocks(
     return Problem(offsets, places % max(count, 1), total, velocities, mu, name=name, description=description)
 
 
-# FCLIB files without the HDF5 library of the engine.
+# The next functions read and write FCLIB files if the engine was built without HDF5.
 
 
 def _read_with_h5py(path: str) -> Problem:

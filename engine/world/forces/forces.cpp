@@ -116,7 +116,7 @@ ForceReport Forces::on(ColliderHandle collider) const {
         add(pair.sums, PairSide::second, report);
     }
     if (touched) report.seconds = longest;
-    constexpr Real small_share = 0.01;  // largest error of the mean force due to these different times
+    constexpr Real small_share = 0.01;  // largest accepted relative difference between the times
     const bool even = !touched || longest - shortest <= small_share * longest;
     report.measured = report.seconds > 0 && even && ((touched && !awake) || ledger.shows_contacts());
     return report;
