@@ -12,7 +12,8 @@ namespace skerry {
 
 namespace {
 
-/// Columns by which bodies are named to other ranks.
+/// Columns that convert rows of this rank to the numbers that all ranks use, and that describe the bodies for the next
+/// step.
 struct NamedBodies {
     std::span<const Index> place;         // RankState
     std::span<const std::int32_t> owner;  // RankState

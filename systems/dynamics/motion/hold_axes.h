@@ -72,9 +72,9 @@ struct HeldRows {
     Column<Node> node;    // working memory: by row of NodeTable
 };
 
-/// Appends a row to the contacts for each direction along which a node is held that contacts, ties or solved cables can
-/// move. The row demands the prescribed velocity along the direction. Contacts that no motion across the held
-/// directions can open request no rows, because no impulses satisfy both. Sequential.
+/// Appends rows to the contacts for the held nodes that contacts, ties or solved cables can move: one row for each held
+/// direction of such a node. The row demands the prescribed velocity along the direction. Contacts that no motion
+/// across the held directions can open request no rows, because no impulses satisfy both. Sequential.
 void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cables, Real h, ContactTable& contacts,
                        HeldRows& rows);
 
