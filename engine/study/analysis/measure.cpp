@@ -304,8 +304,9 @@ StudyFamily::StudyFamily(const std::vector<StudyRun>& runs)
 }
 
 void StudyFamily::find_zeros() {
-    // If a finer run has less than this share of the size, the values are errors of the solver or of the steps. Such
-    // errors fall to a quarter if the step is a quarter, with order 1.
+    // If the size of a column falls below this share of its largest size with a shorter step or a smaller tolerance,
+    // its values are only errors of the steps or of the solver. With order 1, a quarter of the step gives a quarter of
+    // the error.
     constexpr Real vanishing = 1.0 / 3;
     std::vector<Real> largest = sizes, least = sizes;
     for (const StudyRun* run : comparable) {

@@ -47,7 +47,7 @@ struct Scripted {
         table.initial[row] = {pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()};
     }
     /// Replaces the script by the key `from` and the poses `to`. A rotation has many rotation vectors, which differ by
-    /// full revolutions. The vector nearest to that of the key before is used, so that the object makes no additional
+    /// full revolutions. The vector nearest to that of the previous key is used, so that the object makes no additional
     /// revolution.
     void start_keys(const Keyframe& from, std::span<const Keyframe> to) const {
         if (keys().size() != to.size() + 1) {
