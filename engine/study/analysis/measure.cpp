@@ -305,8 +305,8 @@ StudyFamily::StudyFamily(const std::vector<StudyRun>& runs)
 
 void StudyFamily::find_zeros() {
     // If a shorter step or a smaller tolerance reduces the size of a column below this share of the size in the first
-    // run, its values are only errors of the steps or of the solver. With order 1, a quarter of the step gives a quarter
-    // of the error.
+    // run, its values are only errors of the steps or of the solver. With order 1, a quarter of the step gives a
+    // quarter of the error.
     constexpr Real vanishing = 1.0 / 3;
     std::vector<Real> largest = sizes, least = sizes;
     for (const StudyRun* run : comparable) {
