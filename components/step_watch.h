@@ -29,7 +29,7 @@ struct StepEvaluation {
 };
 
 /// Checks all bodies one after the other, in endless rounds. The progress is part of the state, but only `steps` is
-/// hashed: a rejected attempt at a step changes the other members, and the next attempt does the skipped pieces.
+/// hashed: rejected attempts at a step advance the other members, which changes no result.
 struct StepWatch {
     /// Value of `step` for a body that is not checked in this round. Such a body is asleep or unstrained, so that its
     /// shape does not change, or it has been checked elsewhere.

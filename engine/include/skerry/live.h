@@ -45,8 +45,8 @@ public:
 
     /// Address of the page, for example http://127.0.0.1:40123/#token=...
     std::string address() const;
-    /// Ends all connections and stops the server. After it sync(), due() and run() only end the pulls of browsers,
-    /// due() returns 0, and fail() does nothing.
+    /// Ends all connections and stops the server. Afterwards sync(), due() and run() only release the bodies that
+    /// browsers pull, due() returns 0, and fail() does nothing.
     void close();
     /// False after close().
     bool is_open() const;

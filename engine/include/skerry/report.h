@@ -211,8 +211,8 @@ struct DynamicsEstimate {
     Real explicit_cost = 0, implicit_cost = 0;
     // Largest strain that weight, the body's speed and a fall from ten times the body's size may cause.
     Real strain = 0;
-    // Frequency above which implicit steps of this length damp vibrations instead of resolving them [Hz]: angular
-    // frequency times step length above 1/2.
+    // Frequency above which steps of the length deforming_step damp vibrations instead of resolving them [Hz]: there
+    // the angular frequency times the step length is above 1/2. 0: steps damp no vibrations.
     Real damped_above = 0;
 };
 

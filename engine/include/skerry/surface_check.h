@@ -61,7 +61,7 @@ struct SurfaceFault {
     Index other = no_index;     // second triangle of the first pair, or first triangle of the other shell
     Vec3 place = Vec3::Zero();  // place of the first fault; for holes: centre of the longest hole [m]
     Real length = 0;            // holes: length of the edges around the longest hole; thin_walls: smallest thickness;
-                                // duplicate_shells: largest distance of two; unlikely_size: diagonal [m]
+                                // duplicate_shells: largest distance from shell to repeat; unlikely_size: diagonal [m]
 };
 
 /// Part of a surface whose triangles are connected by common edges. At an edge of several closed shells, the triangles

@@ -194,8 +194,8 @@ OfHead of_head(const JointTable& table, Index joint) {
     return of;
 }
 
-/// Checks that the joints which mimic each other, directly or through others, have a common position within their
-/// limits. `joint`: one of them, whose `field` is to be changed. `table`: the joints after the change.
+/// Throws SceneError if the joints that mimic each other, directly or through others, have no common position within
+/// their limits. `joint`: one of them, whose `field` is to be changed. `table`: the joints after the change.
 void require_common_position(const JointTable& table, std::size_t joint, const char* field) {
     const OfHead own = of_head(table, static_cast<Index>(joint));
     Real lower = -infinity, upper = infinity;  // limits of the coordinate of `joint`

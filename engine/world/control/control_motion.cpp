@@ -239,7 +239,7 @@ void World::set_pose(ColliderHandle collider, const Pose& pose) {
     require_pose([&] { return title_of(model, row); }, pose);
     const auto c = static_cast<std::size_t>(row);
     if (is_at(Scripted{model.colliders, c}.pose(time()), pose)) return;
-    // bodies that rest on the collider at its old position may lose their support
+    // wakes bodies that rest on the collider at its old position and may lose their support
     state_->edits.places.add_collider(model, c, time());
     const RigidPose there = skerry::set_pose(Scripted{model.colliders, c}, pose, time());
     if (const Index a = attachment_of(model, row); a != no_index) {

@@ -122,7 +122,7 @@ struct RankState {
     PredictionMail predictions;
     RankSleep sleep;
     RankShare share;
-    // keys (DisabledPairTable) of the pairs of which this rank knows that released ties have enabled them
+    // keys (DisabledPairTable) of pairs that released ties have enabled, as far as this rank knows
     Column<std::uint64_t> enabled_pairs;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt

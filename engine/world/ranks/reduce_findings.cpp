@@ -128,8 +128,8 @@ void take_findings(const RankFindings& all, const StageFindings& found) {
                      .fastest = {all.strain_rate, or_none(all.strained_body)}};
     if (all.fault == StepFault::not_finite) found.verdict.fastest = {};
     found.strained.unsolved = or_none(all.unsolved_body);
-    // A process that simulates the whole world tests for inversions and crossings only if no body has a fault, and
-    // tests for crossings only if no candidate list is too short.
+    // The findings must equal those of a process that simulates the whole world. It tests for inversions and crossings
+    // only if no body has a fault, and for crossings only if no candidate list is too short.
     const bool tested = all.fault == StepFault::none;
     found.inversions =
         tested ? Inversions{all.inversions, or_none(all.inverted_body), all.inverted_tetrahedron, all.inverts_first}

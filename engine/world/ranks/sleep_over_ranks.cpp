@@ -68,7 +68,7 @@ void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<
     mine.wakes = !memory.woken.empty();
 }
 
-/// Marks the bodies that other ranks wake in `pressed`.
+/// Marks in `pressed` the bodies that other ranks wake.
 void join_wakes(const HeldBodies& bodies, const RankSleep& memory, Column<std::uint8_t>& pressed,
                 RankChannel& channel) {
     pressed.resize(bodies.place.size(), 0);

@@ -243,7 +243,7 @@ struct Model {
         ColliderGeometry geometry;
         RigidMotion motion;  // without velocities
     };
-    /// Returns nullopt for a body that has faces, so that it is not round.
+    /// Returns the shape of a round body; nullopt for a body that has faces.
     std::optional<RoundShape> round_shape(std::size_t body) const;
     /// Name of the shape of a round body: "sphere", "capsule" or "cylinder".
     const char* round_name(std::size_t body) const;

@@ -14,12 +14,11 @@ namespace skerry {
 
 namespace {
 
-/// Number of rank searches for which a rank holds a body that it has requested.
+/// Number of rank searches for which a rank keeps a body that it has requested to solve a region.
 constexpr int searches_of_requests = 8;
-/// Greatest number of steps between two rank searches.
+/// Greatest number of steps between two rank searches, so that bodies get new owners when costs have changed.
 constexpr std::uint64_t steps_between_searches = 1000;
-/// Least number of steps after which a body may have moved by its margin (margin_of). It does not bound the mean edge
-/// length in the margin, because waves cross an element in one step.
+/// The margin of a body contains the path of this number of steps at its greatest speed and under gravity (margin_of).
 constexpr Real steps_of_margin = 20;
 /// Cost of a contact, in units of the cost of an explicit element. The solver visits a contact several times.
 constexpr Real contact_cost = 10;

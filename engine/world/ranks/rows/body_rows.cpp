@@ -111,7 +111,8 @@ void forget_candidates(std::span<const std::uint8_t> marked, PairTable& pairs) {
             pairs.valid_until[p] = SearchState::forgotten;
 }
 
-/// Lets the handles of a table refer to its present rows. Handles of absent rows keep their slots. `slot`: by row.
+/// Lets the handles of a table refer to its present rows. Handles of absent rows keep their slots. `slot`: slot of each
+/// row.
 void find_rows_of_handles(auto& map, std::size_t count_before, std::span<const std::uint32_t> slot) {
     map.rows_moved(std::vector<Index>(count_before, no_index));
     for (std::size_t row = 0; row < slot.size(); ++row)

@@ -134,7 +134,8 @@ private:
             renumber_rows_of_body(to_, row, now[row], down_of(picks_[row]));
     }
 
-    /// `rows`: rows of each picked body in the tables of its source.
+    /// Fills column `c` of a table with the rows of all picked bodies. `rows`: for each picked body, its rows in the
+    /// tables of its source.
     void append_column(std::size_t table, std::size_t c, std::span<const OfBodyTables<Range>> rows) {
         constexpr auto range_of = OfBodyTables<Range>::members();
         std::vector<std::span<const std::byte>> parts;
