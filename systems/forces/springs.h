@@ -140,7 +140,7 @@ struct SpringWorkInputs {
     }
 };
 
-/// Measures the work of springs with the formulas of measure_work, whose arguments `h`, `kick` and `lag` it shares.
+/// Measures the work of springs with the formulas of measure_work and the same `h`, `kick` and `lag`.
 SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& step, Real h, Real kick, Real lag);
 
 /// Elastic energy of all springs at the present positions, and its correction for velocities that are `lag` seconds

@@ -43,7 +43,8 @@ struct CheckInputs {
     std::span<const Real> body_min_altitude;
     std::span<const Vec3> velocity;  // velocity at the start of the step [m/s]
     std::span<const Vec3> velocity_next;
-    // Velocity by which contacts move positions only; empty if no contact does so [m/s]
+    // Velocity with which contacts push nodes out of overlaps, which changes only positions; empty if none does so
+    // [m/s]
     std::span<const Vec3> push_out;
     std::span<const Vec3> rest_position = {};                 // m
     std::span<const TetrahedronNodes> tetrahedron_node = {};  // TetrahedronBlockTable

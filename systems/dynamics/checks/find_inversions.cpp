@@ -156,7 +156,7 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
                 InversionMemory& memory) {
     memory.part.clear();
     memory.job.clear();
-    // This capacity is enough for any later step, whichever bodies will be checked.
+    // With this capacity later steps allocate nothing, whichever bodies they check.
     const std::size_t most = inputs.tetrahedron_node.size() / blocks_per_part + inputs.body_blocks.size();
     memory.part.reserve(most);
     memory.job.reserve(most + 1);

@@ -193,8 +193,8 @@ private:
     void find_responses();
     void forget_factor();
     void forget_columns();
-    /// True if the differences of element energies or the spin exceed the bounds of becomes_large() times `part`. Does
-    /// not test the strain |F - 1|.
+    /// True if the energies or the spin are inaccurate as defined at becomes_large(), with its bounds multiplied by
+    /// `part`. Does not test the strain |F - 1|.
     bool is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part);
     /// Energy of the spin for an angular momentum, with the inertia at rest [J].
     Real energy_of_spin(const Vec3& angular_momentum) const {
