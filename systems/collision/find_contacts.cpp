@@ -50,8 +50,8 @@ std::int64_t work_of(const PairTable& pairs, std::size_t p) {
     return count == 0 ? 0 : std::int64_t{count} * work_of_one(pairs, p) + candidates_worth_of_a_pair;
 }
 
-/// Marks pairs as idle if neither partner moves. The contacts of an idle pair are in equilibrium, because otherwise the
-/// bodies would not be asleep. For all other pairs, the function counts the candidates and adds up their work.
+/// Marks pairs as idle if neither partner moves. They need no tests: their contacts are in equilibrium, because
+/// otherwise the bodies would not be asleep. For all other pairs, counts the candidates and adds up their work.
 void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pairs) {
     pairs.idle.resize(pairs.size());
     pairs.looked_at.resize(pairs.size());

@@ -202,7 +202,7 @@ private:
         }
     }
     /// add_before and add_behind add a second contact point, at least shortest_stretch before or behind the point
-    /// `other`. They add none if the distance is too steep at all these places. One evaluation shows this, because the
+    /// `other`. They add none if the distance is too steep at all points there. One evaluation shows this, because the
     /// derivative increases along the edge.
     void add_before(Real other) {
         const Real last = other - shortest_stretch;

@@ -17,8 +17,8 @@ namespace {
 // Greatest number of blocks in a part of a body. Several small bodies share a job, up to this number of blocks.
 constexpr Index blocks_per_part = 256;
 
-// A block with narrow tetrahedra computes its width (the least width of a tetrahedron) once in this number of checks,
-// because this takes half of the time of a check.
+// A block with narrow tetrahedra computes its width (the least width of a tetrahedron) only once in this number of
+// checks, because the width takes half of the time of a check.
 constexpr std::uint8_t checks_at_narrow = 8;
 
 // Number of blocks whose travel budgets (distances that need no check) are compared together, without a branch for each
