@@ -56,7 +56,7 @@ private:
     Index set_;
     SetOfFeature& of_;
     std::size_t body_;
-    // by local node: true if the set lists the node; true if the node belongs to the set
+    // by local node: `listed_`: the set lists the node itself; `in_set_`: the node belongs to the set
     std::vector<bool> listed_, in_set_;
 };
 

@@ -41,7 +41,8 @@ struct ForceElement {
     bool (*is_driven)(const Model&, Real t, Real h) = nullptr;
     ListStages measure = nullptr;   // measures work and losses, which the balance then no longer counts as external
     ListStages remember = nullptr;  // stores results for the next step, if the step can be committed
-    // Stored energy at the time `t`, in the sense of spring_energy (systems/forces/springs.h) [J].
+    // Stored energy at the time `t`, corrected for the lag of velocities like spring_energy (systems/forces/springs.h)
+    // [J].
     Real (*energy)(const Model&, Real t, Real lag) = nullptr;
 };
 

@@ -166,7 +166,7 @@ private:
                 for (const Index other : rows_.clusters.nodes[static_cast<std::size_t>(cluster)]) list_node(other);
         }
     }
-    /// Returns false if the node is in the list already.
+    /// Adds a node to the list of moved nodes. Returns false if the node is already in the list.
     bool list_node(Index node) {
         if (regions_.sets.node[node].stamp == regions_.sets.now) return false;
         regions_.nodes.push_back(regions_.sets.root(node));
