@@ -25,7 +25,7 @@ extern const char* const install_netgen;
 std::string python_program(const std::string& given);
 
 /// Fills closed manifold surfaces that do not cross with tetrahedra of edge length up to about `largest_edge` [m]. The
-/// surface is unchanged bitwise: its nodes are the first nodes of the mesh. `doing` describes the activity.
+/// surface is unchanged bitwise: its nodes are the first nodes of the mesh. `doing`: activity that is shown.
 MesherResult fill_by_netgen(const SurfaceMesh& surface, Real largest_edge, const MesherSetup& setup,
                             const std::string& doing);
 

@@ -235,7 +235,8 @@ void add_solve(CLI::App& app, SolveOptions& options) {
     add_choice<Friction>(command, "--friction", options.settings.friction, "friction law");
     command
         .add_option("--tolerance", options.settings.tolerance,
-                    "largest accepted relative error, measured as in FCLIB and Siconos")
+                    "largest accepted relative error of the impulses, defined as in FCLIB and Siconos "
+                    "(docs/methods/errors.md)")
         ->check(positive_number)
         ->capture_default_str();
     command

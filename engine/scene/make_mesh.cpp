@@ -22,8 +22,8 @@ int refined_resolution(int resolution, int refine) {
     return refine == 0 ? resolution : refined(resolution + resolution % 2, refine);
 }
 
-/// Fills a surface, or the surface of a mesh, in the unit of the file. The tetrahedra are `doublings` times twice as
-/// large as those with the given edge length.
+/// Fills a surface, or the surface of a mesh, in the unit of the file. `doublings`: number of times that the length
+/// `edge` of the edges is doubled.
 Mesh fill_file(const std::filesystem::path& file, std::optional<Real> edge, int doublings, const MeshEntry& entry,
                std::vector<std::string>& notes, const SurfaceFilling& filling) {
     mesh::FillSettings settings{.edge = edge, .cavities = entry.cavities, .python = filling.python};

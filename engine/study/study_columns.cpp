@@ -63,7 +63,7 @@ std::optional<BodyHandle> body_of(const RecordedProbe& probe) {
         probe.what);
 }
 
-/// True if the scene has a probe of the given kind for which `same` holds.
+/// True if the scene has a probe of the given kind for which `same` returns true.
 template <class Kind>
 bool has(const Scene& scene, auto same) {
     return std::ranges::any_of(scene.recorded, [&](const RecordedProbe& probe) {

@@ -57,8 +57,8 @@ public:
     std::uint64_t client = 0;  // number of the browser at the hub
 
 private:
-    /// If the time for a request has run out, the library returns the number of bytes that it has sent. After a part of
-    /// a message nothing more can be sent, because the browser would read it as the rest of the message.
+    /// Sends a message. Returns false if only a part was sent, because the time limit for requests was reached or the
+    /// connection is broken. Nothing more can be sent then, as the browser would read it as the rest of the message.
     bool send(int opcode, std::string_view bytes) {
         constexpr std::size_t header = 2;  // length of a message without data, for which the library returns it
         mg_lock_connection(connection_);   // a ping of the library must not follow a part of a message either
@@ -285,8 +285,8 @@ LiveServer::LiveServer(int port, LiveHub& hub)
 
 LiveServer::~LiveServer() {
     impl_->hub.close();
-    // The thread of the library that accepts connections checks every 2 s, and at each new connection, whether it has
-    // to stop.
+    // The library's thread that accepts connections checks only every 2 s, and at each new connection, whether it has
+    // to stop. Connections are therefore made until it has stopped.
     std::atomic<bool> stopped = false;
     std::thread stopping([&] {
         mg_stop(impl_->context);

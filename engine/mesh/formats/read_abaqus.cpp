@@ -333,7 +333,7 @@ private:
             to.push_back(member(std::to_string(number), scope, sets));
     }
 
-    /// Value of the parameter that names the object of a block.
+    /// Value of `parameter`, which names an object. Throws SceneError if it is missing or empty.
     std::string named(const AbaqusBlock& block, const char* parameter) {
         const std::string name = block.value(parameter);
         if (name.empty()) {

@@ -15,7 +15,7 @@ namespace skerry {
 
 namespace {
 
-// Surfaces beside a coarse mesh are at most about this number of mean edges outside of the body.
+// Largest usual distance of a visual surface from a body with a coarse mesh, in mean edge lengths of its boundary.
 constexpr Real most_edges_outside = 3;
 
 /// Finds the tetrahedron around a point, and the nearest point of the boundary.

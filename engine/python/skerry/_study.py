@@ -229,7 +229,8 @@ def _show(share: float, done: int, total: int) -> None:
 
 
 def _quantity(values: dict[str, Any]) -> StudyQuantity:
-    """A number that is not finite is None in JSON: an infinite one in the following keys, else an unknown one."""
+    """Makes a quantity of its JSON values. A number that is not finite is None there: infinity for the keys in
+    `infinite`, NaN for others."""
     infinite = ("agree_until", "error", "mesh") if values["verdict"] == "singular" else ("agree_until",)
     absent = {key: math.inf if key in infinite else math.nan for key, value in values.items() if value is None}
     runs = {

@@ -53,7 +53,7 @@ def _end_calls() -> None:
     latest = time.monotonic() + 10  # a callback may wait for ever
     while _core.end_calls() and time.monotonic() < latest:
         time.sleep(1e-3)
-    if threading.active_count() > 1:  # a thread that does not end keeps its objects
+    if threading.active_count() > 1:  # a thread that still runs keeps its objects, which are no leaks
         _core.hide_leaks()
 
 
