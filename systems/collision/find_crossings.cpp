@@ -258,7 +258,7 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
         for (const ContactRow& row : found) {
             const auto at = std::lower_bound(pairs.key.begin(), pairs.key.end(), row.key.pair);
             const auto p = static_cast<std::size_t>(at - pairs.key.begin());
-            // Pairs with a collider have no state, because distances from colliders are signed.
+            // Pairs with a collider have no state, because the signed distance from a collider shows an overlap.
             if (pairs.kind[p] == PairKind::collider) continue;
             pairs.state[p] = PairState::overlapping;
             pairs.valid_until[p] = -infinity;  // an overlapping pair needs a list with a larger search distance

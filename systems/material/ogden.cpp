@@ -254,7 +254,7 @@ T Ogden::rough_stiffness_bound(const MaterialConstants& material, const T& squar
     T bound{};
     for_each_term(material, [&](Real modulus, Real exponent) {
         if (exponent == 0) {
-            // The last term: if K is small, largest_eigenvalue returns up to 4/3 of the eigenvalue.
+            // The last term is needed because largest_eigenvalue returns up to 4/3 of the eigenvalue if K is small.
             bound = bound + modulus * ((1.0 + larger(log_most, T{} - log_least)) * steep +
                                        larger(steep - 1.0, T{}) * (1.0 / 3));
             return;

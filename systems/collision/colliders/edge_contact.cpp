@@ -126,7 +126,8 @@ public:
     }
 
 private:
-    // Test parameters are placed at this distance on both sides of a predicted position, so that they enclose it.
+    // Test parameters are placed at this distance on both sides of a predicted position. If they enclose the position,
+    // the interval is shorter than place_tolerance, and the search ends.
     static constexpr Real least_step = 0.45 * place_tolerance;
 
     /// Evaluates the derivative at `s` and shrinks the interval. Does nothing if `s` is outside of the interval.

@@ -433,7 +433,7 @@ SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index li
     // If the error of the region has decreased, a round ends when the square root of the merit function d . K d falls
     // below this fraction of the error at the start of the round.
     constexpr Real enough = 0.1;
-    // If the error has not decreased, this limit is multiplied by `solved`.
+    // If the error has not decreased, the round must be solved more accurately: the limit is multiplied by `solved`.
     constexpr Real solved = 1e-3;
     // largest number of steps in a round; a longer round is unlikely to converge soon
     constexpr Index most_in_round = 14;
