@@ -172,8 +172,8 @@ private:
             StressCoordinates sum = StressCoordinates::Zero();
             Real count = 0;
         };
-        std::array<std::vector<Mean>, 2>
-            means;  // mean stresses of the elements with strain, and of those with volumetric stress only
+        // by tetrahedron: mean stresses of its elements, [1] of those with volumetric stress only, [0] of the others
+        std::array<std::vector<Mean>, 2> means;
         for (std::vector<Mean>& of : means) of.resize(error_.volume.size());
         Real stiffness = 0;
         for (std::size_t place = 0; place < body_.cover.tetrahedra.size(); ++place) {

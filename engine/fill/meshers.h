@@ -21,7 +21,7 @@ std::string netgen_program();
 /// Explains how to install Netgen.
 extern const char* const install_netgen;
 
-/// Command that starts the Python interpreter with the package wildmeshing (see FillSettings::python).
+/// Command that starts the Python interpreter with the package wildmeshing. `given`: value of FillSettings::python.
 std::string python_program(const std::string& given);
 
 /// Fills closed manifold surfaces that do not cross with tetrahedra of edge length up to about `largest_edge` [m]. The

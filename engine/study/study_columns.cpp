@@ -137,7 +137,7 @@ StudyRecorder::StudyRecorder(Scene& scene)
 void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
     std::string of_all = "bodies";  // name of the columns that summarise all bodies
     while (std::ranges::find(of_scene, of_all, &RecordedProbe::name) != of_scene.end()) of_all = "all " + of_all;
-    // columns of the recorder with the same quantity of free bodies
+    // for each quantity of free bodies: name of the statistics, and columns of the recorder with this quantity
     std::vector<std::pair<SeriesColumn, std::vector<std::size_t>>> of_bodies;
     const bool keep_bodies = defaults_.size() <= 3 * most_recorded;
     std::size_t c = 1;  // column 0 is the time

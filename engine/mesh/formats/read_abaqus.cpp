@@ -247,7 +247,8 @@ private:
         return set;
     }
 
-    /// Returns the row of the node, or the index of the element, with a number.
+    /// Returns the row of the node with a number, or the index of the element, depending on `sets`. Throws SceneError
+    /// if there is none.
     std::size_t member(const std::string& number, const AbaqusScope& scope, const Sets& sets) {
         if (&sets == &node_sets_)
             return scope.first_node +

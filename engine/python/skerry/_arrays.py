@@ -159,7 +159,7 @@ def flag(value: object, name: str) -> bool:
 
 
 def is_false(value: object) -> bool:
-    """True for False of Python or NumPy: a callback that returns it ends a run. None and 0 do not."""
+    """True for False of Python or NumPy, by which a callback ends a run. None and 0 do not end it."""
     return isinstance(value, (bool, np.bool_)) and not value
 
 
@@ -178,7 +178,7 @@ def optional_name(value: object) -> str | None:
 
 
 def seconds(value: SupportsFloat, object: str, name: str, *, zero: bool = True) -> float:
-    """A finite time, >= 0 or > 0 [s]."""
+    """A finite time [s]: >= 0, or > 0 if `zero` is False."""
     number = float(value) if isinstance(value, float) else real(value, f"{object}: {name}")
     if not (math.isfinite(number) and (number > 0 or (zero and number == 0))):
         raise scene_error(object, name, str(number), f"a finite time {'>=' if zero else '>'} 0 [s]")

@@ -144,7 +144,7 @@ class View:
         return result
 
     def _note_pages(self) -> bool:
-        """Notes the time if a page is connected."""
+        """True if a page is connected. Then stores the present time in `_seen`."""
         connected = self._core.clients() > 0
         if connected:
             self._seen = time.monotonic()

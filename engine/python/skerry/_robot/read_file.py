@@ -310,7 +310,7 @@ class _Reader:
         return str(self.model.joint(self.model.actuator_trnid[a, 0]).name) if of_joint else None
 
     def drive(self, a: int, joint: RobotJoint) -> tuple[Drive, float] | None:
-        """Drive and strength of an actuator of a joint."""
+        """Drive and strength of an actuator of a joint; None if no motor acts like it."""
         model, name = self.model, self.model.actuator(a).name
         gain, bias = model.actuator_gainprm[a], model.actuator_biasprm[a]
         gear = abs(float(model.actuator_gear[a, 0]))
