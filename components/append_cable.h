@@ -16,7 +16,7 @@ inline void append_point(const Stencil& stencil, const Vec3& velocity, CableBloc
     blocks.impulse.push_back(0);
 }
 
-/// Removes the points from row `count` on. They belong to no block yet.
+/// Removes the points from row `count` on, which must not belong to a block yet.
 inline void truncate_points(Index count, CableBlockTable& blocks) {
     const auto rows = static_cast<std::size_t>(count);
     blocks.stencil.resize(rows);

@@ -86,12 +86,12 @@ struct BodyTable {
     // Number of steps until find_unstrained.h tests again whether the body is strained. Until then the body counts as
     // undeformed and unrotated, so its elements exert no force and are not computed. 0: the elements are computed.
     Column<std::uint16_t> unstrained;
-    // Time since which the body has been still (update_sleep.h) [s].
+    // Time for which the body has been still (update_sleep.h) [s].
     Column<Real> still_time;
-    // Measurements of stillness (stillness.h), used if the engine chooses the limits of stillness. The sleep time is
-    // divided into two halves. |drift| is the largest distance of a node from its still_position in the current half
-    // [m]. `drift` is negative if a later measurement in the half found a smaller distance. `drift_before` is the
-    // largest distance in the previous half [m].
+    // Measurements of stillness (stillness.h), used if SleepSettings::own_limits is set. The sleep time is divided into
+    // two halves. |drift| is the largest distance of a node from its still_position in the current half [m]. `drift` is
+    // negative if a later measurement in the half found a smaller distance. `drift_before` is the largest distance in
+    // the previous half [m].
     Column<Real> drift, drift_before;
     // `shape_drift`: largest distance, measured in the current half of the sleep time, between the shape of the body
     // and its shape at the start of the half (stillness.h: shape_distance) [m]. `creep_before`: largest distance in the

@@ -90,13 +90,13 @@ struct CableBlock {
     Real released;   // greatest length at the end of the step [m]
     Index mobility;  // row of the first entry of the cable in the mobility matrices of the region solver
     bool is_tie = false;
-    // For a tie: place at which its impulse acts on the other object, which has the last point [m].
+    // For a tie: position at which its impulse acts on the other object, to which the last point belongs [m].
     Vec3 acts_at = Vec3::Zero();
 
     /// Number of impulses of the block: one per segment of a cable, or the three components of the impulse of a tie.
     /// They are the first rows of CableBlockTable::impulse.
     Index impulses() const { return is_tie ? 3 : points.size() - 1; }
-    /// Place at which the impulse of point `p` acts on rigid and implicit bodies. nullptr: the nodes of the point.
+    /// Position at which the impulse of point `p` acts on rigid and implicit bodies. nullptr: the nodes of the point.
     const Vec3* acting_point(Index p) const { return is_tie && p + 1 == points.end ? &acts_at : nullptr; }
 };
 

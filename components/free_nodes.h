@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Tells whether forces move a node: the node is neither held nor part of a held body.
+/// Shows which nodes forces can move: those that are neither held nor part of a held body.
 struct FreeNodes {
     std::span<const Real> inverse_mass;  // by node; 0 for a held node [1/kg]
     std::span<const Index> node_body;    // by node: row of BodyTable

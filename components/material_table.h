@@ -26,7 +26,7 @@ struct MaterialConstants {
     std::array<Real, 3> share{1, 0, 0}, exponent{2, 2, 2};
     // Law `orthotropic`: six matrices of strain, each with the entries xx, yy, zz, xy, yz, zx. They are the
     // eigenvectors of the stiffness without its part lame_lambda, times the root of their eigenvalues over the shear
-    // modulus. These are the modes of an isotropic material.
+    // modulus. The initial values are those of an isotropic material.
     std::array<Real, 36> strain_modes = [] {
         constexpr Real root_two = 1.4142135623730951;
         std::array<Real, 36> modes{};

@@ -190,7 +190,7 @@ template <>
 struct RemovedNames<ContactRegions> {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 1> table{{
         {"paper_algorithm_1",
-         "use \"separate\"; Algorithm 1 of the paper is available only in profile_separation, for comparison"},
+         "use \"separate\"; paper_algorithm_1 is available only in profile_separation, for comparison"},
     }};
 };
 template <>

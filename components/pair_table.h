@@ -31,7 +31,7 @@ enum class PairKind : std::uint8_t { bodies, collider, self };
 template <>
 inline constexpr std::uint64_t value_count<PairKind> = 3;
 
-/// Whether the surfaces of a pair intersect. `unknown`: no search has tested them yet.
+/// State of the surfaces of a pair. `unknown`: no search has tested yet whether they intersect.
 enum class PairState : std::uint8_t { unknown, apart, overlapping };
 template <>
 inline constexpr std::uint64_t value_count<PairState> = 3;
@@ -116,8 +116,8 @@ struct PairTable {
     // 1: the candidate list was made at the positions at the start of this step. Earlier motion of the frames then does
     // not shorten its validity.
     Column<std::uint8_t> fresh;
-    // Whether the surfaces intersected at the last search. Surfaces that are apart stay apart, because find_crossings
-    // prevents them from crossing.
+    // State of the surfaces at the last search. Surfaces that are apart stay apart, because find_crossings prevents
+    // them from crossing.
     Column<PairState> state;
     std::vector<Column<Candidate>> candidates;  // by pair: candidate list, sorted by `feature`
     // Value of travel_bound below which the candidate cannot touch, by pair and candidate [m].

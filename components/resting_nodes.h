@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Tells whether a node belongs to a sleeping body. If the spans are empty, no body is asleep.
+/// Shows which nodes belong to sleeping bodies. If the spans are empty, no body is asleep.
 struct RestingNodes {
     std::span<const Index> node_body = {};           // column of NodeTable: row of BodyTable
     std::span<const std::uint8_t> body_asleep = {};  // column BodyTable::asleep

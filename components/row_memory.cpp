@@ -18,7 +18,7 @@ namespace {
 
 /// Asks the system for large pages. The request is only a hint: if the system refuses, the memory is used with small
 /// pages.
-void ask_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+void request_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
     const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(memory);
     const std::uintptr_t first = (begin + large_page - 1) / large_page * large_page,
@@ -31,7 +31,7 @@ void ask_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::si
 
 void* allocate_rows(std::size_t bytes) {
     void* const memory = ::operator new (bytes, std::align_val_t{row_alignment});
-    ask_for_large_pages(memory, bytes);
+    request_large_pages(memory, bytes);
     return memory;
 }
 

@@ -30,14 +30,14 @@ struct Member;
 struct RowType {
     std::size_t bytes;                            // size of a row [bytes]
     void (*make)(void* rows, std::size_t count);  // value-initialises `count` rows; vectors and matrices become zero
-    // How many numbers a row contains, without padding; 0: the row is described by `members`.
+    // Count of the numbers in a row, without padding; 0: the row is described by `members`.
     std::size_t width = 0;
     NumberType number = NumberType::uint8;  // type of the numbers in a row
-    std::uint64_t values = 0;               // how many values the type has if it is an enum, else 0
+    std::uint64_t values = 0;               // number of values of the type if it is an enum, else 0
     // Returns the members of the row type; null: the type has no members.
     std::span<const Member> (*members)() = nullptr;
 
-    /// Whether the description is complete enough to save the rows.
+    /// True if the description is complete enough to save the rows.
     bool is_known() const { return width > 0 || members != nullptr; }
 };
 

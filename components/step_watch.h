@@ -29,7 +29,7 @@ struct StepEvaluation {
 };
 
 /// Checks all bodies one after the other, in endless rounds. The progress is part of the state, but only `steps` is
-/// hashed: a rejected attempt at a step changes the other members, and the next attempt does the skipped pieces.
+/// hashed: rejected attempts at a step advance the other members, which changes no result.
 struct StepWatch {
     /// Value of `step` for a body that is not checked in this round. Such a body is asleep or unstrained, so that its
     /// shape does not change, or it has been checked elsewhere.
@@ -38,11 +38,11 @@ struct StepWatch {
     std::uint64_t steps = 0;  // number of steps since the current round began
     // True in every second round. The balance of energy is checked at the end of such a round.
     bool second = false;
-    Index body = 0;  // row of BodyTable whose check is in progress
-    Index kept = 0;  // in this round, the shapes of all bodies in rows below this row have been stored
-    StepEvaluation look;
-    std::uint64_t before = 0;  // number of pieces of all bodies in rows below `body`
-    std::uint64_t target = 0;  // number of pieces of this round that must be done by the end of the next step
+    Index body = 0;             // row of BodyTable whose check is in progress
+    Index kept = 0;             // in this round, the shapes of all bodies in rows below this row have been stored
+    StepEvaluation evaluation;  // progress of the check of `body`
+    std::uint64_t before = 0;   // number of pieces of all bodies in rows below `body`
+    std::uint64_t target = 0;   // number of pieces of this round that must be done by the end of the next step
 
     Column<Vec3> position;       // by node: its position in the stored shape that is checked [m]
     Column<Real> stiffness_sum;  // by node: sum of the stiffnesses of its elements (stable_step.h)
@@ -55,7 +55,7 @@ struct StepWatch {
     void begin_round() {
         steps = 0;
         body = kept = 0;
-        look = {};
+        evaluation = {};
         first_piece.clear();  // elements that become implicit change the numbers of pieces
     }
     /// Cancels the check of the body in row `row`, because the body has been checked elsewhere or has changed since its
@@ -71,7 +71,7 @@ struct StepWatch {
         position.erase(nodes);
         stiffness_sum.erase(nodes);
         for (const Range& rows : bodies)
-            if (body >= rows.begin && body < rows.end) look = {};
+            if (body >= rows.begin && body < rows.end) evaluation = {};
         body = row_without(body, bodies);
         kept = row_without(kept, bodies);
     }

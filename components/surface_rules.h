@@ -24,7 +24,7 @@ struct MaterialPairTable {
     Column<SurfaceProperties> surface;
 
     std::size_t size() const { return first.size(); }
-    /// First row that is not below the pair of these two materials, in either order.
+    /// Row of the pair of these two materials, in either order. Without such a row: the row where it would be inserted.
     std::size_t place_of(Index a, Index b) const {
         const std::pair key(std::min(a, b), std::max(a, b));
         std::size_t begin = 0, end = size();

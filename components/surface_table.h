@@ -36,7 +36,7 @@ struct TriangleTable {
     }
 };
 
-/// Whether a triangle is the core of a round body.
+/// True if a triangle is the core of a round body.
 inline bool is_core(const std::array<Index, 3>& node) {
     return node[1] == node[2];
 }

@@ -24,7 +24,7 @@ struct Access {
 
     bool writes() const { return use == Use::write; }
     bool overlaps(const Access& other) const { return begin < other.end && other.begin < end; }
-    /// Whether a stage with this access and a stage with the other access must run one after the other.
+    /// True if a stage with this access and a stage with the other access must run one after the other.
     bool conflicts_with(const Access& other) const {
         return use != Use::value && other.use != Use::value && (writes() || other.writes()) && overlaps(other);
     }
@@ -32,8 +32,8 @@ struct Access {
 };
 using AccessList = std::vector<Access>;
 
-/// Type of an object whose accesses can be declared. A span or a pointer is excluded: the declaration would cover the
-/// span object instead of the data to which the span refers.
+/// True for spans and pointers, whose accesses cannot be declared (Resource): the declaration would cover the span
+/// object instead of the data to which the span refers.
 template <class T>
 inline constexpr bool shows_other_data = std::is_pointer_v<T>;
 template <class T, std::size_t N>

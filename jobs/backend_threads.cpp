@@ -138,7 +138,8 @@ private:
             lock.unlock();
             open->job.drain(own_number);
             lock.lock();
-            // Unless the calling thread sleeps, it may return and destroy its job as soon as `helpers` is zero.
+            // The flag is copied now: unless the calling thread sleeps, it may return and destroy its job as soon as
+            // `helpers` is zero.
             const bool owner_sleeps = open->owner_sleeps;
             if (open->helpers.fetch_sub(1, std::memory_order_release) == 1 && owner_sleeps) helpers_left_.notify_all();
             return true;

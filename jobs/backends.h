@@ -79,7 +79,7 @@ public:
         }
         exhausted_.store(true, std::memory_order_relaxed);
     }
-    /// Whether all blocks have been taken. The result may become true with a delay.
+    /// True if all blocks have been taken. The result may become true with a delay.
     bool exhausted() const noexcept { return exhausted_.load(std::memory_order_relaxed); }
     void rethrow() { error_.rethrow(); }
 

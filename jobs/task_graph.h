@@ -53,7 +53,7 @@ using ResultOf =
 
 }  // namespace access_detail
 
-/// Whether the arguments of a stage fit the parameters of its function. For example, read() does not fit a mutable
+/// True if the arguments of a stage fit the parameters of its function. For example, read() does not fit a mutable
 /// span.
 template <class F, class... Args>
 concept StageFits = access_detail::CallOf<F, Args...>::possible;

@@ -18,13 +18,13 @@ namespace skerry {
 [[noreturn]] void refuse_in(std::string_view file, std::string_view object, std::string_view field,
                             std::string_view found, std::string_view expected, std::string_view hint = {});
 
-/// Refuses a number that is not good or not finite.
+/// Throws SceneError if `good` is false or the number is not finite.
 void require(bool good, std::string_view object, std::string_view field, Real found, std::string_view expected);
 /// Refuses a vector with a component that is not finite.
 void require_finite(std::string_view object, std::string_view field, const Vec3& found);
 
 /// Returns an error whose text is that of `inner` with `place` in front. Its parts are those of `inner`. If `inner`
-/// names no file, they get the file and the object of the place, and its field in front of the field of `inner`.
+/// names no file, the parts get the file and the object of `place`, and its field in front of the field of `inner`.
 SceneError error_at(const Complaint& place, const SceneError& inner);
 
 /// Formats a number with `digits` significant digits, and from 0.0001 to a million without an exponent.

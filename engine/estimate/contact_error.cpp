@@ -8,7 +8,7 @@
 namespace skerry {
 
 void ContactError::sample(const World& world) {
-    // Empty after a load, and after the removal of a body, until the next step.
+    // This list is empty after a world was loaded or a body was removed, until the next step.
     const std::span<const Real> errors = WorldAccess::state_of(world).scratch.regions.error;
     for (const Contact& contact : world.contacts()) {
         if (contact.region < 0 || static_cast<std::size_t>(contact.region) >= errors.size()) continue;

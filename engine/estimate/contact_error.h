@@ -19,8 +19,8 @@ public:
 
 private:
     struct Touched {
-        Real impulse = 0;  // sum of the impulses of its contacts [N s]
-        Real error = 0;    // sum of these impulses times the error of their region [N s]
+        Real impulse = 0;  // sum of the impulses of the contacts of the body [N s]
+        Real error = 0;    // sum of impulse times error of the region over these contacts [N s]
         Real overlap = 0;  // largest overlap [m]
         Real gap = 0;      // largest distance of a contact that carried a force [m]
     };

@@ -22,8 +22,8 @@ Vec6 entries_of(const Mat3& symmetric) {
 EnergyNorm::EnergyNorm(const MaterialConstants& material, bool splits)
     : is_anisotropic_(material.model == MaterialModel::orthotropic) {
     const Real mu = material.shear_modulus, lambda = material.lame_lambda;
-    // Without elements that have only one part of the stress, the stress is divided into deviator and mean stress,
-    // because both have positive stiffness for all Poisson ratios.
+    // If some elements have only one part of the stress, it is divided into the parts of these elements. Otherwise it
+    // is divided into deviator and mean stress, because both have positive stiffness for all Poisson ratios.
     const MaterialConstants volumetric = part_of(material, ElementPart::volume);
     const Real bulk = lambda + 2 * mu / 3, modulus = splits ? volumetric.lame_lambda : bulk;
     of_shear_ = 1 / std::sqrt(2 * mu);

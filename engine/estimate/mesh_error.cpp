@@ -128,8 +128,8 @@ private:
         const CornerStress recovered(record_, error_.nodes, of_tetrahedra, error_.volume);
         for (std::size_t t = 0; t < count; ++t) add_tetrahedron(t, of_tetrahedra[t], recovered);
         error_.stored += sum(error_.energy);
-        // The exact stress is balanced: its product with the strain of the displacements is the stored energy. So the
-        // recovered stress is scaled.
+        // The exact stress is balanced: its product with the strain of the displacements is the stored energy. The
+        // recovered stress is scaled so that this also holds for it.
         if (mixed_ > 0) error_.missing = error_.stored * (error_.stored * recovered_ / (mixed_ * mixed_) - 1);
         find_peak(of_tetrahedra, recovered);
         find_interpolation_error();
@@ -172,8 +172,8 @@ private:
             StressCoordinates sum = StressCoordinates::Zero();
             Real count = 0;
         };
-        std::array<std::vector<Mean>, 2>
-            means;  // mean stresses of the elements with strain, and of those with volumetric stress only
+        // by tetrahedron: mean stresses of its elements, [1] of those with volumetric stress only, [0] of the others
+        std::array<std::vector<Mean>, 2> means;
         for (std::vector<Mean>& of : means) of.resize(error_.volume.size());
         Real stiffness = 0;
         for (std::size_t place = 0; place < body_.cover.tetrahedra.size(); ++place) {

@@ -81,8 +81,8 @@ Real frequency_error(Real z, bool implicit, Real theta) {
     return z * z * (implicit ? 1.0 / 12 + (theta - 0.5) * (theta - 0.5) : 1.0 / 24);
 }
 
-/// Time by which given initial velocities are older than the start: symplectic Euler takes them for those in the middle
-/// of the step before [s].
+/// Time by which given initial velocities are older than the start [s]. Symplectic Euler treats them as velocities in
+/// the middle of the previous step.
 Real start_shift(const World& world, Real first_step) {
     return world.settings().integrator == Integrator::leapfrog ? 0 : first_step / 2;
 }
@@ -188,14 +188,15 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
     const std::span<const Vec3> position = world.positions(body);
     const Real radius = mean_size(world, body, [&](std::size_t n) { return Vec3(position[n] - frame.center); });
     const Twist &now = frame.motion, &start = motion.start_velocity;
-    // Free rotation has errors of second order only, so at the start only torques count.
     const bool is_rigid = motion.deformation.displacement.empty();
+    // Free rotation has errors of second order only. A rigid body is therefore measured by its angular momentum, which
+    // only torques change.
     const Real turned =
         is_rigid ? (spin_momentum(world, body) - motion.start_spin).norm() / (world.mass(body) * radius * radius)
                  : (now.angular_velocity - start.angular_velocity).norm();
     const Real change = std::hypot((now.velocity - start.velocity).norm(), radius * turned);
     if (motion.acceleration < 0) motion.acceleration = change / interval.seconds;
-    // Free rotation has errors of second order only. At the start, only torques therefore count.
+    // The limit reduces the part of later sudden changes, as in collisions.
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
     const Real start_error = std::min(change, accelerated) * start_shift(world, motion.first_step);
     if (is_rigid) motion.tumbled += interval.seconds * radius * tumbling_error(world, body, interval.step);

@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// Estimates how far the nodes of each body are from the places to which infinitely short steps would move them
+/// Estimates how far the nodes of each body are from the positions to which infinitely short steps would move them
 /// (docs/methods/error_estimates.md 2).
 class StepError {
 public:

@@ -29,7 +29,7 @@ struct BestMesh {
     bool may_change = false;                 // true if a call of the mesher failed with MesherResult::may_change
 };
 
-/// Least ratio of the stable steps of two meshes for which the surface of the second may differ.
+/// A mesh with a changed surface replaces that with the given one if its stable step is longer by this factor.
 inline constexpr Real least_gain = 1.05;
 
 /// Fills the surface with tetrahedra of several sizes. With a tolerance it also fills the surface without needles and

@@ -22,7 +22,8 @@ constexpr Real default_edge = 0.05;
 constexpr Real least_ratio = 2.0 / 3, most_ratio = 1.5;
 // fTetWild may use this share of the tolerance. The rest is left for the removal of needles and caps.
 constexpr Real envelope_share = 0.5;
-// Netgen's mesh of a surface of fTetWild must have this share of the number of tetrahedra of fTetWild.
+// Netgen's mesh of a surface of fTetWild must have this share of the number of tetrahedra of fTetWild. With fewer it
+// would be coarser than wanted.
 constexpr Real least_count = 0.7;
 // Largest number of cubes of the wanted edge in the bounding box. More tetrahedra do not fit the memory of a computer.
 constexpr Real most_cells = 1e9;

@@ -7,7 +7,7 @@
 
 namespace skerry::mesh {
 
-/// How meshers are started.
+/// Settings with which meshers are started.
 struct MesherSetup {
     FillLimits limits{};
     std::string python{};  // see FillSettings::python
@@ -21,11 +21,11 @@ std::string netgen_program();
 /// Explains how to install Netgen.
 extern const char* const install_netgen;
 
-/// Command that starts the Python interpreter with the package wildmeshing (see FillSettings::python).
+/// Command that starts the Python interpreter with the package wildmeshing. `given`: value of FillSettings::python.
 std::string python_program(const std::string& given);
 
 /// Fills closed manifold surfaces that do not cross with tetrahedra of edge length up to about `largest_edge` [m]. The
-/// surface is unchanged bitwise: its nodes are the first nodes of the mesh. `doing` describes the activity.
+/// surface is unchanged bitwise: its nodes are the first nodes of the mesh. `doing`: activity that is shown.
 MesherResult fill_by_netgen(const SurfaceMesh& surface, Real largest_edge, const MesherSetup& setup,
                             const std::string& doing);
 

@@ -51,7 +51,7 @@ struct LiveCommand {
     std::uint64_t number = 0;  // number of a frame, or of a slider from 0
     Real value = 0;
     bool on = false;
-    FrameContent content = FrameContent::motion;   // content of frames with the fields `names`
+    FrameContent content = FrameContent::motion;   // content of frames with the fields that the browser shows
     std::uint64_t body_number = 0;                 // number of the body in the stream of the browser
     BodyHandle body{};                             // the body with this number
     Vec3 point = Vec3::Zero(), to = Vec3::Zero();  // [m]

@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// True if a command makes an earlier one of the same browser needless.
+/// True if a command makes an earlier one of the same browser unnecessary.
 bool replaces(const LiveCommand& command, const LiveCommand& earlier) {
     return command.action == earlier.action && command.client == earlier.client &&
            (command.action == LiveAction::move ||
@@ -264,7 +264,8 @@ void LiveHub::serve(Client& client) {
         }
         lock.lock();
         if (std::exchange(outgrown, false)) client.run = 0;  // starts a new stream
-        snapshot.reset();  // under the lock, so that free_snapshot() sees that all was read
+        // released under the lock, so that free_snapshot() returns it only after it was read completely
+        snapshot.reset();
     }
     client.closed = true;
     lock.unlock();

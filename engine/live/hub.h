@@ -103,7 +103,7 @@ private:
         bool pulls = false;                           // its last pull has not been released
         std::deque<std::string> texts;                // messages that wait for its thread
         std::uint64_t run = 0;                        // run that it shows
-        std::uint64_t snapshot = 0;                   // number of the last snapshot that it got
+        std::uint64_t snapshot = 0;                   // number of the last snapshot that the browser got
         std::uint64_t version = 0;                    // version of that snapshot
         std::uint64_t sent = 0, seen = 0;             // numbers of frames
         std::vector<BodyHandle> bodies;               // bodies by number in its stream

@@ -12,12 +12,14 @@ namespace skerry {
 
 namespace {
 
-constexpr Real frame_step = 1.0 / 60;   // longest call of advance, as the frames of a scene [s]
+// longest duration of a call of advance, the default time between two frames of a scene [s]
+constexpr Real frame_step = 1.0 / 60;
 constexpr Real frames_per_second = 30;  // most snapshots per wall time [1/s]
-constexpr int snapshot_pause = 4;       // least time between two snapshots, in durations of a snapshot
-constexpr Real longest_wait = 0.02;     // longest wait in due(), and in sync() while paused [s]
-constexpr Real longest_lag = 0.1;       // lag behind the wall clock that the simulation makes up for [s]
-constexpr Real fastest_rate = 1000;     // largest simulated time per wall time
+// least time between two snapshots, as a multiple of the time that a snapshot takes
+constexpr int snapshot_pause = 4;
+constexpr Real longest_wait = 0.02;  // longest wait in due(), and in sync() while paused [s]
+constexpr Real longest_lag = 0.1;    // lag behind the wall clock that the simulation makes up for [s]
+constexpr Real fastest_rate = 1000;  // largest simulated time per wall time
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
 constexpr Real speed_interval = 0.5;  // wall time over which the speed is measured [s]
 
@@ -222,13 +224,15 @@ void LiveRun::begin_run(const World& world) {
 }
 
 /// Takes a snapshot if one is due and a browser waits for one. `between_calls`: the world is between two calls of
-/// advance, so that probes can be read. Within a call the snapshot is taken later, so that only long calls need it.
+/// advance, so that probes can be read. Within a call, snapshots become due one interval later, so that only long calls
+/// take them.
 void LiveRun::show(const World& world, bool between_calls) {
     if (!hub_.is_busy()) return;
     const Clock::time_point now = Clock::now();
     const Clock::duration interval = seconds_of(1 / frames_per_second);
     if (now < (between_calls ? next_show_ : next_show_ + interval)) return;
-    // Times on a grid keep the rate where calls of sync() come a little early or late.
+    // Snapshots become due at fixed intervals, not one interval after the last snapshot. The mean rate then stays the
+    // same if calls of sync() come a little early or late.
     next_show_ = std::max(next_show_, now - interval) + interval;
     if (std::exchange(changed_, false) || world.time() != shown_time_) hub_.mark_changed();
     shown_time_ = world.time();
@@ -296,7 +300,7 @@ void LiveRun::sample_speed(const World& world) {
     speed_time_ = world.time();
 }
 
-/// Restarts the pace at the present time. Any lead or lag of the simulation is forgotten.
+/// Restarts the pace at the present time. Any lead or lag of the simulation is discarded.
 void LiveRun::pace_from_now(const World& world) {
     pace_wall_ = Clock::now();
     pace_time_ = world.time();

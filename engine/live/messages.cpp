@@ -83,8 +83,8 @@ bool LiveEncoder::is_outgrown(const Snapshot& snapshot) const {
 }
 
 /// Returns a value that 99 % of the positive values in `values_` do not exceed, so that few extreme values among many
-/// do not stretch a legend. Of at most 100 values it is the largest. Returns 0 if there are none. Changes the order of
-/// the values.
+/// do not stretch a legend. If there are at most 100 values, it is the largest. Returns 0 if there are none. Changes
+/// the order of the values.
 Real LiveEncoder::usual() {
     std::erase_if(values_, [](Real value) { return !(value > 0) || !std::isfinite(value); });
     if (values_.empty()) return 0;

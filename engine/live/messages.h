@@ -37,7 +37,7 @@ struct LiveRunInfo {
     std::vector<LivePlot> plots;
 };
 
-/// First message of a run. The browser forgets all objects and decodes the next frame as the first one.
+/// First message of a run. The browser discards all objects and decodes the next frame as the first one.
 std::string begin_text(const LiveRunInfo& info, const LiveState& state);
 std::string state_text(const LiveState& state);
 /// Reports a refused command, or a failed step.

@@ -99,7 +99,7 @@ std::optional<PullState> Pull::state(const World& world) const {
     const WorldState& state = WorldAccess::state_of(world);
     std::optional<PullState> pull;
     for (const SpringHandle spring : springs_) {
-        if (state.model.spring_map.row(spring) == no_index) continue;  // the owner of the world has removed it
+        if (state.model.spring_map.row(spring) == no_index) continue;  // the owner of the world has removed this spring
         const SpringState now = spring_state(state, spring);
         if (!pull) pull = {.force = 0, .length = now.length};
         pull->force += now.force;

@@ -122,8 +122,8 @@ void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* n
                          " tetrahedra list their nodes in the opposite order (negative volume) and were turned");
 }
 
-/// Takes over the sets of a file. used[n]: number that node n of the mesh has in the file. Sets of which nothing is in
-/// the mesh are dropped, with a note.
+/// Adds the sets of a file to the mesh. used[n]: number that node n of the mesh has in the file. Sets without any part
+/// in the mesh are dropped, with a note.
 void take_sets(const std::string& path, std::map<std::string, MeshSet>& raw, std::span<const Index> used,
                std::size_t raw_nodes, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<Index> place(raw_nodes, no_index);

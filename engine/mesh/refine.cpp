@@ -39,7 +39,8 @@ public:
         for (const Index n : corners) on_face_[static_cast<std::size_t>(n)] = true;
         found_.insert(found_.end(), midpoints.begin(), midpoints.end());
     }
-    /// Adds an edge to which no face of the set leads. All faces must have been added.
+    /// Marks the midpoint of an edge whose ends are in the set, unless both ends are nodes of its faces. All faces must
+    /// have been added.
     void add_edge(std::size_t a, std::size_t b, Index midpoint) {
         if (in_set_[a] && in_set_[b] && !(on_face_[a] && on_face_[b])) found_.push_back(midpoint);
     }

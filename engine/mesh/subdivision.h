@@ -18,7 +18,7 @@ struct Subdivision {
     std::vector<std::array<Index, 3>> triangle_middle{};
 };
 
-/// Divides a mesh as `refine` does, and returns the record of it.
+/// Divides a mesh as `refine` does, and returns a record of the division.
 Subdivision subdivide(Mesh& mesh);
 
 /// Adds the midpoints of edges that a set of nodes gets by the rule of `refine`, in ascending order.

@@ -50,7 +50,7 @@ inline std::string duration_text(double seconds) {
         const char* name;
     };
     constexpr Unit units[] = {{86400, " days"}, {3600, " h"}, {60, " min"}};
-    // Smallest number of units in a duration. A larger unit is not used if the duration contains fewer of it.
+    // A unit is used if the duration is at least this many of it, and seconds if no other unit is.
     constexpr double enough = 2;
     for (const Unit& unit : units)
         if (seconds >= enough * unit.seconds) return short_text(seconds / unit.seconds) + unit.name;

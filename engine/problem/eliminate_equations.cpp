@@ -187,7 +187,7 @@ void list_joints(const JointBlockTable& joints, const RegionInputs& inputs, std:
     }
 }
 
-/// The row of a slide has the direction of its impulse, so that its impulse along the row is 1.
+/// Adds the rows of ties. The direction of the row of a slide is the impulse vector itself, so its impulse is 1.
 void list_ties(const StepEquations& equations, const Mobilities& mobilities, std::vector<EquationRow>& rows) {
     const TieRowTable& ties = equations.tie_rows;
     for (std::size_t i = 0; i < ties.size() && !equations.tie_kind.empty(); ++i) {
@@ -199,7 +199,7 @@ void list_ties(const StepEquations& equations, const Mobilities& mobilities, std
     }
 }
 
-/// The row of a point of a cable has the direction of the impulse on the point, so that its impulse is 1.
+/// Adds a row for each point of a cable. Its direction is the vector of the impulse on the point, so its impulse is 1.
 void list_cable(const CableBlockTable& cables, const CableBlock& block, const Mobilities& mobilities,
                 std::vector<EquationRow>& rows) {
     Vec3 last = Vec3::Zero();
@@ -229,7 +229,7 @@ void list_ball(const CableBlockTable& cables, const CableBlock& block, const Mob
 constexpr Real negligible_part = 1e-7;
 
 /// Part of its inverse mass along the normal below which a contact counts as immovable: the square of an angle of
-/// 1e-3 rad. The bound is larger, because q keeps the impulses of these contacts.
+/// 1e-3 rad. It may exceed `negligible_part`, because q keeps the impulses of these contacts.
 constexpr Real immovable_part = 1e-6;
 
 /// Pseudoinverse of a symmetric matrix whose rows may have different units. Rows may depend on each other: eigenvalues

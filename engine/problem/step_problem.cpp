@@ -76,8 +76,8 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     return bodies;
 }
 
-/// For a cylinder: sets the touching point of each contact of the problem relative to the centre of mass. `rows` are
-/// the rows of these contacts in the tables of the step.
+/// Sets the touching point of each contact of the problem relative to the centre of mass, if the body is a cylinder.
+/// `rows` are the rows of these contacts in the tables of the step.
 void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, RigidPoints& body) {
     const RigidNodes& rigid = contacts.rigid.nodes;
     const Index middle = body.node.front();

@@ -235,7 +235,8 @@ void add_solve(CLI::App& app, SolveOptions& options) {
     add_choice<Friction>(command, "--friction", options.settings.friction, "friction law");
     command
         .add_option("--tolerance", options.settings.tolerance,
-                    "largest accepted relative error, measured as in FCLIB and Siconos")
+                    "largest accepted relative error of the impulses, defined as in FCLIB and Siconos "
+                    "(docs/methods/errors.md)")
         ->check(positive_number)
         ->capture_default_str();
     command
@@ -476,7 +477,7 @@ int run_command_line(int argc, char** argv) {
 /// much memory, and the system would have to clear every page before it is used again.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    // Sizes in bytes. The C library would adapt these two limits by itself, but later.
+    // Sizes in bytes. The C library adapts both limits by itself, but only after large blocks were freed.
     constexpr int largest_kept = 32 << 20, most_kept = 64 << 20;
     mallopt(M_MMAP_THRESHOLD, largest_kept);
     mallopt(M_TRIM_THRESHOLD, most_kept);

@@ -21,7 +21,8 @@ constexpr Real least_density = 2, most_density = 25000;  // [kg/m^3]
 constexpr Real most_modulus = 1.3e12;                    // [Pa]
 constexpr Real most_gravity = 5000;                      // [m/s^2]
 constexpr Real most_size_ratio = 999;                    // size of the longest body over that of the shortest
-// Distance of a body from the origin as a multiple of its size, beyond which a pin hardly rotates about the origin.
+// Distance of a body from the origin, as a multiple of its size, beyond which a pin is hardly meant to rotate about the
+// origin.
 constexpr Real most_pivot_distance = 1;
 // size of a rigid body from a surface file above which mm were probably read as m [m]
 constexpr Real most_surface_size = 20;
@@ -95,7 +96,7 @@ Real volume_of(const Mesh& mesh) {
     return six_volumes / 6;
 }
 
-/// Warns of the size and the given mass properties of a rigid body.
+/// Warns of an unlikely size and of unlikely mass properties of a rigid body.
 void warn_of_rigid(const BodySettings& body, const Mesh& mesh, const Extent& extent,
                    std::vector<std::string>& warnings) {
     if (body.dynamics != BodyDynamics::rigid || mesh.nodes.empty()) return;

@@ -15,7 +15,7 @@ namespace skerry {
 namespace {
 
 constexpr double refresh_interval = 0.1;  // time between two updates of the bar [s]
-// wall time after which the first line is printed, when the time left can be estimated [s]
+// wall time of the first line [s]; earlier, the time left could not be estimated
 constexpr double first_line = 1;
 constexpr double longest_silence = 600;       // longest time between two lines [s]
 constexpr int bar_width = 24;                 // [characters]

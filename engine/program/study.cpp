@@ -103,7 +103,7 @@ int study(const StudyOptions& options) {
         if (!options.quiet)
             std::cout << "The study was stopped. Run the same command again"
                       << (options.settings.redo ? ", without --redo," : "")
-                      << " to continue it: the runs that ended are in " << folder.string() << "." << std::endl;
+                      << " to continue it: the finished runs are in " << folder.string() << "." << std::endl;
         return exit_signal + caught_signal;
     }
     try {

@@ -29,7 +29,7 @@ struct ElementsOfThinBody {
     }
 };
 
-/// A coordinate of the place of a part. Rounding errors are printed as 0.
+/// Text of a coordinate of the position of a part. Rounding errors are printed as 0.
 std::string coordinate(Real value, const mesh::ThinPart& part) {
     constexpr Real rounding = 1e-6;  // coordinates below this fraction of the length of the part are rounding errors
     return short_text(std::abs(value) < rounding * part.length ? 0 : value);

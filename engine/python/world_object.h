@@ -61,8 +61,8 @@ private:
     WorldObject& object_;
 };
 
-/// Raises BufferError that names the bodies and their numbers of arrays, if arrays show memory of the world, which
-/// `action` could move.
+/// Raises BufferError if arrays show memory of the world, because the call `action` could move this memory. The message
+/// names the bodies and the number of arrays of each.
 void require_no_views(const WorldObject& object, const char* action);
 
 template <class Result, class... Arguments>

@@ -66,7 +66,7 @@ ControlledObject object_of(const RolloutControl& control) {
         control.what);
 }
 
-/// Name of each kind of control before the name of its object, and number of values per interval.
+/// Prefix of the name of a control, before the name of its object, and number of values per interval.
 struct ControlKind {
     const char* title;
     std::size_t count;

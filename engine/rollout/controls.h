@@ -27,7 +27,7 @@ std::string unit_of(const World& world, const SliderControl& control);
 /// Value that a control sets, over time. The control must not be a PoseControl. Throws SceneError for a pipe without
 /// reservoir.
 TimeTable course_of(const World& world, const SliderControl& control);
-/// Gives a target of a slider a value in zero time.
+/// Sets a target of a slider to a value at once, without a motion to it.
 void start_target(World& world, const Slider& slider, const SliderTarget& target, Real value);
 /// Number of values that a control has per interval. Throws SceneError if the world lacks the controlled object, or if
 /// the object is a joint without motor.

@@ -40,14 +40,14 @@ void check_settings(std::size_t world_count, const RolloutSettings& settings) {
 /// Returns the state of a world, after a check that a rollout can start from it.
 WorldState& source_of(const World* world, std::size_t number, Real dt) {
     if (!world) refuse("rollout", "worlds", "a null pointer", "a world");
-    // The state is not constant, even if the world is.
+    // The cast is valid, because the state of a world is never a constant object.
     auto& state = const_cast<WorldState&>(WorldAccess::state_of(*world));
     state.require_between_steps("rollout");
     if (!(state.clock.time + dt > state.clock.time))
         refuse("rollout", "dt", short_text(dt),
                "a longer time, because rounding would lose it in the sum with " + short_text(state.clock.time) +
                    " s, the time of world " + std::to_string(number));
-    // A later evaluation of the contacts then writes nothing.
+    // Fills the view of the contacts now, so that later reads by several threads write nothing.
     view_contacts(state);
     return state;
 }

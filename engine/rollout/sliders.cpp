@@ -101,7 +101,8 @@ struct FollowCourse {
             const Pose pose = pose_at(slider, target.start, value);
             return Keyframe{time, pose.position, pose.rotation};
         };
-        // Motion between two poses takes the shorter way round. The pose halfway leads it along the slider.
+        // A motion between two poses must turn by less than half a revolution. The key halfway allows twice as much,
+        // which is the largest range of a slider.
         const std::array keys{key_at((from.time + to.time) / 2, (from.value + to.value) / 2),
                               key_at(to.time, to.value)};
         std::visit([&](auto object) { follow_poses(world, object, keys); }, control.object);
@@ -142,7 +143,7 @@ void set_slider(World& world, const Slider& slider, Real value) {
     if (!(slider.low <= value && value <= slider.high))
         refuse("slider '" + slider.name + "'", "value", short_text(value),
                "a value from " + short_text(slider.low) + " to " + short_text(slider.high) + " " + slider.unit);
-    Real duration = 1e-3;  // least duration, also for changes that are only rounding errors [s]
+    Real duration = 1e-3;  // least duration, so that the times of the two keys differ also for tiny changes [s]
     for (const SliderTarget& target : slider.targets)  // refuses removed objects before any object is changed
         duration = std::max(duration, std::abs(value - value_of(world, slider, target)) / slider.fastest);
     const Real now = world.time();

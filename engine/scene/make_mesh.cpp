@@ -22,15 +22,16 @@ int refined_resolution(int resolution, int refine) {
     return refine == 0 ? resolution : refined(resolution + resolution % 2, refine);
 }
 
-/// Fills a surface, or the surface of a mesh, in the unit of the file. The tetrahedra are `doublings` times twice as
-/// large as those with the given edge length.
+/// Fills a surface, or the surface of a mesh, in the unit of the file. `doublings`: number of times that the length
+/// `edge` of the edges is doubled.
 Mesh fill_file(const std::filesystem::path& file, std::optional<Real> edge, int doublings, const MeshEntry& entry,
                std::vector<std::string>& notes, const SurfaceFilling& filling) {
     mesh::FillSettings settings{.edge = edge, .cavities = entry.cavities, .python = filling.python};
     settings.tolerance = entry.tolerance.value_or(settings.tolerance);
     if (doublings > 0) {
         settings.edge = std::ldexp(*edge, doublings);
-        // The distance of a curved surface from flat triangles grows with the square of their size.
+        // Largest tolerance of a coarser filling. The tolerance grows with the square of the size of the triangles, as
+        // the distance between flat triangles and a curved surface does.
         constexpr Real most = 0.1;
         settings.tolerance =
             std::min(std::ldexp(settings.tolerance, 2 * doublings), std::max(settings.tolerance, most));

@@ -34,7 +34,8 @@ struct SceneLevels {
     std::vector<std::string> assignments(int level) const;
 };
 
-/// `file`: the scene file, whose content assignments change. Meshes of included scenes have only the level 0.
+/// Finds the possible levels of the meshes of a scene. Meshes of included scenes have only the level 0, because
+/// assignments change only the content of the scene file `file`.
 SceneLevels levels_of(const SceneFile& scene, const std::filesystem::path& file);
 
 /// Assignments that give all deformable bodies of the file elements of one kind.

@@ -5,8 +5,8 @@
 
 namespace skerry {
 
-/// Adds the objects of the scene `included` to `scene`, moved and renamed as `include` asks. Single values of the
-/// included scene, such as its settings, are not used. Throws SceneError if an object cannot be moved.
+/// Adds the objects of the scene `included` to `scene`, moved and renamed by the rules of `include`. Single values of
+/// the included scene, such as its settings, are not used. Throws SceneError if an object cannot be moved.
 void add_placed(const IncludeEntry& include, SceneFile& included, SceneFile& scene);
 
 }  // namespace skerry

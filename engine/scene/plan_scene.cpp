@@ -73,7 +73,7 @@ SurfacePlan plan_surface(const SurfaceEntry& entry, const PlannedMesh& mesh,
                                      .direction = entry.direction},
                         .place = entry.place};
     if (entry.set) {
-        // Listed nodes also count where they do not make a whole face.
+        // Listed nodes belong to the surface set also if they do not form a complete face.
         const MeshSet& set = find_set(*entry.set, mesh, sets, entry.place.key("set"));
         surface.settings.nodes = set.nodes;
         surface.settings.faces = faces_of(set, mesh);

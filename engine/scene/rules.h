@@ -87,7 +87,7 @@ protected:
     void add_group(KeyGroup::Kind kind, KeyNames keys);
     void add_withdrawn(const Withdrawn& withdrawn) { withdrawn_.push_back(withdrawn); }
     void add_check(std::function<void(const Place&, const void*)> check) { checks_.push_back(std::move(check)); }
-    /// Sets the offset of a member of the object that gets its location.
+    /// Sets the offset of the member in which an object stores its location in the file.
     void store_place_at(std::size_t offset) { place_offset_ = offset; }
     /// Reads the values of all keys of an object. Throws SceneError if the JSON value is not an object, or if it
     /// violates the rule.

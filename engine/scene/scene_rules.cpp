@@ -21,7 +21,8 @@ constexpr KeyDoc mask_doc{.meaning =
                           .limits = within(0, all_groups)};
 
 struct MaterialName {};
-/// Moduli of a law, as papers give them.
+/// Moduli of the laws of Ogden and of Mooney and Rivlin, in the form that papers use. `ogden` and `mooney_rivlin`
+/// convert them to the settings of a material.
 struct OgdenEntry {
     std::vector<OgdenTerm> terms;
     Real bulk_modulus = 0;  // [Pa]

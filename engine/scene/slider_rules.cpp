@@ -38,7 +38,8 @@ void check_slider(const Place& place, const SliderEntry& slider) {
                      "less than half a revolution in each direction, at most 3.14159 rad");
 }
 
-/// A collider or a pin that a slider moves. `motion`: motion that the scene gives the object.
+/// Target of a slider that moves a collider or a pin. `motion`: motion of the object by the scene. Throws SceneError if
+/// there is one.
 template <class HandleType>
 SliderTarget moved(const World& world, HandleType object, const Motion& motion, const Place& place) {
     if (!motion.keys.empty() || !motion.velocity.isZero(0) || !motion.angular_velocity.isZero(0))
@@ -47,7 +48,7 @@ SliderTarget moved(const World& world, HandleType object, const Motion& motion, 
     return {PoseControl{object}, {pose.position, pose.rotation}};
 }
 
-/// The object of this name, for example a joint or a cable.
+/// The object of this name, for example a joint or a cable. Throws SceneError unless exactly one has it.
 template <class HandleType>
 HandleType find_object(const ObjectView<HandleType>& objects, const std::string& name, const Place& place) {
     std::vector<std::string> names;

@@ -236,7 +236,7 @@ void Value<TimeTable>::read(const Json& json, const Place& place, const KeyDoc& 
                           read_number(json[k][1], at.item(1), doc)};
         if (!out.keys.empty() && !(key.time > out.keys.back().time))
             at.item(0).refuse(all_digits(key.time) + " s",
-                              "a time after that of the pair before, " + all_digits(out.keys.back().time) + " s");
+                              "a time after that of the previous pair, " + all_digits(out.keys.back().time) + " s");
         out.keys.push_back(key);
     }
     if (out.keys.empty()) place.refuse("an empty list", "a number, or a list of at least one pair [time, value]");

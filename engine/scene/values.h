@@ -121,7 +121,8 @@ struct Value<Vec3> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<std::array<Real, 3>>::schema(book, doc); }
 };
 
-/// Reads a text, and returns the index of this text in `names`.
+/// Reads a text, and returns the index of this text in `names`. Throws SceneError if it is not there.
+/// `hint_for_removed`: returns the hint for a name that was removed, empty for others.
 std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names,
                       std::string_view (*hint_for_removed)(std::string_view));
 

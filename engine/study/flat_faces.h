@@ -18,7 +18,7 @@ struct FlatFaces {
     Real angle = 0;  // largest angle between neighbouring faces of the curved surface [rad]
 };
 
-/// Measures closed or open triangles, of which neighbours that meet at a larger angle than 40 degrees form an edge.
+/// Measures a surface, which may be open. It is not smooth across edges of triangles that meet at more than 40 degrees.
 FlatFaces flat_faces(std::span<const Vec3> nodes, std::span<const std::array<Index, 3>> triangles);
 
 /// A deformable body whose refined meshes keep the flat faces of a file.

@@ -163,7 +163,7 @@ void keep_to_budget(double budget, int threads, std::size_t first, std::span<Pla
 std::vector<std::string> variant_assignments(const StudiedScene& scene, const StudyVariant& variant, Real mean_step) {
     std::vector<std::string> assignments = scene.assignments;
     if (variant.step != 1) {
-        // tolerance, so that a call of advance that is a whole number of steps counts as one
+        // so that rounding adds no step to a call of advance that is a whole number of steps
         constexpr double slack = 1 + 1e-9;
         assignments.push_back("settings.step_size=" + number_json(mean_step * variant.step * slack));
         if (scene.settings.implicit_step > 0)

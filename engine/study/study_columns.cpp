@@ -19,7 +19,7 @@ namespace {
 
 // largest number of bodies with columns of their own in the report
 constexpr std::size_t most_reported = 20;
-// Largest number of bodies whose places are recorded. For larger scenes only mean, least and largest values are
+// Largest number of bodies whose positions are recorded. For larger scenes only mean, least and largest values are
 // recorded.
 constexpr std::size_t most_recorded = 1000;
 
@@ -63,7 +63,7 @@ std::optional<BodyHandle> body_of(const RecordedProbe& probe) {
         probe.what);
 }
 
-/// True if the scene has a probe of the given kind for which `same` holds.
+/// True if the scene has a probe of the given kind for which `same` returns true.
 template <class Kind>
 bool has(const Scene& scene, auto same) {
     return std::ranges::any_of(scene.recorded, [&](const RecordedProbe& probe) {
@@ -137,7 +137,7 @@ StudyRecorder::StudyRecorder(Scene& scene)
 void StudyRecorder::add_sources(const std::vector<RecordedProbe>& of_scene) {
     std::string of_all = "bodies";  // name of the columns that summarise all bodies
     while (std::ranges::find(of_scene, of_all, &RecordedProbe::name) != of_scene.end()) of_all = "all " + of_all;
-    // columns of the recorder with the same quantity of free bodies
+    // for each quantity of free bodies: name of the statistics, and columns of the recorder with this quantity
     std::vector<std::pair<SeriesColumn, std::vector<std::size_t>>> of_bodies;
     const bool keep_bodies = defaults_.size() <= 3 * most_recorded;
     std::size_t c = 1;  // column 0 is the time

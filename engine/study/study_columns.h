@@ -28,7 +28,7 @@ public:
     std::vector<std::string> bodies() const;
 
 private:
-    /// How the value of a column follows from the values of some columns of the recorder.
+    /// Operation that gives the value of a column from the values of some columns of the recorder.
     enum class Part { mean, least, largest };
     struct Source {
         StudyColumn column;

@@ -28,8 +28,7 @@ Index local_node(const Model& model, Index node) {
     return node - model.bodies.nodes[static_cast<std::size_t>(body)].begin;
 }
 
-/// True if contact forces act on a body for the force interval of a step (kick). On implicit bodies contact forces act
-/// for the whole step.
+/// True if contact forces act on a body only for the kick of a step. On implicit bodies they act for the whole step.
 bool is_kicked(const Model& model, Index body) {
     return deforms(model, body) && model.bodies.implicit[static_cast<std::size_t>(body)].size() == 0;
 }

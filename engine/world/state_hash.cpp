@@ -193,7 +193,7 @@ void add_tied_nodes(Hash& hash, TieTable& table) {
     }
 }
 
-/// Hashes the members of all surface sets, and the ranks of the sets: where sets overlap, the later row wins.
+/// Hashes the members of all surface sets, and the row of each set, because the later row applies where sets overlap.
 void add_members_of_sets(Hash& hash, const SurfaceSetTable& table) {
     for (const std::size_t row : in_slot_order(table.slot)) {
         hash.add(table.slot[row]);

@@ -11,7 +11,7 @@ namespace skerry {
 ///
 /// Bodies are hashed one by one, with local row numbers, in the order of their slots. Materials, colliders, attachments
 /// and joints are treated likewise. So the hash does not depend on the rows that these objects have in the tables, nor
-/// on earlier objects in these rows. Of the pairs only overlapping ones are hashed. Settings that cannot change later
+/// on earlier objects in these rows. Only overlapping pairs are hashed. Settings that cannot change later
 /// are not hashed, so that worlds with different numbers of threads can be compared.
 std::uint64_t state_hash(WorldState& world);
 

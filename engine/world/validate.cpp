@@ -82,7 +82,7 @@ void require_labels(const Mesh& mesh, const std::map<int, MaterialHandle>& mater
             refuse(object, "materials", "label " + std::to_string(label), mesh::expected_label(mesh));
 }
 
-/// Checks the sets of a mesh, and the sets that have a material of their own.
+/// Checks the sets of a mesh. Sets with a material of their own must contain tetrahedra, and have none in common.
 void require_sets(const Mesh& mesh, const std::map<std::string, MaterialHandle>& materials, const std::string& object) {
     for (const auto& [name, set] : mesh.sets)
         mesh::require_set(object, name, set, mesh.nodes.size(), mesh.tetrahedra, mesh.triangles);
@@ -206,7 +206,7 @@ void require_apart(const Mesh& mesh, const std::string& object) {
     if (count > 0) refuse(object, "mesh", found, "at most one tetrahedron on each side of a face");
 }
 
-/// Checks the pose and the initial motion of a body.
+/// Checks the pose, the initial motion and the contact distance of a body.
 void require_start(const BodySettings& body, const std::string& object) {
     require_finite(object, "position", body.position);
     require_finite(object, "rotation", body.rotation);
@@ -240,7 +240,7 @@ void require_mesh(const Mesh& mesh, bool may_cross, const std::string& object) {
     mesh::require_shells(surface, object, may_cross);
 }
 
-/// Checks the given mass properties of a body.
+/// Checks the given mass properties of a body. Only a rigid body may have them.
 void require_mass(const BodySettings& body, bool rigid, const std::string& object) {
     if (!body.mass && !body.center_of_mass && !body.inertia) return;
     const char* const given = body.mass ? "mass" : body.inertia ? "inertia" : "center_of_mass";

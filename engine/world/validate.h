@@ -1,5 +1,5 @@
-// Checks of all inputs of a world. Every error message names the object, the field, the found value and the expected
-// value.
+// Checks of all inputs of a world. They throw SceneError, whose message names the object, the field, the found value
+// and the expected value.
 #pragma once
 
 #include <span>

@@ -324,8 +324,8 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
 
 namespace {
 
-/// If one of the two objects with the deepest overlap of held surfaces is removed, deletes the reference to this pair.
-/// The stored depth remains.
+/// For an object that is removed: deletes the reference to the pair with the deepest overlap of held surfaces if the
+/// object belongs to this pair, because its slot may be used again. The stored depth remains.
 void forget_held(HeldDepth& held, std::uint32_t slot, bool is_collider) {
     const PairSlots pair = slots_of_pair(held.pair);
     if (is_collider ? pair.is_collider && pair.second == slot

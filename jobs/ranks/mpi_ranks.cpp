@@ -182,7 +182,8 @@ private:
         }
     }
 
-    /// Calls act(begin, length) for pieces of a message of any length.
+    /// Calls act(begin, length) for consecutive pieces of a message, none longer than 2^30 bytes, because MPI counts
+    /// with an int.
     template <class Act>
     static void for_each_piece(std::size_t bytes, Act act) {
         constexpr std::size_t longest = std::size_t{1} << 30;  // [bytes]

@@ -53,8 +53,8 @@ private:
         }
         if (motion_.stands_still() && is_convex_part(geometry_, part) &&
             !within_reach(distance, speed_against(Vec3::Zero(), node))) {
-            // `distance` bounds the signed distance of every point of the edge from below, so the radii are subtracted
-            // from it.
+            // `distance` is a lower bound for all points of the edge. If the edge is the axis of a capsule, the surface
+            // is nearer by the radius.
             least_ = std::min(least_, distance - scale.radii);
             return;
         }

@@ -14,7 +14,8 @@ namespace skerry {
 
 namespace {
 
-// Smallest ratio of the displacement of the rim nodes of a cylinder to the displacement of any rim point.
+// Smallest ratio of the displacement of the rim nodes of a cylinder to the displacement of any rim point. It is needed
+// because travel is measured at nodes only.
 constexpr Real of_rim_nodes = 0.95;
 
 // An edge counts as parallel to the axis of a cylinder if the sine of the angle between them is below this limit. Such

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "components/ask_for_lines.h"
+#include "components/prefetch_lines.h"
 #include "components/write_contact.h"
 #include "jobs/parallel_for.h"
 #include "systems/collision/contact_rows.h"
@@ -50,8 +50,8 @@ std::int64_t work_of(const PairTable& pairs, std::size_t p) {
     return count == 0 ? 0 : std::int64_t{count} * work_of_one(pairs, p) + candidates_worth_of_a_pair;
 }
 
-/// Marks pairs as idle if neither partner moves. The contacts of an idle pair are in equilibrium, because otherwise the
-/// bodies would not be asleep. For all other pairs, the function counts the candidates and adds up their work.
+/// Marks pairs as idle if neither partner moves. They need no tests: their contacts are in equilibrium, because
+/// otherwise the bodies would not be asleep. For all other pairs, counts the candidates and adds up their work.
 void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pairs) {
     pairs.idle.resize(pairs.size());
     pairs.looked_at.resize(pairs.size());
@@ -98,7 +98,7 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
 /// Waiting for them would take a considerable part of the time of this stage.
 void prefetch_list(const PairTable& pairs, Index p) {
     constexpr std::size_t begin = 32;
-    if (p < static_cast<Index>(pairs.size())) ask_for_lines(pairs.asleep_until[p].data(), begin);
+    if (p < static_cast<Index>(pairs.size())) prefetch_lines(pairs.asleep_until[p].data(), begin);
 }
 
 void test_block(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index b, PairTable& pairs) {

@@ -13,9 +13,9 @@ namespace skerry {
 /// of candidates.
 ///
 /// A candidate becomes a contact if its gap could close within the step of length h; a margin accounts for the velocity
-/// that forces can add. A candidate that cannot touch before the pair has travelled a known distance is skipped after
-/// one comparison. Crossings from an earlier attempt at this step are added unchanged. In all new rows impulses and
-/// slips are zero, regions are no_index and states are open.
+/// that forces can add. A candidate that cannot touch until the travel of the pair reaches asleep_until is skipped
+/// after one comparison. Crossings from an earlier attempt at this step are added unchanged. In all new rows impulses
+/// and slips are zero, regions are no_index and states are open.
 bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                    PairTable& pairs, CrossingTable& crossings, ContactTable& contacts);
 

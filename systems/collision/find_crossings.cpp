@@ -214,7 +214,8 @@ bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& sett
     if (reach_of(inputs, pairs, p, motion.h).travel_bound < pairs.valid_until[p] + drifted) return false;
     if (pairs.kind[p] != PairKind::self || !(pairs.valid_until[p] > -infinity)) return true;
     const SelfMotion parts = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
-    // If travel_bound does not keep the list valid, its spare distances were found to exceed the reach of this step.
+    // If travel_bound does not keep the list valid, the list's spare distances were found to exceed the reach of this
+    // step.
     const bool within_reach = !(pairs.travel_bound[p] < pairs.valid_until[p]) && moves_as_expected(parts, motion);
     return !within_reach && !holds_for_motion(parts, motion, pairs.leaf_pairs[p].listed.span(), pairs.self);
 }
@@ -257,7 +258,7 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
         for (const ContactRow& row : found) {
             const auto at = std::lower_bound(pairs.key.begin(), pairs.key.end(), row.key.pair);
             const auto p = static_cast<std::size_t>(at - pairs.key.begin());
-            // Pairs with a collider have no state, because distances from colliders are signed.
+            // Pairs with a collider have no state, because the signed distance from a collider shows an overlap.
             if (pairs.kind[p] == PairKind::collider) continue;
             pairs.state[p] = PairState::overlapping;
             pairs.valid_until[p] = -infinity;  // an overlapping pair needs a list with a larger search distance

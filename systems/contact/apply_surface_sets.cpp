@@ -40,7 +40,7 @@ public:
         const Feature first = first_feature(c), second = second_feature(c);
         if (first.set == no_index && second.set == no_index) return;
         const Index body = contacts_.first_body[c];
-        // A collider without friction takes that of the body, so the body comes first in the mean.
+        // If a collider specifies no friction, combine() uses the friction of `own`, which must therefore be the body.
         if (is_body(body))
             combine(c, first, second);
         else

@@ -34,8 +34,8 @@ ContactState state_of(const ContactTable& contacts, std::size_t i, Friction fric
     const Vec3 &impulse = contacts.impulse[i], &normal = contacts.normal[i];
     const Real along = impulse.dot(normal);
     if (!(along > 0)) return ContactState::open;
-    // The solver puts the impulse of a sliding contact onto the dynamic friction limit, up to rounding. The rotation of
-    // impulses in the warm start does not change the ratio of tangential to normal impulse.
+    // The solver puts the impulse of a sliding contact onto the dynamic friction limit, up to rounding. It stays there
+    // when the warm start rotates it, because the ratio of tangential to normal impulse does not change.
     constexpr Real rounding = 1e-9;
     const Real load = tangential_load(impulse - along * normal, normal, contacts.friction_axis[i], friction);
     const Real limit = contacts.dynamic_friction[i] * along;

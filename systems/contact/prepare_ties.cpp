@@ -219,7 +219,7 @@ void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real
         four.weight[count] = share;
         if (++count == 4) end_point();
     });
-    // The components of the impulse need three rows.
+    // The three components of the impulse are stored by point, so at least three points are needed.
     while (count > 0 || static_cast<Index>(blocks.stencil.size()) < begin + 2) end_point();
     append(row.stencil(), -row.demanded());
     if (!moves) {

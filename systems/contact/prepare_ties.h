@@ -27,7 +27,8 @@ struct TiePlace {
 };
 
 /// Calls visit(node, share) for each of some nodes of a body. `nodes`: numbered as in the mesh of the body. `first`:
-/// row of NodeTable of its first node. `node`: row of NodeTable. `share`: part of the node of the mass of all `nodes`.
+/// row of NodeTable of its first node. `node`: row of NodeTable. `share`: mass of the node divided by the mass of all
+/// `nodes`.
 void for_each_share(std::span<const Index> nodes, Index first, std::span<const Real> mass, auto&& visit) {
     Real sum = 0;
     for (const Index node : nodes) sum += mass[static_cast<std::size_t>(first + node)];
@@ -93,8 +94,8 @@ struct TieInputs {
     }
     /// True if no object of tie `t` can move in this step, because its bodies are asleep.
     bool rests(std::size_t t) const;
-    /// Calls visit(node, share) for each node of tie `t`. `node`: row of NodeTable. `share`: its part of the mass of
-    /// all nodes of the tie.
+    /// Calls visit(node, share) for each node of tie `t`. `node`: row of NodeTable. `share`: mass of the node divided
+    /// by the mass of all nodes of the tie.
     void for_each_share(std::size_t t, auto&& visit) const {
         skerry::for_each_share(nodes_of(t), row_of(tie.first[t], 0), node_mass, visit);
     }

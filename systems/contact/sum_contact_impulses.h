@@ -14,8 +14,8 @@
 
 namespace skerry {
 
-/// Partners of a contact: a body and a collider, two bodies, or a body and itself. Of two bodies, the one with the
-/// lower handle slot comes first. `collider` is a row of ColliderTable, also for a mesh collider.
+/// Partners of a contact: a body and a collider, two bodies, or a body and itself. If there are two bodies, the one
+/// with the lower handle slot comes first. `collider` is a row of ColliderTable, also for a mesh collider.
 struct ContactPartners {
     Index first = no_index;     // row of BodyTable; a deformable body
     Index second = no_index;    // row of BodyTable; a deformable body, or no_index

@@ -76,7 +76,7 @@ struct LoadInputs {
         return kind[load] == LoadKind::traction && area[load] == LoadArea::present;
     }
     /// Calls visit(first, corners) for each face of a traction on the present area: the row of its first node in
-    /// `share_node`, and the present places of its nodes as columns [m].
+    /// `share_node`, and the present positions of its nodes as columns [m].
     void for_each_face(std::size_t load, auto&& visit) const {
         const std::span<const Vec3> place = rows_of(position, body_nodes[static_cast<std::size_t>(load_body[load])]);
         for (auto k = static_cast<std::size_t>(load_nodes[load].begin);

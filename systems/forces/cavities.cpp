@@ -184,7 +184,8 @@ bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const
 
 bool mark_filled(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
                  Real t, Real h, std::span<std::uint8_t> marked) {
-    // Below this share of the pressures, flow through a pipe does not keep bodies awake.
+    // If the absolute pressures at the ends of a pipe differ by at most this share of their sum, the flow does not keep
+    // bodies awake.
     constexpr Real still_share = 1e-9;
     bool any = false;
     const auto mark = [&](Index body) {

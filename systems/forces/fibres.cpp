@@ -45,7 +45,7 @@ Real FibreLaw::stiffness_bound(const Vec3& y, Real tension) const {
     const Real square = y.squaredNorm(), strain = std::max(square - 1, Real{0});
     const Real factor = stiffness * std::exp(exponent * strain * strain);
     // The passive stress of the fibres rises by the second term along the fibres only. At and below the rest length the
-    // bound is that of the least stretch that has a stress.
+    // bound is that of fibres just above the rest length.
     const Real along = 4 * factor * (1 + 2 * exponent * strain * strain) * std::max(square, Real{1});
     return 2 * factor * strain + std::max(along, tension / std::max(std::sqrt(square), least_stretch));
 }

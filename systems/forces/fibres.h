@@ -115,8 +115,8 @@ struct FibreWorkInputs {
     }
 };
 
-/// Work of the passive stress of all fibres on the nodes in a step, by the formulas of measure_work, whose arguments
-/// `h` and `lag` it shares [J].
+/// Work of the passive stress of all fibres on the nodes in a step, by the formulas of measure_work with the same `h`
+/// and `lag` [J].
 Real measure_fibres(const FibreInputs& fibres, const FibreWorkInputs& step, Real h, Real lag);
 
 /// Passive energy of all fibres at the present positions, with the correction of spring_energy for velocities that are

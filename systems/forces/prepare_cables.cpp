@@ -95,7 +95,8 @@ void add_block(const CableInputs& cables, std::size_t cable, const CableTimes& t
     append_block(block, blocks);
 }
 
-/// Adds the bound of a segment of the length `length` and of the greatest tension `tension` to its bodies.
+/// Adds a bound of the squared frequencies due to the segment that begins at `point`, with its greatest tension
+/// `tension`, to the bodies at both ends [1/s^2].
 void add_segment_rate(const CableInputs& cables, std::size_t point, Real tension, std::span<Real> of_body) {
     const Real length = (cables.anchor.at(point + 1) - cables.anchor.at(point)).norm();
     if (!(length > 0) || tension == 0) return;

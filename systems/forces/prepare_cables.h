@@ -107,7 +107,7 @@ struct CableMemory {
     }
 };
 
-/// Stores the tensions and lengths of the cables that act, and adds their work in the step before. Advances the
+/// Stores the tensions and lengths of the cables that act, and adds their work in the previous step. Advances the
 /// greatest length of all cables with a prescribed rate. Returns false if there is no cable.
 bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const CableMemory& out);
 

@@ -22,7 +22,7 @@ struct SpringLaw {
     SpringSide side;
     Real stiffness, damping, strength;  // [N/m], [N s/m], [N]
 
-    /// Whether spring and damper act at this extension. `extension`: length minus rest length [m].
+    /// True if spring and damper act at this extension. `extension`: length minus rest length [m].
     bool acts(Real extension) const {
         return side == SpringSide::both || (side == SpringSide::tension ? extension > 0 : extension < 0);
     }
@@ -140,7 +140,7 @@ struct SpringWorkInputs {
     }
 };
 
-/// Measures the work of springs with the formulas of measure_work, whose arguments `h`, `kick` and `lag` it shares.
+/// Measures the work of springs with the formulas of measure_work and the same `h`, `kick` and `lag`.
 SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& step, Real h, Real kick, Real lag);
 
 /// Elastic energy of all springs at the present positions, and its correction for velocities that are `lag` seconds

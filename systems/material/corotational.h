@@ -51,7 +51,7 @@ struct Corotational {
     template <class T>
     [[gnu::always_inline]] static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& R,
                                                         const T& trace) {
-        // near the rest shape 2 mu F and 2 mu R cancel; only their rounding errors are left
+        // Near the rest shape 2 mu F and 2 mu R cancel up to rounding errors.
         const Real two_mu = 2 * material.shear_modulus;
         const T pressure = material.lame_lambda * (trace - 3.0);
         return {T{} + two_mu, pressure - two_mu, R};

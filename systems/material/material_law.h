@@ -17,8 +17,8 @@ Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
 /// Energy density [J/m^3] for the displacement gradient `change`, and block -df_k/dx_l of the stiffness matrix per
-/// volume [Pa/m^2] of two nodes with the shape gradients g and other [1/m], both at small strain. Anisotropic laws have
-/// the members energy_of_strain and dyads for them; all other laws agree with Linear there.
+/// volume [Pa/m^2] of two nodes with the shape gradients g and other [1/m], both at small strain. Anisotropic laws
+/// compute them by their members energy_of_strain and dyads; all other laws agree with Linear at small strain.
 Real small_strain_energy(const MaterialConstants& material, const Mat3& change);
 Mat3 small_strain_stiffness(const MaterialConstants& material, const Vec3& g, const Vec3& other);
 

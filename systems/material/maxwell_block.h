@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "components/ask_for_lines.h"
 #include "components/element_table.h"
 #include "components/lanes.h"
+#include "components/prefetch_lines.h"
 #include "systems/material/relaxation.h"
 
 namespace skerry {
@@ -136,7 +136,7 @@ struct MaxwellStep {
             kept[k] = static_cast<float>(1 / (1 + h * rates[k]));
         }
         const ViscousModuli moduli = viscous_moduli(material, share);
-        // The volumetric part of a material with Poisson ratio 0 has no stiffness.
+        // With Poisson's ratio 0 the volumetric part has the modulus 0; this avoids 0 / 0.
         const auto relative = [this](Real of) { return modulus > 0 ? static_cast<float>(of / modulus) : 0; };
         shear = relative(moduli.mu);
         trace = relative(moduli.lambda / 2);
@@ -158,11 +158,11 @@ struct MaxwellStep {
     // Prefetches are spread over the function, because processors have few buffers for outstanding cache misses.
     const std::size_t entries_ahead = ahead * last.size();
     const auto load = [&](std::size_t entry) __attribute__((always_inline)) {
-        ask_for_lines_ahead(&last[entry], entries_ahead, 6);
+        prefetch_lines_ahead(&last[entry], entries_ahead, 6);
         return load_six(&last[entry]);
     };
     const auto store = [&](const SixFloats& six, std::size_t entry) __attribute__((always_inline)) {
-        ask_for_lines_ahead(&next[entry], entries_ahead, 6);
+        prefetch_lines_ahead(&next[entry], entries_ahead, 6);
         store_six(six, &next[entry]);
     };
     const SixFloats now = six_of(strain), change = now - load(0);
@@ -181,8 +181,8 @@ struct MaxwellStep {
         sum = sum + spring(k, energy);
         dissipated = dissipated + energy;
     }
-    ask_for_lines_ahead(&last[bulk_entry], entries_ahead, 1);
-    ask_for_lines_ahead(&next[bulk_entry], entries_ahead, 1);
+    prefetch_lines_ahead(&last[bulk_entry], entries_ahead, 1);
+    prefetch_lines_ahead(&next[bulk_entry], entries_ahead, 1);
     const Float8 before = *reinterpret_cast<const Float8InMemory*>(last[bulk_entry].lane),
                  after = (before + skerry::trace(change)) / (1.0F + relaxes_volume);
     *reinterpret_cast<Float8InMemory*>(next[bulk_entry].lane) = after;

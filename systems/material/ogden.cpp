@@ -181,7 +181,7 @@ LaneMat3<T> from_axes(const LaneAxes<T>& axes, const T& x, const T& y, const T& 
             V.c0.z * a + V.c1.z * b + V.c2.z * c};
 }
 
-constexpr Real rounding = 1 + 1e-6;  // covers the error of equal stretches in principal_tangent()
+constexpr Real rounding = 1 + 1e-6;  // factor that covers the error of principal_tangent() for nearly equal stretches
 
 }  // namespace
 
@@ -254,7 +254,7 @@ T Ogden::rough_stiffness_bound(const MaterialConstants& material, const T& squar
     T bound{};
     for_each_term(material, [&](Real modulus, Real exponent) {
         if (exponent == 0) {
-            // The last term: if K is small, largest_eigenvalue returns up to 4/3 of the eigenvalue.
+            // The last term is needed because largest_eigenvalue returns up to 4/3 of the eigenvalue if K is small.
             bound = bound + modulus * ((1.0 + larger(log_most, T{} - log_least)) * steep +
                                        larger(steep - 1.0, T{}) * (1.0 / 3));
             return;

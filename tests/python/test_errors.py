@@ -46,7 +46,7 @@ WRONG: dict[str, Callable[[sk.World, sk.Body, sk.Collider], object]] = {
     "dt: found '1', expected a number": lambda world, ball, floor: world.advance("1"),  # type: ignore[arg-type]
     "settings: found 3, expected a Settings": lambda world, ball, floor: sk.World(3),  # type: ignore[arg-type]
     "saved: found 3, expected a World": lambda world, ball, floor: world.reset(3),  # type: ignore[arg-type]
-    "look: found 3, expected a function": lambda world, ball, floor: world.watch_steps(3),  # type: ignore[arg-type]
+    "observe: found 3, expected a function": lambda world, ball, floor: world.watch_steps(3),  # type: ignore[arg-type]
     "first: found <skerry.Collider 'floor' Plane>, expected a Body": lambda world, ball, floor: world.add_joint(
         "ball",
         floor,  # type: ignore[arg-type]

@@ -144,7 +144,7 @@ TEST_CASE("no step takes more than its share of the looks", "[scene]") {
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         all += pieces_of_check(model.all_elements(), model.bodies.blocks[b]);
     REQUIRE(all > 128);
-    const auto done = [&] { return model.watch.before + model.watch.look.piece; };
+    const auto done = [&] { return model.watch.before + model.watch.evaluation.piece; };
     std::uint64_t before = done(), greatest = 0;
     int rounds = 0;
     for (int i = 0; i < 300; ++i) {
@@ -169,7 +169,7 @@ TEST_CASE("bodies at rest are not looked at", "[scene]") {
     REQUIRE(model.bodies.asleep[0]);
     for (int i = 0; i < 200; ++i) {
         REQUIRE(world.advance(0.999 * world.stable_step()).steps == 1);
-        if (i > 130) CHECK(model.watch.look.piece == 0);
+        if (i > 130) CHECK(model.watch.evaluation.piece == 0);
     }
 }
 

@@ -17,7 +17,8 @@ namespace skerry {
 struct CableDrive {
     std::optional<TimeTable> tension{};  // tension of the first segment, >= 0 [N]
     std::optional<TimeTable> length{};   // greatest length of the cable, > 0 [m]
-    // rate of the greatest length, which starts at the present length; negative draws the cable in [m/s]
+    // Rate of change of the cable's greatest length, which starts at the present length; negative: draws the cable in
+    // [m/s]
     std::optional<TimeTable> rate{};
 };
 
@@ -33,13 +34,14 @@ struct CableSettings {
 
 /// Present state of a cable.
 struct CableState {
-    std::vector<Anchor> points;      // the points of the settings, at their present positions [m]
-    std::vector<Real> tension;       // tension of each segment in the last step [N]
-    Real length = 0;                 // present length [m]
-    Real rate = 0;                   // present rate of the length [m/s]
-    std::optional<Real> released{};  // greatest length, unless the tension is prescribed [m]
-    Real work = 0;                   // work of the drive on the cable since the cable was added [J]
-    Real dissipated = 0;             // energy dissipated by friction at the points since the cable was added [J]
+    std::vector<Anchor> points;  // the points of the settings, at their present positions [m]
+    std::vector<Real> tension;   // tension of each segment in the last step [N]
+    Real length = 0;             // present length [m]
+    Real rate = 0;               // present rate of the length [m/s]
+    // greatest length that the cable can have now; empty if its tension is prescribed [m]
+    std::optional<Real> released{};
+    Real work = 0;        // work of the drive on the cable since the cable was added [J]
+    Real dissipated = 0;  // energy dissipated by friction at the points since the cable was added [J]
 };
 
 extern template class __attribute__((visibility("default"))) ObjectView<CableHandle>;
@@ -53,7 +55,7 @@ public:
     CableHandle add(const CableSettings& cable);
     /// Points, tensions, length and work of a cable after the last step.
     CableState state(CableHandle cable) const;
-    /// Settings of an equal cable that is added now: points have their present positions.
+    /// Settings with which add() would make an equal cable now: the points have their present positions.
     CableSettings settings(CableHandle cable) const;
     /// Replaces the drive. A drive equal to the present one changes no bit of the state. A rate that replaces another
     /// kind of drive starts at the present length; a rate that replaces a rate continues from the prescribed length.

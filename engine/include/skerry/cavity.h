@@ -107,9 +107,10 @@ public:
     CavityState state(CavityHandle cavity) const;
     /// Cavities, conductance and flow of a pipe.
     PipeState state(PipeHandle pipe) const;
-    /// Settings of an equal cavity that is added now: pressure and volume of a filling are those of the present.
+    /// Settings with which add() would make an equal cavity now: pressure and volume of its filling have their present
+    /// values.
     CavitySettings settings(CavityHandle cavity) const;
-    /// Settings of an equal pipe that is added now.
+    /// Settings with which add() would make an equal pipe now.
     PipeSettings settings(PipeHandle pipe) const;
 
     /// Sets a prescribed pressure above ambient [Pa].

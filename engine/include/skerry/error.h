@@ -8,8 +8,8 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// The parts of the message of a SceneError. text() joins them to
-/// "FILE: OBJECT: FIELD: found FOUND, expected EXPECTED (HINT)" and leaves out empty parts.
+/// The parts of the message of a SceneError. text() joins them into "FILE: OBJECT: FIELD: found FOUND, expected
+/// EXPECTED (HINT)" and leaves out empty parts.
 struct Complaint {
     std::string file, object, field, found, expected, hint;  // parts of the message; each may be empty
 

@@ -64,8 +64,8 @@ public:
     /// take less than 2 % of the computing time of the steps.
     void sample(const World& world);
     /// Takes the last sample. Call this once, at the end of a run. After less than 8000 explicit steps it samples the
-    /// mesh errors of only a few bodies, at least one: those with the most elastic energy. So short runs are not
-    /// slowed.
+    /// mesh errors of only a few bodies, at least one: those with the most elastic energy. This limits the computing
+    /// time of estimates in short runs.
     void finish(const World& world);
     /// Estimates for all bodies of the world at finish(), in the order of World::bodies().
     std::vector<ErrorEstimate> bodies() const;

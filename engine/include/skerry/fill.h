@@ -72,7 +72,7 @@ using FillProgress = std::function<void(const std::string&)>;
 /// not cross) are filled by Netgen, which keeps them bitwise, unless `edge` requests other triangles. Other surfaces
 /// are filled by fTetWild (Hu et al., Fast tetrahedral meshing in the wild, 2020) within the tolerance: holes are
 /// closed, and crossing shells are united; repeated runs give slightly different meshes. Each mesher runs in its own
-/// process. Of several meshes the one with the longest stable step is returned
+/// process. If several meshes are made, the one with the longest stable step is returned
 /// (docs/decisions/0026-filling-surfaces.md).
 ///
 /// If shells are nested, regions have the labels 1, 2, ..., beginning with the region of the largest shell. The faces

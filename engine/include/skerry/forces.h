@@ -35,14 +35,14 @@ struct ForceReport {
     // (docs/methods/time_stepping.md 1.5).
     Real seconds = 0;
     Vec3 moment_point = Vec3::Zero();  // reference point of moments, as given to measure_forces [m]
-    // False if the call was too short to show the force (docs/outputs.md), or took no step.
+    // False if the call was too short for the force to be measured (docs/outputs.md), or took no step.
     bool measured = true;
 
     /// Mean force over the call [N]; NaN if the force was not measured.
     Vec3 force() const { return mean(impulse); }
     /// Mean moment over the call about moment_point [N m]; NaN if the force was not measured.
     Vec3 moment() const { return mean(moment_impulse); }
-    /// Mean moment over the call about another fixed point [N m].
+    /// Mean moment over the call about another fixed point [N m]; NaN if the force was not measured.
     Vec3 moment_about(const Vec3& point) const;
 
 private:

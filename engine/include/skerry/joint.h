@@ -32,8 +32,8 @@ struct JointMotor {
     std::vector<MotorKey> keys{};
 };
 
-/// Passive forces along the axis of a hinge (angles, moments) or a slider (displacements, forces). They oppose the
-/// motion of the joint without a motor (docs/methods/joints.md 4).
+/// Passive forces along the axis of a hinge (angles, moments) or a slider (displacements, forces). They act also if the
+/// joint has no motor (docs/methods/joints.md 4).
 struct JointPassive {
     Real stiffness = 0;  // stiffness of a spring, >= 0 [N m/rad or N/m]
     Real rest = 0;       // coordinate of the joint at which the spring exerts no force [rad or m]
@@ -110,8 +110,8 @@ public:
     JointHandle add(const JointSettings& joint);
     /// Returns the present pose and motion of a joint, and the joint's force and moment in the last step.
     JointState state(JointHandle joint) const;
-    /// Settings of an equal joint that is added now: point, axis and coordinate have their present values. They do not
-    /// contain the mimic.
+    /// Settings with which add() would make an equal joint now: point, axis and coordinate have their present values.
+    /// The mimic is not included.
     JointSettings settings(JointHandle joint) const;
     /// Sets the motor of a hinge or a slider, or removes the motor if none is given. Setting a motor equal to the
     /// present one changes no bit of the state.
@@ -122,8 +122,8 @@ public:
     void set_limits(JointHandle joint, std::optional<Real> lower, std::optional<Real> upper);
     /// Sets spring, damper and friction of a hinge or a slider.
     void set_passive(JointHandle joint, const JointPassive& passive);
-    /// Makes a hinge or a slider mimic another joint, or ends this if no mimic is given. A deviation is corrected at
-    /// the bounded speed that set_limits describes. Removing the leader ends the mimic.
+    /// Makes a hinge or a slider mimic another joint, or ends the coupling if no mimic is given. A deviation is
+    /// corrected at the bounded speed that set_limits describes. Removing the leader ends the mimic.
     void set_mimic(JointHandle joint, const std::optional<JointMimic>& mimic);
     /// The leader that a joint mimics, and its ratio; empty if there is none.
     std::optional<JointMimic> mimic(JointHandle joint) const;

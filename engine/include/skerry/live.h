@@ -45,8 +45,8 @@ public:
 
     /// Address of the page, for example http://127.0.0.1:40123/#token=...
     std::string address() const;
-    /// Ends all connections and stops the server. After it sync(), due() and run() only end the pulls of browsers,
-    /// due() returns 0, and fail() does nothing.
+    /// Ends all connections and stops the server. Afterwards sync(), due() and run() only release the bodies that
+    /// browsers pull, due() returns 0, and fail() does nothing.
     void close();
     /// False after close().
     bool is_open() const;
@@ -77,9 +77,9 @@ public:
     /// Refuses resets by browsers with this text, for example while a recorder could not continue at an earlier time.
     /// An empty text allows them again.
     void refuse_resets(const std::string& reason);
-    /// Advances the world as the browsers ask, until `go_on` returns false, which is called before each step. One call
-    /// of advance() covers at most 1/60 s of simulated time. A step that cannot be committed pauses the view; `failed`
-    /// then gets the error message.
+    /// Advances the world as the browsers ask, until `go_on` returns false. `go_on` is called before each step. One
+    /// call of advance() covers at most 1/60 s of simulated time. A step that cannot be committed pauses the view;
+    /// `failed` then gets the error message.
     void run(World& world, const std::function<bool()>& go_on,
              const std::function<void(const std::string&)>& failed = {});
 

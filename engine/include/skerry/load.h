@@ -72,7 +72,7 @@ struct LoadState {
     Vec3 vector = Vec3::Zero();
     Real rate = 0;   // rate of a drag [1/s]
     Real scale = 1;  // present scale
-    // Sum of the present forces on all nodes [N]. For a factor of the weight, the difference to the whole weight.
+    // Sum of the present forces on all nodes [N]. For a factor of the weight, the difference from the full weight.
     Vec3 force = Vec3::Zero();
 };
 

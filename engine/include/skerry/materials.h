@@ -12,7 +12,7 @@ namespace skerry {
 
 /// A number from the literature, with its source.
 struct SourcedValue {
-    Real value;               // value in the unit of the member that has this value
+    Real value;               // value in the unit stated at the member of NamedMaterial
     std::string_view source;  // citation, and the way in which the value was derived from it
 };
 

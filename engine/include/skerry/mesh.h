@@ -33,8 +33,8 @@ struct Mesh {
     // Label of each tetrahedron, for example the number of its material. BodySettings::materials maps labels to
     // materials. An empty list means that the mesh has no labels.
     std::vector<int> label{};
-    // Number of each node in the file from which the mesh was read, in ascending order: the nodes of the file are
-    // counted from 0 in their order. An empty list means that the numbers equal the indices in `nodes`.
+    // Number of each node in the file from which the mesh was read, ascending. The nodes of the file are numbered from
+    // 0, in the order of the file. An empty list means that the numbers equal the indices in `nodes`.
     std::vector<Index> file_number{};
     std::map<std::string, MeshSet> sets{};  // sets by name
     // For a rigid body without tetrahedra: the triangles of its surface, see World::add_body(const SurfaceMesh&, ...).
@@ -172,7 +172,7 @@ std::vector<Index> nodes_of(const MeshSet& set, std::span<const std::array<Index
 /// listed tetrahedra or whose nodes are all listed.
 std::vector<std::array<Index, 3>> faces_of(const MeshSet& set, std::span<const std::array<Index, 4>> tetrahedra,
                                            std::span<const std::array<Index, 3>> surface);
-/// Tetrahedra of a set: the listed tetrahedra. If none are listed: those all nodes of which are in the set.
+/// Tetrahedra of a set: the listed tetrahedra. If none are listed: the tetrahedra whose nodes are all in the set.
 std::vector<Index> tetrahedra_of(const MeshSet& set, std::span<const std::array<Index, 4>> tetrahedra);
 
 }  // namespace mesh

@@ -29,7 +29,7 @@ namespace skerry {
 /// Throws SceneError if the folder cannot be written.
 class VtkWriter {
 public:
-    /// Writes into `folder`, which is made if necessary. `name`: begin of the names of all files.
+    /// Writes into `folder`, which is made if necessary. `name`: first part of the name of each file.
     VtkWriter(const std::filesystem::path& folder, const std::string& name);
     ~VtkWriter();
     /// Continues an existing series of `frames` frames, `frame_step` seconds apart. Frames of this series whose files

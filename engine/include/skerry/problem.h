@@ -153,9 +153,10 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
 std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors);
 
 /// The contact problem of one step of a world, as the solver received it, and the impulses that the solver found.
-/// Contacts that no impulse can move are omitted. Joints, ties and nodes on rollers are eliminated from `problem`: its
-/// W and q are those of the bodies that these connect. Slides, motors, limits, passive forces, and cables with friction
-/// or a prescribed length act in it by their impulses of the step.
+/// Contacts that no impulse can move are omitted. Joints, ties of the kinds weld and ball, and nodes on rollers are
+/// eliminated from `problem`: its W and q are those of the bodies that these connect. Ties of the kind slide, motors,
+/// limits, passive forces, and cables with friction or a prescribed length keep their impulses of the step, whose
+/// effect is part of q.
 struct StepProblem {
     std::uint64_t step = 0;      // number of the step, counted from 1
     Real time = 0;               // time at the start of the step [s]

@@ -31,9 +31,9 @@ struct RelaxReport {
     // The largest out-of-balance force of a body in the last step, relative to the sum of the magnitudes of the
     // weights, loads and contact forces on its nodes.
     Real residual = 0;
-    std::optional<BodyHandle> worst{};  // the body with this force; missing if no body can move
+    std::optional<BodyHandle> worst{};  // the body with the force `residual`; missing if no body can move
     std::string worst_name;             // name of this body
-    Real speed = 0;                     // largest speed of a node of this body in the last step [m/s]
+    Real speed = 0;                     // largest speed of a node of the body `worst` in the last step [m/s]
     int steps = 0;                      // number of steps
     Real seconds = 0;                   // sum of the step lengths [s]
     std::string message;                // reason why a step could not be completed; otherwise empty

@@ -211,8 +211,8 @@ struct DynamicsEstimate {
     Real explicit_cost = 0, implicit_cost = 0;
     // Largest strain that weight, the body's speed and a fall from ten times the body's size may cause.
     Real strain = 0;
-    // Frequency above which implicit steps of this length damp vibrations instead of resolving them [Hz]: angular
-    // frequency times step length above 1/2.
+    // Frequency above which steps of the length deforming_step damp vibrations instead of resolving them [Hz]: there
+    // the angular frequency times the step length is above 1/2. 0: steps damp no vibrations.
     Real damped_above = 0;
 };
 
@@ -303,7 +303,7 @@ struct RunCounters {
     Real worst_error = 0;    // largest relative solver error of a region in any step
     Index worst_region = 0;  // number of contacts of the region with worst_error
     Real dissipated = 0;     // dissipated by contacts, damping, material losses and plastic flow [J]
-    Real plastic_work = 0;   // part of `dissipated`: plastic flow in steps [J]
+    Real plastic_work = 0;   // part of `dissipated`: plastic flow of elements in steps [J]
     Real max_penetration = 0, max_gap_violation = 0;  // largest values in any step; see StepReport [m]
     // Values of max_penetration and max_gap_violation in the first step alone [m].
     Real start_penetration = 0, start_gap_violation = 0;

@@ -100,7 +100,7 @@ struct RolloutStatus {
     std::size_t intervals = 0;  // number of completed intervals
     StepReport report{};        // report of the last call of advance; `stopped` if go_on ended the rollout
     std::string error{};        // message of the SceneError of a control or of advance, else empty
-    // Reasons why the values cannot be trusted (WorldReport::distrust). They may arise before the rollout.
+    // Reasons why the values cannot be trusted (WorldReport::distrust). They may have arisen before the rollout.
     std::string distrust{};
 
     /// True if all intervals were completed.

@@ -239,7 +239,7 @@ struct Settings {
     ContactRegions contact_regions = ContactRegions::separate;
     // Contact solver. Change it when you compare solvers, or when contacts stay unconverged (docs/solvers.md).
     SolverMethod method = SolverMethod::automatic;
-    // Friction law. Change it to pyramid when you compare with the paper, which uses that approximation.
+    // Friction law. Change it to pyramid when you compare with Lazarevych et al. (2010), who use this approximation.
     Friction friction = Friction::cone;
     // Relative error of the contact impulses of a region that the solver accepts (docs/architecture.md). Change it when
     // contact forces must be more exact, or when larger errors are fine and speed matters.

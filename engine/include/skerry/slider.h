@@ -32,7 +32,7 @@ struct Slider {
     std::vector<SliderTarget> targets{};  // at least one
 };
 
-/// Present value of a slider, by the first of its objects. Throws SceneError if this object was removed.
+/// Present value of a slider, read from the first of its objects. Throws SceneError if this object was removed.
 Real slider_value(const World& world, const Slider& slider);
 /// Lets the value change to `value` steadily, at the rate `fastest`, during the next calls of advance. Throws
 /// SceneError if the value is out of bounds or an object was removed.

@@ -50,8 +50,10 @@ struct EnumNames<StudyRunStatus> {
 /// A time series of a run.
 struct StudyColumn {
     SeriesColumn what;  // probe, quantity and unit
-    Real size = 0;      // diagonal of the bounding box of the body at the start, or of all bodies for other columns [m]
-    // False for a column that gets no error bar of its own, such as the place of one of many bodies.
+    // diagonal of the bounding box at the start: of the body of the column, or of all bodies if the column has no body
+    // [m]
+    Real size = 0;
+    // False for a column that gets no error bar of its own, such as the position of one of many bodies.
     bool reported = true;
     // true for a mean, least or largest value of all bodies, which is meaningful also in a chaotic run
     bool is_statistic = false;
@@ -92,7 +94,7 @@ struct StudyRun {
 /// Reliability of a quantity.
 enum class StudyVerdict {
     known,         // the error bar follows from runs whose differences behave as the theory says
-    irregular,     // the differences do not behave so; the error bar is a multiple of the largest difference
+    irregular,     // the differences do not follow the theory; the error bar is a multiple of the largest difference
     singular,      // the largest stress grows without limit as the mesh is refined; `error` is infinite
     chaotic,       // differences of 1e-12 m at the start change the value; see StudyQuantity::agree_until
     zero,          // the value is an error of the contact solver or of the steps; `error` bounds its absolute value

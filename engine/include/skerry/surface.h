@@ -32,8 +32,8 @@ public:
     explicit SurfacePairs(World& world) : world_(&world) {}
 
     /// Sets the properties of contacts between two materials, and wakes the bodies that have one of them. A body has
-    /// one material for this purpose, BodySettings::material. Friction and restitution of single bodies and colliders
-    /// have no effect on contacts of the pair, those of surface sets have.
+    /// one material for this purpose, BodySettings::material. Contacts of the pair ignore friction and restitution of
+    /// single bodies and colliders, but not those of surface sets.
     void set(MaterialHandle first, MaterialHandle second, const SurfaceSettings& surface);
     /// Removes the properties of a pair. Without such properties, does nothing.
     void remove(MaterialHandle first, MaterialHandle second);

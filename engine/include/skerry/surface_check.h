@@ -61,16 +61,17 @@ struct SurfaceFault {
     Index other = no_index;     // second triangle of the first pair, or first triangle of the other shell
     Vec3 place = Vec3::Zero();  // place of the first fault; for holes: centre of the longest hole [m]
     Real length = 0;            // holes: length of the edges around the longest hole; thin_walls: smallest thickness;
-                                // duplicate_shells: largest distance of two; unlikely_size: diagonal [m]
+                                // duplicate_shells: largest distance from shell to repeat; unlikely_size: diagonal [m]
 };
 
-/// Part of a surface that common edges connect. At an edge of several closed shells, the triangles around the volume of
-/// one shell are connected.
+/// Part of a surface whose triangles are connected by common edges. At an edge of several closed shells, the triangles
+/// around the volume of one shell are connected.
 struct SurfaceShell {
     std::size_t triangles = 0;  // number of triangles
     Index triangle = no_index;  // first triangle, by its number in the given surface
     bool closed = false;        // true if no edge is free
-    Real volume = 0;  // enclosed volume after turning; negative for a void in another shell; 0 if not closed [m^3]
+    // enclosed volume after the orientation is repaired; negative for a void in another shell; 0 if not closed [m^3]
+    Real volume = 0;
     // Row in SurfaceReport::shells of the smallest shell around this one; no_index: none. A shell inside another one
     // bounds a void if its volume is negative, else a region of its own.
     Index around = no_index;

@@ -14,9 +14,11 @@ namespace skerry {
 
 /// A tie between nodes of a deformable body and another object: a body of any kind, a collider, or the world if neither
 /// is given. Each node is tied in its present position to the nearest point of the other object, which must not be
-/// farther away than the mean edge length of the body. The tie of a single node acts like a ball joint. The kind `ball`
-/// ties the mean point of all nodes, weighted by their masses, and leaves its distance from a rigid object free: the
-/// impulse of the tie acts on the nodes in proportion to their masses.
+/// farther away than the mean edge length of the body. The tie of a single node acts like a ball joint.
+///
+/// The kind `ball` ties only the mean point of all nodes, weighted by their masses. This point may be at any distance
+/// from a rigid object when the tie is made, and then keeps its place on this object. The impulse of the tie acts on
+/// the nodes in proportion to their masses.
 struct TieSettings {
     TieKind kind = TieKind::weld;  // motion that the tie permits
     BodyHandle body{};             // a deformable body

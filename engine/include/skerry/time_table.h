@@ -18,7 +18,8 @@ struct TimeTable {
     TimeTable() = default;
     /// A constant value.
     TimeTable(Real constant) : keys{{0, constant}} {}
-    /// A value given by keys. Objects refuse an empty list, and times that do not ascend.
+    /// A value given by keys. Keys are checked where the table is used: an empty list and times that do not ascend are
+    /// refused.
     TimeTable(std::vector<TimeKey> values) : keys(std::move(values)) {}
 
     bool operator==(const TimeTable&) const = default;

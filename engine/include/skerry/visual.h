@@ -73,9 +73,9 @@ public:
     VisualFit set(BodyHandle body, VisualSurface surface);
     /// Removes the visual surface of a body, which is then drawn by its own surface.
     void remove(BodyHandle body);
-    /// Returns nullptr if the body has no visual surface. The pointer is valid until the surface is set or removed.
+    /// Visual surface of a body; nullptr if it has none. The pointer is valid until the surface is set or removed.
     const VisualSurface* get(BodyHandle body) const;
-    /// Throws SceneError if the body has no visual surface.
+    /// Position of the visual surface relative to its body. Throws SceneError if the body has no visual surface.
     VisualFit fit(BodyHandle body) const;
     /// Present positions of the nodes of the visual surface [m]; empty if the body has none.
     std::vector<Vec3> positions(BodyHandle body) const;

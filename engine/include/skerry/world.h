@@ -127,11 +127,11 @@ public:
     /// returns false, the call ends between two steps. The report then has the status `stopped`, and the world can be
     /// advanced further.
     StepReport advance(Real dt, const std::function<bool(const StepReport&)>& go_on);
-    /// From now on calls `look` after every committed step, with the report so far, on the thread that advances. `look`
-    /// may read the whole state, but must not change the world. With leapfrog, positions are then half a step ahead of
-    /// velocities. If `look` throws an exception, the call of advance ends between two steps and rethrows it. Pass an
-    /// empty function to end the calls.
-    void watch_steps(std::function<void(const StepReport&)> look);
+    /// From now on calls `observe` after every committed step, with the report so far, on the thread that advances.
+    /// `observe` may read the whole state, but must not change the world. With leapfrog, positions are then half a step
+    /// ahead of velocities. If `observe` throws an exception, the call of advance ends between two steps and rethrows
+    /// it. Pass an empty function to end the calls.
+    void watch_steps(std::function<void(const StepReport&)> observe);
     /// Simulated time since the world was made [s].
     Real time() const;
     /// Settings of this world, with the gravity of set_gravity().

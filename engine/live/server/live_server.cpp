@@ -57,8 +57,8 @@ public:
     std::uint64_t client = 0;  // number of the browser at the hub
 
 private:
-    /// If the time for a request has run out, the library returns the number of bytes that it has sent. After a part of
-    /// a message nothing more can be sent, because the browser would read it as the rest of the message.
+    /// Sends a message. Returns false if only a part was sent, because the time limit for requests was reached or the
+    /// connection is broken. Nothing more can be sent then, as the browser would read it as the rest of the message.
     bool send(int opcode, std::string_view bytes) {
         constexpr std::size_t header = 2;  // length of a message without data, for which the library returns it
         mg_lock_connection(connection_);   // a ping of the library must not follow a part of a message either
@@ -71,7 +71,7 @@ private:
 
     mg_connection* connection_;
     int socket_;           // open until Impl::closed() returns
-    bool broken_ = false;  // a message was not sent as a whole
+    bool broken_ = false;  // true if only a part of a message was sent
 };
 
 /// Calls a function for the C library, which no exception may enter. Returns `otherwise` if the function throws.
@@ -112,8 +112,8 @@ int port_of(int socket, Call&& call) {
     return known ? ntohs(place.sin_port) : 0;
 }
 
-/// Returns the socket of a connection, which has no function in the library; -1 if it is not found. `port`: port of the
-/// server.
+/// Returns the socket of a connection, for which the library has no function; -1 if it is not found. `port`: port of
+/// the server.
 int socket_of(const mg_connection* connection, int port) {
     constexpr long most_sockets = 1 << 16;  // numbers that are tried
     const long limit = sysconf(_SC_OPEN_MAX);
@@ -172,7 +172,8 @@ void LiveServer::Impl::put_page(mg_connection* connection) const {
     mg_write(connection, page.data(), page.size());
 }
 
-/// Frees the slots of browsers that are gone without notice.
+/// Closes connections that received no data for 30 s, because their browsers have probably gone. This makes room for
+/// other browsers.
 void LiveServer::Impl::close_silent_links() {
     const std::lock_guard lock(links_mutex);
     for (const SocketLink* link : links) link->close_if_silent();
@@ -284,8 +285,8 @@ LiveServer::LiveServer(int port, LiveHub& hub)
 
 LiveServer::~LiveServer() {
     impl_->hub.close();
-    // The thread of the library that accepts connections checks every 2 s, and at each new connection, whether it has
-    // to stop.
+    // The library's thread that accepts connections checks only every 2 s, and at each new connection, whether it has
+    // to stop. Connections are therefore made until it has stopped.
     std::atomic<bool> stopped = false;
     std::thread stopping([&] {
         mg_stop(impl_->context);

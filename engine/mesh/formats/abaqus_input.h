@@ -15,7 +15,7 @@ struct AbaqusBlock {
     std::size_t first = 0, end = 0;                // positions of the data lines in the file [bytes]
 
     bool has(const char* name) const { return parameter.contains(name); }
-    /// Value of a parameter; empty if it is missing.
+    /// Value of the parameter `name`; empty if the parameter is missing or has none.
     std::string value(const char* name) const;
 };
 

@@ -28,7 +28,8 @@ void add_parts(const std::vector<Vec3>& nodes, const std::array<Index, 4>& corne
     parts.insert(parts.end(), std::begin(at_corners), std::end(at_corners));
     struct Diagonal {
         Index first, last;
-        std::array<Index, 4> around;  // positive tetrahedra have both ends and two successive nodes of this ring
+        // A positive tetrahedron consists of both ends of the diagonal and two successive nodes of this ring.
+        std::array<Index, 4> around;
     };
     const std::array<Diagonal, 3> diagonals{
         {{m01, m23, {m12, m20, m03, m13}}, {m12, m03, {m01, m13, m23, m20}}, {m20, m13, {m01, m12, m23, m03}}}};

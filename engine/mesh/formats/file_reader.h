@@ -93,7 +93,7 @@ public:
 
     /// Sets whether real() and integer() read binary numbers. Until the first call they read words of text.
     void set_binary(bool binary) { binary_ = binary; }
-    /// Reads the next number. `type`: its type in a binary file, other than `bit`.
+    /// Reads the next number. `type`: type of the number if the file is binary; must not be `bit`.
     Real real(const NumberType& type, const char* field);
     /// Reads the next number. Throws SceneError if it is not an integer.
     std::int64_t integer(const NumberType& type, const char* field);

@@ -36,7 +36,7 @@ struct RawMesh {
     std::vector<std::array<Index, 3>> triangle_middle;  // like `middle`, for the triangles
     std::size_t curved_triangles = 0;                   // number of triangles of third or higher order
     std::map<std::string, MeshSet> sets;                // faces are the corners of triangles of any order
-    std::map<std::string, std::vector<Vec3>> vectors;   // of the tetrahedra
+    std::map<std::string, std::vector<Vec3>> vectors;   // by name: a vector for each tetrahedron
     // for an .obj or .ply file: texture coordinates, names of materials, and their indices by triangle
     VisualSurface visual;
     std::size_t flat_triangles = 0;  // number of triangles of an .obj or .ply file that were dropped, as they use a
@@ -85,9 +85,8 @@ void divide_second_order(RawMesh& mesh);
 
 /// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
 void add_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
-/// Adds a polygon of a file that has only a surface: add_polygon without the triangles that use a node twice, which are
-/// counted in the mesh.
-/// Returns the positions in `nodes` of the second corner of each triangle that was added.
+/// Adds a polygon of a file that has only a surface. Like add_polygon, but triangles that use a node twice are left out
+/// and counted in the mesh. Returns the positions in `nodes` of the second corner of each triangle that was added.
 std::vector<std::size_t> add_surface_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
 
 // Readers of the mesh file formats. All of them throw SceneError for invalid files.

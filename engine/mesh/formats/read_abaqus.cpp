@@ -45,7 +45,7 @@ AbaqusKind kind_of(const std::string& type) {
 
 /// A part of the file with its own numbers of nodes and elements: an instance, a part without instance, or the rest.
 struct AbaqusScope {
-    std::string prefix{};  // of the names of its sets, for example "Part-1-1."
+    std::string prefix{};  // first part of the names of its sets, for example "Part-1-1."
     std::size_t first_node = 0;
     NodeNumbers nodes{};                                      // rows count from first_node
     std::unordered_map<std::int64_t, std::size_t> element{};  // index of each element by its number
@@ -247,7 +247,8 @@ private:
         return set;
     }
 
-    /// Returns the row of the node, or the index of the element, with a number.
+    /// Returns the row of the node with a number, or the index of the element, depending on `sets`. Throws SceneError
+    /// if there is none.
     std::size_t member(const std::string& number, const AbaqusScope& scope, const Sets& sets) {
         if (&sets == &node_sets_)
             return scope.first_node +
@@ -333,7 +334,7 @@ private:
             to.push_back(member(std::to_string(number), scope, sets));
     }
 
-    /// Value of the parameter that names the object of a block.
+    /// Value of `parameter`, which names an object. Throws SceneError if it is missing or empty.
     std::string named(const AbaqusBlock& block, const char* parameter) {
         const std::string name = block.value(parameter);
         if (name.empty()) {
@@ -410,8 +411,8 @@ private:
             if (!set.internal) mesh_.sets[set.name].nodes.assign(set.members.begin(), set.members.end());
     }
 
-    /// Takes over the sets of elements. If a set of nodes has the same name and is not just the nodes of the elements,
-    /// the set of elements gets another name.
+    /// Adds the sets of elements to the mesh. If a set of nodes has the same name and is not just the nodes of the
+    /// elements, the set of elements gets another name.
     void take_element_sets() {
         for (const auto& [key, set] : element_sets_) {
             if (set.internal) continue;
@@ -436,8 +437,8 @@ private:
         }
     }
 
-    /// Takes over the surfaces. Of tetrahedra that were added as a whole, the faces on the boundary of the mesh belong
-    /// to the surface.
+    /// Adds the surfaces that were read to the mesh. If a surface lists whole tetrahedra, it gets those of their faces
+    /// that are on the boundary of the mesh.
     void take_surfaces() {
         const bool whole =
             std::ranges::any_of(surfaces_, [](const auto& item) { return !item.second.tetrahedra.empty(); });

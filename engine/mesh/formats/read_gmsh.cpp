@@ -13,10 +13,10 @@ constexpr std::array<std::size_t, 32> nodes_of_type{0, 2,  3,  4,  4, 8,  6,  5,
                                                     8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
 
 bool is_gmsh_tetrahedron(std::int64_t type) {
-    return type == 4 || type == 11;  // of first or second order
+    return type == 4 || type == 11;  // codes of the first and the second order
 }
 bool is_triangle(std::int64_t type) {
-    return type == 2 || type == 9;  // of first or second order
+    return type == 2 || type == 9;  // codes of the first and the second order
 }
 bool is_curved_tetrahedron(std::int64_t type) {
     return (type >= 29 && type <= 31) || (type >= 71 && type <= 75);

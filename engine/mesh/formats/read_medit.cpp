@@ -16,7 +16,7 @@ struct MeditSection {
     const char* keyword;
     std::int64_t code;  // number of the keyword in a binary file
     MeditContent content;
-    std::size_t nodes = 0;       // of an element
+    std::size_t nodes = 0;       // number of nodes of an element
     const char* kind = nullptr;  // name of elements that are only counted
 };
 constexpr const char* curved_triangles = "triangles of third or higher order";

@@ -3,7 +3,7 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
-// Readers of Wavefront .obj files and of their .mtl files. Of an .obj file they read the lines "v x y z" (node),
+// Readers of Wavefront .obj files and of their .mtl files. In an .obj file they read the lines "v x y z" (node),
 // "vt u v" (texture coordinates), "f a b c ..." (face), "usemtl NAME" and "mtllib FILE". All other lines are ignored.
 namespace skerry::mesh {
 namespace {
@@ -62,7 +62,7 @@ void read_face(const FileReader& reader, const std::vector<std::string_view>& wo
     std::vector<Index> corners, texture;
     for (std::size_t i = 1; i < words.size(); ++i) {
         corners.push_back(parse_number(reader, words[i].substr(0, words[i].find('/')), "node", mesh.nodes.size()));
-        // Some files number texture points that they do not have.
+        // A file may use texture points that it does not define. Such numbers are ignored.
         if (const std::string_view part = texture_part(words[i]); !part.empty() && !visual.texture_points.empty())
             texture.push_back(parse_number(reader, part, "texture point", visual.texture_points.size()));
     }

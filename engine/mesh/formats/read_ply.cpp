@@ -166,7 +166,7 @@ private:
     bool binary_ = false;
     std::int64_t node_count_ = 0;
     std::vector<PlyElement> elements_;
-    std::vector<Index> corners_;  // of a face
+    std::vector<Index> corners_;  // node numbers of the face that is being read
     RawMesh mesh_;
 };
 

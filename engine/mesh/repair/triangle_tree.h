@@ -25,8 +25,8 @@ public:
     Real distance_squared(const Vec3& point, Real limit = infinity) const {
         return nearest(point, limit).distance_squared;
     }
-    /// If no triangle is nearer than the root of `limit` [m^2], `triangle` is no_index and `distance_squared` is
-    /// `limit`.
+    /// Nearest triangle. If none is nearer than the root of `limit` [m^2], `triangle` is no_index and
+    /// `distance_squared` is `limit`.
     NearestTriangle nearest(const Vec3& point, Real limit = infinity) const;
     /// Nearest of the triangles whose normal is within 90 degrees of `facing` and that the point is in front of.
     NearestTriangle nearest_facing(const Vec3& point, const Vec3& facing, Real limit) const;

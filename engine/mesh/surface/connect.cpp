@@ -214,7 +214,8 @@ void connect(SurfaceReport& report) {
         parts.join(a.triangle(), b.triangle());
         join_corners(fans, a, b);
     };
-    std::vector<Side> open, unbalanced;  // sides at edges with one triangle, and with more in one direction
+    // sides at edges with one triangle; sides at edges with more triangles in one direction than in the other
+    std::vector<Side> open, unbalanced;
     std::vector<bool> branches(surface.nodes.size(), false);
     Real edges = 0;
     if (count > 0) report.min_edge = infinity;

@@ -62,8 +62,8 @@ SurfaceMesh part_of(const SurfaceMesh& surface, std::span<const Index> rows) {
     return part;
 }
 
-/// If the second shell repeats the first one, returns the largest distance of its nodes from the first one. Unless
-/// `keep_walls`, shells of the same orientation may be further apart than `distance` [m].
+/// Returns the largest distance of the nodes of the second shell from the first one, or nothing if it does not repeat
+/// the first one within `distance` [m]. Unless `keep_walls`, shells of the same orientation may be further apart.
 std::optional<Real> repeats(const SurfaceReport& report, std::span<const ShellSize> sizes,
                             std::span<const std::vector<Index>> rows, std::size_t first, std::size_t second,
                             Real distance, bool keep_walls) {

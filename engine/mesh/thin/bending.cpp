@@ -42,7 +42,7 @@ struct Surroundings {
     std::vector<std::array<Index, 4>> tetrahedra;
     std::vector<MaterialZone> zones;  // zones whose tetrahedra are numbered as in `tetrahedra`
     std::vector<Index> row;           // by tetrahedron of the mesh: its entry in `tetrahedra`, or no_index
-    std::vector<Index> material;      // by entry of `tetrahedra`
+    std::vector<Index> material;      // material of each entry of `tetrahedra`
 };
 
 Surroundings surroundings_of(const Mesh& mesh, std::span<const BentColumn> columns,

@@ -29,8 +29,9 @@ struct NearBoundary {
     std::vector<Index> number;  // numbers of the tetrahedra in the mesh
     // For the face opposite to each corner of each tetrahedron: the same face as part of the neighbour.
     std::vector<std::array<Face, 4>> beyond;
-    std::vector<std::array<bool, 4>> on_boundary;  // by tetrahedron and corner: true for a face on the boundary
-    std::vector<Face> boundary;                    // faces on the boundary
+    // by tetrahedron and corner: true if the face opposite to the corner is on the boundary
+    std::vector<std::array<bool, 4>> on_boundary;
+    std::vector<Face> boundary;  // faces on the boundary
 };
 
 NearBoundary near_boundary(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary) {

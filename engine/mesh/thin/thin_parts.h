@@ -19,7 +19,7 @@ struct ElasticConstants {
 /// A part of a mesh that is a few cells thick and several times longer than it is thick. Parts with a very small
 /// fraction of the volume are left out.
 struct ThinPart {
-    Vec3 place = Vec3::Zero();  // mean of the centroids of its boundary triangles [m]
+    Vec3 place = Vec3::Zero();  // mean of the centroids of the boundary triangles of the part [m]
     Real thickness = 0;         // mean thickness [m]
     Real length = 0;            // longest extent [m]
     Real layers = 0;            // mean number of layers of cells through the thickness

@@ -15,7 +15,7 @@ namespace skerry {
 
 namespace {
 
-// Surfaces beside a coarse mesh are at most about this number of mean edges outside of the body.
+// Largest usual distance of a visual surface from a body with a coarse mesh, in mean edge lengths of its boundary.
 constexpr Real most_edges_outside = 3;
 
 /// Finds the tetrahedron around a point, and the nearest point of the boundary.
@@ -37,9 +37,9 @@ public:
         boxes_ = BoxTree(boxes);
     }
 
-    /// `normal`: normal of the visual surface at this place. Of the triangles near a place outside of the body, those
-    /// that face the same way come first, so that surfaces on both sides of a gap follow different sides. If there are
-    /// none, the nearest triangle counts.
+    /// Material point that a point of the visual surface follows. `normal`: normal of the visual surface at this point.
+    /// A point outside of the body follows the nearest triangle that faces the same way, so that surfaces on both sides
+    /// of a gap follow different sides. If there is no such triangle nearby, the point follows the nearest triangle.
     MaterialPoint nearest(const Vec3& place, const Vec3& normal) const {
         // Tolerance for rounding errors of barycentric coordinates, so that no point lies between two tetrahedra.
         constexpr Real rounding = 1e-9;

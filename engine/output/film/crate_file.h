@@ -80,7 +80,7 @@ public:
     }
     CrateValue token_array(std::span<const std::string> texts);
     CrateValue token_vector(std::span<const std::string> texts);
-    /// List of tokens that is prepended to the tokens of weaker layers.
+    /// List edit of USD that puts the token `text` before the tokens of weaker layers (files with lower priority).
     CrateValue prepended_token(std::string_view text);
     /// Target of a relationship or of a connection.
     CrateValue target(std::string_view path);

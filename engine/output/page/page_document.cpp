@@ -42,7 +42,7 @@ Json json_of_colliders(std::span<const PageCollider> colliders) {
 
 /// Returns an image as a data URI, or an empty text if the file is no PNG or JPEG image, too large, or not readable.
 std::string image_uri(const std::filesystem::path& file) {
-    constexpr std::uintmax_t most_bytes = 2 << 20;  // most of a page without textures is smaller
+    constexpr std::uintmax_t most_bytes = 2 << 20;  // [bytes]; most pages without textures are smaller
     const std::string extension = file.extension().string();
     const bool is_png = extension == ".png" || extension == ".PNG";
     if (!is_png && extension != ".jpg" && extension != ".jpeg" && extension != ".JPG") return {};

@@ -25,14 +25,14 @@ void require_page_library(const std::filesystem::path& file);
 /// has no three.js.
 std::string live_page();
 
-/// Numbers of objects of a stream that a page already knows.
+/// Counts of the objects of a stream, for example of those that a page already contains.
 struct PageCounts {
     std::size_t bodies = 0, visuals = 0, colliders = 0, lines = 0;
 
     bool operator==(const PageCounts&) const = default;
 };
 PageCounts counts_of(const PageStream& stream);
-/// Returns the objects of a stream that a page does not know yet, as the members of the run element of a page.
+/// Returns the objects of a stream from the numbers `first` on, as the members of the run element of a page.
 Json json_of_objects(const PageStream& stream, const PageCounts& first);
 /// Returns the values of a frame for the plots, by name.
 Json json_of_row(const PageRow& row);

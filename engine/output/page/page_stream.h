@@ -36,8 +36,9 @@ PageRow row_of(const Frame& frame);
 /// little-endian. A frame consists of
 ///   numbers of bodies, colliders and contacts, as counts
 ///   exponents e of the largest values 4^e of speed, stress, strain, mesh error and force (ValueScale), as changes from
-///   zero for each body: its number as a count; its shape in its first frame only; positions; values of each field
-///   (BodyStream)
+///     zero
+///   for each body: its number as a count; its shape in its first frame only; positions; values of each field
+///     (BodyStream)
 ///   for each collider: its number as a count; f32 position[3] [m], rotation[3] (axis times angle) [rad]
 ///   contacts (ContactStream)
 ///   lines (LineStream)

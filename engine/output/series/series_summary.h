@@ -8,7 +8,7 @@
 namespace skerry {
 
 /// Last, smallest, largest and mean value of a time series. In the mean each value has the weight of the time since the
-/// row before. Values that are not finite do not count; without any value all are NaN.
+/// previous row. Values that are not finite do not count; without any value all are NaN.
 struct SeriesSummary {
     Real end, least, most, mean;
 };

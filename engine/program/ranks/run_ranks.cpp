@@ -27,7 +27,7 @@ namespace skerry {
 
 namespace {
 
-/// Error that all ranks know, so that rank 0 alone reports it.
+/// Error that is thrown on all ranks, so that rank 0 alone reports it.
 struct AgreedError : std::runtime_error {
     AgreedError(const std::string& text, int exit_code) : std::runtime_error(text), code(exit_code) {}
     int code;

@@ -11,7 +11,7 @@ namespace skerry {
 
 namespace {
 
-/// Sets a place of a scene to a value.
+/// Sets the value of a key of a scene.
 void try_place(const Place& of, const std::string& place, const Json& value, const std::filesystem::path& scene,
                Json& json) {
     if (place.find('=') != std::string::npos)
@@ -59,7 +59,7 @@ void require_places(const SweepPlan& plan, const Json& scene) {
     }
 }
 
-/// Default folder of the results. It has the name of the sweep, so that the name must be possible for a folder.
+/// Default folder of the results. It has the name of the sweep, so this name must be valid for a folder.
 std::filesystem::path folder_of(const SweepFile& file) {
     if (file.name.find('/') != std::string::npos || file.name == "." || file.name == "..")
         file.place.key("name").refuse(in_quotes(file.name), "a name without \"/\", other than \".\" and \"..\"",

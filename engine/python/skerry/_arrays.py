@@ -19,7 +19,7 @@ Checked = TypeVar("Checked")
 Reals: TypeAlias = NDArray[np.float64]
 
 Vector: TypeAlias = tuple[float, float, float]
-"""A point or a vector as the dataclasses of the package hold it."""
+"""A point or a vector as the dataclasses of the package store it."""
 
 
 VectorLike: TypeAlias = Sequence[float] | NDArray[Any]
@@ -43,7 +43,7 @@ def shape_text(shape: Sequence[int | str]) -> str:
 
 def numbers(value: ArrayLike, name: str, shape: Sequence[int | str]) -> NDArray[np.float64]:
     """Array of float64 of any shape. The error names the shape that the caller expects. Texts, complex numbers, other
-    objects and masked arrays are refused, because the conversion would lose something."""
+    objects and masked arrays are refused, because the conversion would lose data."""
     if isinstance(value, np.ma.MaskedArray):
         raise TypeError(f"{name}: found a masked array, expected an array without a mask")
     try:
@@ -159,7 +159,7 @@ def flag(value: object, name: str) -> bool:
 
 
 def is_false(value: object) -> bool:
-    """True for False of Python or NumPy, with which a function that is called back ends a run. None and 0 are not."""
+    """True for False of Python or NumPy, by which a callback ends a run. None and 0 do not end it."""
     return isinstance(value, (bool, np.bool_)) and not value
 
 
@@ -178,7 +178,7 @@ def optional_name(value: object) -> str | None:
 
 
 def seconds(value: SupportsFloat, object: str, name: str, *, zero: bool = True) -> float:
-    """A finite time, >= 0 or > 0 [s]."""
+    """A finite time [s]: >= 0, or > 0 if `zero` is False."""
     number = float(value) if isinstance(value, float) else real(value, f"{object}: {name}")
     if not (math.isfinite(number) and (number > 0 or (zero and number == 0))):
         raise scene_error(object, name, str(number), f"a finite time {'>=' if zero else '>'} 0 [s]")

@@ -22,14 +22,15 @@ KINDS: Mapping[str, Literal["face", "tetrahedron"]] = {"triangle": "face", "tetr
 HIGHER_ORDER = ("tetra20", "tetra35", "VTK_LAGRANGE_TETRAHEDRON")
 _NODES = {"tetra": 4, "tetra10": 10, "triangle": 3, "triangle6": 6}
 _TRIANGLE_PARTS = np.array([[0, 3, 5], [1, 4, 3], [2, 5, 4], [3, 4, 5]])
-"""Places of the nodes of the four parts of a triangle of second order."""
+"""Nodes of the four parts of a triangle of second order, as positions in the list of its nodes."""
 _TETRAHEDRON_PARTS = np.array(
     [
         [(0, 4, 6, 7), (1, 5, 4, 8), (2, 6, 5, 9), (3, 7, 9, 8)] + [(a, b, ring[k - 1], ring[k]) for k in (1, 2, 3, 0)]
         for a, b, ring in ((4, 9, (5, 6, 7, 8)), (5, 7, (4, 8, 9, 6)), (6, 8, (4, 5, 9, 7)))
     ]
 )
-"""Places of the nodes of the eight parts of a tetrahedron of second order, for each choice of the diagonal a b."""
+"""Nodes of the eight parts of a tetrahedron of second order, as positions in the list of its nodes, for each choice of
+the diagonal a b."""
 
 
 def require_low_order(object: str, curved: int) -> None:
@@ -111,6 +112,7 @@ def gmsh_groups(
 
 
 def face_keys(nodes: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """One number for each face. `nodes`: ascending node numbers of the faces, shape (k, 3)."""
+    """A number for each face, equal for faces with equal nodes. `nodes`: ascending node numbers of the faces, with the
+    shape (k, 3)."""
     keys: NDArray[np.int64] = (nodes[:, 0] * count + nodes[:, 1]) * count + nodes[:, 2]
     return keys

@@ -1,4 +1,4 @@
-"""Fields of records that accept more than they hold, such as any array-like of three numbers."""
+"""Fields of records that accept more types than they store, such as any array-like of three numbers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ Held = TypeVar("Held", covariant=True)
 
 
 class Field(Generic[Given, Held]):
-    """Tells type checkers that a field is set to one type and holds another. No object of this class is made."""
+    """Declares to type checkers that a field is assigned one type and stores another. No object of this class is
+    made."""
 
     def __get__(self, instance: object, owner: object) -> Held:
         raise NotImplementedError

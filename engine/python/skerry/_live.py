@@ -144,7 +144,7 @@ class View:
         return result
 
     def _note_pages(self) -> bool:
-        """Notes the time if a page is connected."""
+        """True if a page is connected. Then stores the present time in `_seen`."""
         connected = self._core.clients() > 0
         if connected:
             self._seen = time.monotonic()
@@ -213,10 +213,13 @@ def view(
 
         skerry.view(skerry.load_scene("scenes/finger.json")).run()  # with its sliders and probes
 
-    world: a world, or a scene. rate: simulated time per wall time in run(); 0: as fast as possible. port: port of the
-    server, which listens on this computer only; 0: a free port. open: False: does not open the browser; View.address
-    is the address. paused: True: run() begins paused. probes: quantities that the page plots, by name, as for
-    World.recorder(); default: those of the scene. title: heading; default: the name of the scene.
+    world: a world, or a scene.
+    rate: simulated time per wall time in run(); 0: as fast as possible.
+    port: port of the server, which listens on this computer only; 0: a free port.
+    open: False: does not open the browser; View.address is the address.
+    paused: True: run() begins paused.
+    probes: quantities that the page plots, by name, as for World.recorder(); default: those of the scene.
+    title: heading; default: the name of the scene.
 
     SceneError: the port is in use, a probe is wrong, or this build has no server."""
     checked(world, "view: world", World, Scene)

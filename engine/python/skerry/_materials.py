@@ -63,26 +63,28 @@ class NamedMaterials(Mapping[str, Material]):
 def ogden(terms: Sequence[tuple[float, float]], bulk_modulus: float, base: Material | None = None) -> Material:
     """Material with the law of Ogden for rubber, split into changes of shape and volume.
 
-    terms: one to three pairs (modulus mu_p [Pa], exponent alpha_p), of the same sign. bulk_modulus: [Pa]. base: gives
-    density, friction and losses. SceneError: the values give no stable law.
-    """
+    terms: one to three pairs (modulus mu_p [Pa], exponent alpha_p), of the same sign.
+    bulk_modulus: [Pa].
+    base: gives density, friction and losses.
+    SceneError: the values give no stable law."""
     return Material(**_core.ogden([*terms], bulk_modulus, base or Material()))
 
 
 def mooney_rivlin(c10: float, c01: float, bulk_modulus: float, base: Material | None = None) -> Material:
     """Material with the law of Mooney and Rivlin: the law of Ogden with the exponents 2 and -2.
 
-    c10, c01: moduli of the two invariants [Pa]. bulk_modulus: [Pa]. base: gives density, friction and losses.
-    SceneError: the values give no stable law.
-    """
+    c10, c01: moduli of the two invariants [Pa].
+    bulk_modulus: [Pa].
+    base: gives density, friction and losses.
+    SceneError: the values give no stable law."""
     return Material(**_core.mooney_rivlin(c10, c01, bulk_modulus, base or Material()))
 
 
 def orthotropic(moduli: OrthotropicModuli, base: Material | None = None) -> Material:
     """Material with orthotropic elasticity, for strains of some per cent at any rotation.
 
-    base: gives density, friction and losses. SceneError: the stiffness is not positive definite.
-    """
+    base: gives density, friction and losses.
+    SceneError: the stiffness is not positive definite."""
     return Material(**_core.orthotropic(moduli, base or Material()))
 
 

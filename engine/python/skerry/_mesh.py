@@ -56,8 +56,9 @@ class Mesh:
     labels: label of each tetrahedron, shape (m,), such as the number of its material; None: no labels.
     sets: named parts, each a MeshSet or an array of node numbers.
 
-    TypeError: an array has the wrong shape or type. SceneError: a tetrahedron names a node that does not exist, or the
-    same node twice. Inverted tetrahedra are turned as by read(), with a warning Doubt."""
+    TypeError: an array has the wrong shape or type.
+    SceneError: a tetrahedron names a node that does not exist, or the same node twice. Inverted tetrahedra are turned
+        as by read(), with a warning Doubt."""
 
     __slots__ = ("_arrays", "_core")
 

@@ -32,8 +32,8 @@ class Problem:
     q: relative velocities without impulses, shape (c, 3) [m/s].
     mu: friction coefficient of each contact, shape (c,), or one for all.
 
-    TypeError: an array has the wrong shape or type. SceneError: the arrays do not fit together, or a
-    value is out of range."""
+    TypeError: an array has the wrong shape or type.
+    SceneError: the arrays do not fit together, or a value is out of range."""
 
     __slots__ = ("_arrays", "_core")
 
@@ -265,7 +265,7 @@ class StepProblem:
     step_size: length of the step [s].
     problem: the problem, without contacts that no impulse can move. Joints, ties and nodes on rollers are eliminated:
         W and q are those of the bodies that these connect. Slides, motors, limits, passive forces, and cables with
-        friction or a prescribed length act by their impulses of the step.
+        friction or a prescribed length keep their impulses of the step, whose effect is part of q.
     impulse: impulses that the solver found, in the contact frames of `problem`, shape (c, 3) [N s].
     contact: number of each contact in World.contacts, shape (c,).
     region: region of each contact, shape (c,).
@@ -291,9 +291,11 @@ def solve(
 ) -> Solution:
     """Separates a problem into independent regions and solves each region, starting from zero impulses.
 
-    method: "automatic", "ags", "pgs", "pcg_pgs", "newton", "pcg_fr" or "pcg_pr". friction: Coulomb's "cone", or its
-    four-sided approximation "pyramid", to which the errors then refer. tolerance: upper bound on Solution.error.
-    max_iterations: limit for each region. relaxation: factor of methods that sweep, > 0 and < 2.
+    method: "automatic", "ags", "pgs", "pcg_pgs", "newton", "pcg_fr" or "pcg_pr".
+    friction: Coulomb's "cone", or its four-sided approximation "pyramid", to which the errors then refer.
+    tolerance: upper bound on Solution.error.
+    max_iterations: limit for each region.
+    relaxation: factor of methods that sweep, > 0 and < 2.
 
     SceneError: a setting is out of its range. Solution.converged is True if the tolerance was reached."""
     settings = ProblemSettings(
@@ -359,7 +361,7 @@ def _problem_of_blocks(
     return Problem(offsets, places % max(count, 1), total, velocities, mu, name=name, description=description)
 
 
-# FCLIB files without the HDF5 library of the engine.
+# The next functions read and write FCLIB files if the engine was built without HDF5.
 
 
 def _read_with_h5py(path: str) -> Problem:

@@ -34,10 +34,10 @@ _SLACK = 1e-9  # rounding error of a time, as a fraction of the time between two
 
 
 class Follower(Protocol):
-    """Something that a world calls in its `with` block."""
+    """An object that follows the run of a world: the world calls its methods within a `with` block."""
 
     def require_ready(self) -> None:
-        """Called before each call of advance(). Raises SceneError if follow() would fail after it."""
+        """Called before each call of advance(). Raises SceneError if follow() would fail after that call."""
 
     def follow(self) -> None:
         """Called after each call of advance(), also after one that ends with an exception."""
@@ -188,7 +188,7 @@ class ErrorEstimator(_Block):
         self._core = _core.ErrorEstimator(world._core)
 
     def require_ready(self) -> None:
-        """A sample can be taken at any time."""
+        """Does nothing, because a sample can be taken at any time."""
 
     def require_no_jump(self) -> None:
         """Raises SceneError, because errors are those since the start of the `with` block."""
@@ -248,7 +248,7 @@ class _Frames:
         self._last = self._world.time
 
     def require_ready(self) -> None:
-        """A frame can be added at any time."""
+        """Does nothing, because a frame can be added at any time."""
 
     def require_no_jump(self) -> None:
         """Frames may go back in time."""
@@ -401,8 +401,10 @@ class WorldOutput:
                 world.run(2)
             recorder.table()["tip.position_z"]
 
-        probes: probes by the name that heads their columns. every: time between rows; 0: one row for each call of
-        advance() [s]. Probes of forces switch on World.measure_forces(). SceneError: a probe or a name is wrong."""
+        probes: probes by the name that heads their columns.
+        every: time between rows; 0: one row for each call of advance() [s]. Probes of forces switch on
+            World.measure_forces().
+        SceneError: a probe or a name is wrong."""
         return Recorder(self, probes, every)  # type: ignore[arg-type]
 
     def error_estimator(self) -> ErrorEstimator:

@@ -96,7 +96,7 @@ class ForceReport:
     most_contacts: largest number of contacts with an impulse in any step.
     seconds: time for which loads acted [s].
     moment_point: reference point of moments, as given to measure_forces(), shape (3,) [m].
-    measured: False if the call was too short to show the force, or took no step. Mean values are then NaN.
+    measured: False if the call was too short for the force to be measured, or took no step. Mean values are then NaN.
     """
 
     impulse: Reals
@@ -268,9 +268,11 @@ class WorldResults:
     ) -> SurfaceHit | None:
         """Finds the first surface that a ray hits, from either side, or None.
 
-        origin: start of the ray (3,) [m]. direction: any length except zero (3,). max_distance: length of the ray [m].
+        origin: start of the ray (3,) [m].
+        direction: any length except zero (3,).
+        max_distance: length of the ray [m].
         bodies, colliders: which surfaces are tested; groups: only objects in one of these collision groups; but: all
-        objects except these."""
+            objects except these."""
         rows = self.cast_rays(
             real_array(origin, "origin", (3,))[np.newaxis],
             real_array(direction, "direction", (3,)),

@@ -78,7 +78,8 @@ def rollout(
     record: probes by name, as for World.recorder(). Their values are those at the end of each interval; mean forces are
     those of the interval.
 
-    threads: number of threads; 0: all cores. keep_worlds: True: `worlds` of the result holds the worlds at the end.
+    threads: number of threads; 0: all cores.
+    keep_worlds: True: `worlds` of the result holds the worlds at the end.
     progress: writes the share that is done to the standard error output.
 
     The result has:
@@ -91,8 +92,9 @@ def rollout(
     The values have the bits of a loop that copies each world, applies the controls of an interval, and calls
     advance(dt), for any number of threads. Ctrl-C ends the rollout.
 
-    TypeError: an array has the wrong shape. SceneError: an object, a quantity or a value is wrong; no world has run
-    then. BusyError: another thread uses one of the worlds."""
+    TypeError: an array has the wrong shape.
+    SceneError: an object, a quantity or a value is wrong; no world has run then.
+    BusyError: another thread uses one of the worlds."""
     copies = [worlds] if isinstance(worlds, World) else list(checked(worlds, "rollout: worlds", World, Iterable))
     if not copies:
         raise scene_error("rollout", "worlds", "an empty list", "at least one world")

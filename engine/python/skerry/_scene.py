@@ -136,9 +136,12 @@ class Scene:
         continues from its present time.
 
         until: time at which the run ends, as with `skerry run --seconds`, default: `seconds` of the scene [s].
-        World.run() takes a duration instead. csv: file of the time series, written row by row. page: file of a page
-        that plays the run. usd: film of World.usd(). vtk: folder of frames for ParaView. progress: writes the time to
-        the standard error output.
+            World.run() takes a duration instead.
+        csv: file of the time series, written row by row.
+        page: file of a page that plays the run.
+        usd: film of World.usd().
+        vtk: folder of frames for ParaView.
+        progress: writes the time to the standard error output.
 
         StepError: a step could not be completed; all outputs then end there."""
         world, end = self.world, self.seconds if until is None else seconds(until, "Scene.run", "until")
@@ -197,9 +200,10 @@ def load_scene(
 ) -> Scene:
     """Reads a scene and builds its world.
 
-    scene: path of a JSON file, or a mapping with the content of one. overrides: values that replace others, by their
-    places: {"bodies[0].position": [0, 0, 1]}. threads: number of threads of the world. folder: folder of the mesh files
-    that a mapping names, default: the present one.
+    scene: path of a JSON file, or a mapping with the content of one.
+    overrides: values that replace others, by their places: {"bodies[0].position": [0, 0, 1]}.
+    threads: number of threads of the world.
+    folder: folder of the mesh files that a mapping names, default: the present one.
 
     Corrections and doubts are warnings Doubt, for example of a filled surface. SceneError: names the place, the value
     found and the value expected; for an unknown key the nearest known one."""

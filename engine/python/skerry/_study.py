@@ -185,14 +185,18 @@ def study(
         found.quantities["cube.displacement_z_end"].error
 
     scene: path of a JSON file, or a mapping with the content of one, which is kept in a temporary file in the present
-    folder meanwhile. error: wanted relative error, for which the cheapest settings are searched. probes: names NAME or
-    NAME.QUANTITY of probes and bodies, default: all. seconds: time at which the runs end, default: that of the scene
-    [s]. overrides: as for load_scene(). threads: number of threads, 0: all cores. budget: largest time of the study,
-    divided by that of one run with one thread; finer meshes and other runs that do not fit are left out, default: 15,
-    or more as long as the study takes less than 5 s. folder: keeps the runs; a later study of the same scene continues
-    with them. redo: True makes all runs again and replaces those in the folder. progress: True writes the share that is
-    done to the standard error output; a function is called with this share and the numbers of the runs that are done
-    and of all runs.
+        folder meanwhile.
+    error: wanted relative error, for which the cheapest settings are searched.
+    probes: names NAME or NAME.QUANTITY of probes and bodies, default: all.
+    seconds: time at which the runs end, default: that of the scene [s].
+    overrides: as for load_scene().
+    threads: number of threads, 0: all cores.
+    budget: largest time of the study, divided by that of one run with one thread; finer meshes and other runs that do
+        not fit are left out, default: 15, or more as long as the study takes less than 5 s.
+    folder: keeps the runs; a later study of the same scene continues with them.
+    redo: True makes all runs again and replaces those in the folder.
+    progress: True writes the share that is done to the standard error output; a function is called with this share and
+        the numbers of the runs that are done and of all runs.
 
     The numbers do not depend on the number of threads, except through the budget. A run that fails is a result. Ctrl-C
     ends the study; runs that have ended stay in the folder. SceneError: the scene or a setting is wrong."""
@@ -225,7 +229,8 @@ def _show(share: float, done: int, total: int) -> None:
 
 
 def _quantity(values: dict[str, Any]) -> StudyQuantity:
-    """A number that is not finite is None in JSON: an infinite one in the following keys, else an unknown one."""
+    """Makes a quantity of its JSON values. A number that is not finite is None there: infinity for the keys in
+    `infinite`, NaN for others."""
     infinite = ("agree_until", "error", "mesh") if values["verdict"] == "singular" else ("agree_until",)
     absent = {key: math.inf if key in infinite else math.nan for key, value in values.items() if value is None}
     runs = {

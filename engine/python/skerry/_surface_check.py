@@ -120,7 +120,8 @@ def check_surface(surface: SurfaceMesh | Path, *, tolerance: float = 1e-6) -> Su
 
     surface: a surface, or the path of a file for read_surface().
     tolerance: nodes up to this fraction of the diagonal of the bounding box apart are merged; 0 merges equal nodes
-    only. SceneError: a node is not finite, a triangle has a node that does not exist, or there are no triangles."""
+        only.
+    SceneError: a node is not finite, a triangle has a node that does not exist, or there are no triangles."""
     if not isinstance(surface, SurfaceMesh):
         surface = read_surface(surface)
     values = _core.check_surface(surface.nodes, surface.triangles, real(tolerance, "tolerance"))

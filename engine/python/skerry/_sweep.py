@@ -49,9 +49,11 @@ def sweep(
         found = skerry.sweep("incline.json", {"materials.block.friction": [0.2, 0.3, 0.4]})
         found["block.displacement_x"][:, -1]  # at the end of each run
 
-    scene, folder: as for load_scene(). grid: values by place, of which all combinations are run, the last place varying
-    fastest; or a list of cases, each with values by place. jobs: number of cases that run at once, with one thread
-    each, default: the number of processors. seconds: time at which the runs end, default: that of the scene [s].
+    scene, folder: as for load_scene().
+    grid: values by place, of which all combinations are run, the last place varying fastest; or a list of cases, each
+        with values by place.
+    jobs: number of cases that run at once, with one thread each, default: the number of processors.
+    seconds: time at which the runs end, default: that of the scene [s].
 
     The result has:
     - each place: its values, shape (B,) or (B, ...)

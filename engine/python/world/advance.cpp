@@ -110,8 +110,8 @@ void bind_advance(WorldClass& type) {
     type.def("advance", &advance, nb::arg("dt"), nb::arg("check").none(), nb::arg("watch").none(),
              nb::arg("take").none(), nb::arg("every"))
         .def("relax", &relax_world)
-        // World::watch_steps refuses calls of callbacks. It has no other effect, because WatchScope has removed its
-        // function.
+        // World::watch_steps throws during advance(). It has no other effect, because WatchScope has removed the
+        // function that it would replace.
         .def("require_between_steps", guarded([](World& world) { world.watch_steps({}); }))
         .def("set_tracing", guarded([](World& world, bool on) { world.set_tracing(on); }))
         .def("trace_text", guarded([](World& world) {

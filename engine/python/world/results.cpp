@@ -9,7 +9,7 @@ namespace skerry::python {
 
 namespace {
 
-/// Places of handles in a list of all objects of a kind; -1 for a stale handle.
+/// Places of handles in a list of all objects of a kind; -1 for a handle without object.
 template <class HandleType>
 class Places {
 public:
@@ -22,7 +22,7 @@ public:
     }
 
 private:
-    std::unordered_map<std::uint32_t, Index> place_;  // by slot: handles in results are live or have no slot
+    std::unordered_map<std::uint32_t, Index> place_;  // by slot alone: handles in results are live or have no slot
 };
 
 using Triple = std::array<Real, 3>;

@@ -17,7 +17,7 @@ struct OpenParts {
     bool step = false;   // a smaller step length
     bool noise = false;  // another perturbation of the start
 };
-/// Finds these parts from the runs so far. The first is the scene as it is, and must be ok.
+/// Finds the open parts from the runs so far. The first is the scene as it is, and must be ok.
 OpenParts open_parts(const std::vector<StudyRun>& runs, const StudySettings& settings);
 
 }  // namespace skerry

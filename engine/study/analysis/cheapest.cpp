@@ -16,7 +16,7 @@ struct Option {
     bool predicted = false;  // true for a mesh that was not run
 };
 
-/// Levels of the mesh that were run, and finer ones whose error and cost are predicted.
+/// Number of mesh levels finer than those that were run for which error and cost are predicted.
 constexpr int finer_levels = 2;
 constexpr double cost_of_level = 16;  // eight times the elements, twice the steps; used if no finer mesh was run
 

@@ -42,7 +42,8 @@ void Convergence::find_order(TheoryOrder theory, Real noise, Real size) {
     const auto be_coarse = [&] {
         shape_ = ConvergenceShape::coarse;
         used_order_ = 0;
-        // The larger of both values, at most `size` plus the difference: a position may have a large offset.
+        // The error may be as large as the value itself. For a position, whose value may contain a large offset, it is
+        // at most `size` plus the difference.
         least_error_ = std::min(size + std::abs(difference), std::max(std::abs(middle.value), std::abs(fine.value)));
     };
     const bool differs_much = std::abs(difference) > coarse_share * size;

@@ -36,8 +36,8 @@ class Convergence {
 public:
     Convergence() = default;
     /// Needs one level with h = 1. Levels with values that are not finite are omitted. `noise` is the size of
-    /// differences without meaning, for example that of rounding errors. `size`: size of the value, against which the
-    /// difference of two levels is large or small.
+    /// differences without meaning, for example that of rounding errors. `size`: size of the value. Two levels that
+    /// differ by more than 30 % of it are too coarse for an error estimate by an order.
     Convergence(std::vector<ConvergenceLevel> levels, TheoryOrder theory, Real noise, Real size = infinity);
 
     ConvergenceShape shape() const { return shape_; }

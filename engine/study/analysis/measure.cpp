@@ -53,7 +53,7 @@ std::string group_of(const SeriesColumn& column) {
 }
 
 TheoryOrder mesh_theory(const SeriesColumn& column) {
-    // Stresses of linear elements have order 1; recovered at nodes, up to 2.
+    // Stresses of linear elements have order 1, and up to 2 if they are recovered at the nodes.
     return column.unit == "Pa" ? TheoryOrder{1, 2} : TheoryOrder{2, 2};
 }
 
@@ -173,7 +173,8 @@ void judge(const StudyFamily& family, std::size_t column, StudyFigure figure, Re
         r.sentence = sentence;
     };
     const StudyColumn& scene = family.scene->columns[column];
-    // Sizes of energies and lengths are changes; their values may have an offset. Rounding errors need no verdict.
+    // `within` is above 0 only for values that vanish with tolerance or step. Values as small as rounding errors get no
+    // verdict.
     if (const Real within = family.zero_within[column];
         std::abs(r.value) <= within && within > agreement_share * r.scale) {
         r.error = within;
@@ -262,7 +263,7 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
         if (v.draw != 0 && std::isfinite(value)) quantity.noise = std::max(quantity.noise, std::abs(value - r.value));
         if (v.element) quantity.elements.emplace_back(v, value);
     }
-    constexpr Real rounding = 1e-9;  // also holds the sums of rounding errors over a run
+    constexpr Real rounding = 1e-9;  // bound that includes the sum of rounding errors over a run
     Real noise = std::max(rounding * r.scale, quantity.noise);
     quantity.contact = Convergence(contact, {1, 1}, noise);
     if (contact.size() > 1) noise = std::max(noise, quantity.contact.error());  // the solver's error is noise, too
@@ -278,7 +279,7 @@ MeasuredQuantity measure_values(const StudyFamily& family, std::size_t column, R
         return planned ? convergence.error() : 0;
     };
     r.mesh = error(quantity.mesh, is_mesh);
-    // Lengths may have an offset, which has no error.
+    // Only the change of a length is affected by flat faces, not its offset.
     quantity.shape = family.scene->columns[column].shape_error * std::min(std::abs(r.value), family.sizes[column]);
     r.mesh += quantity.shape;
     r.step = error(quantity.step, is_step);
@@ -303,7 +304,9 @@ StudyFamily::StudyFamily(const std::vector<StudyRun>& runs)
 }
 
 void StudyFamily::find_zeros() {
-    // Share of the size below which the size vanishes. Errors of order 1 fall to a quarter with a quarter of the step.
+    // If a shorter step or a smaller tolerance reduces the size of a column below this share of the size in the first
+    // run, its values are only errors of the steps or of the solver. With order 1, a quarter of the step gives a
+    // quarter of the error.
     constexpr Real vanishing = 1.0 / 3;
     std::vector<Real> largest = sizes, least = sizes;
     for (const StudyRun* run : comparable) {

@@ -45,7 +45,8 @@ void hold_here(Model& model, std::size_t body, Real now);
 
 // control_collisions.cpp
 
-/// Enables all disabled pairs of a body or collider. Must be called before the slot of this object is reused.
+/// Enables all disabled pairs of a body or collider. Must be called before the slot of this object is reused, because
+/// pairs name objects by slot.
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
 /// Enables a disabled pair during a call of advance. `first`: row of BodyTable; `second`: row of BodyTable or
@@ -77,7 +78,7 @@ JointState joint_state(const Model& model, JointHandle joint);
 
 // control_materials.cpp
 
-/// The properties that are set; a negative property is not.
+/// The properties that are set. A negative value marks a property that is not set.
 SurfaceSettings set_values_of(const SurfaceProperties& surface);
 
 // control_ties.cpp

@@ -35,7 +35,8 @@ Mat3 held_directions(const std::vector<Vec3>& directions) {
     return directions.size() == 3 ? Mat3(Mat3::Identity()) : held;
 }
 
-/// Checks an attachment that holds nodes along single directions.
+/// Throws SceneError if nodes cannot be held along single directions: the body is not explicit, or another attachment
+/// holds one of the nodes along an oblique direction.
 void require_axes(const Model& model, std::size_t body, std::span<const Index> nodes, const Mat3& held) {
     const std::string& name = model.body_records[body].name;
     if (model.has_frame(body))
@@ -104,7 +105,7 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
         follow_attachments(model, b);
     }
     model.wake(b);
-    // The last contact search assumed the old speeds, but attaching has stopped the held nodes.
+    // All pairs of the body are searched again: the last search assumed the speeds that the held nodes had before.
     state_->cache.forget_body(model, b);
     if (!holds_completely(held)) model.clusters_open = true;
     state_->edits.rows = state_->edits.elements = true;

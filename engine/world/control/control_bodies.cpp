@@ -79,7 +79,7 @@ void hold_here(Model& model, std::size_t body, Real now) {
 
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position) {
     Model& model = world.model;
-    // bodies that rest on the body at its old position may lose their support
+    // wakes bodies that rest on the body at its old position and may lose their support
     world.edits.places.add_body(model, body);
     const std::span<Vec3> target = rows_of(model.nodes.position, model.bodies.nodes[body]);
     const std::span<Vec3> origin = rows_of(model.nodes.displacement_origin, model.bodies.nodes[body]);

@@ -36,7 +36,7 @@ std::string title_of_cable(const Model& model, std::size_t row) {
     return title_of_cable(title_of_point(points.begin), title_of_point(points.end - 1));
 }
 
-/// Checks the control of a cable. `object`: title of the cable.
+/// Throws SceneError unless `drive` gives exactly one quantity, with valid values. `object`: title of the cable.
 CableDriveRow validated(const std::string& object, const CableDrive& drive) {
     const int count = drive.tension.has_value() + drive.length.has_value() + drive.rate.has_value();
     if (count != 1)

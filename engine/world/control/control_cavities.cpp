@@ -34,7 +34,8 @@ void require_above(const std::string& object, const char* field, Real value, Rea
         refuse(object, field, short_text(value), "a number > " + short_text(least) + unit);
 }
 
-/// Checks a list of keys whose values must be finite and greater than `least`.
+/// Throws SceneError if a list of keys is empty, if its times do not ascend, or if a value is not finite or not greater
+/// than `least`.
 void require_keys(const std::string& object, const char* field, const TimeTable& table, Real least, const char* unit) {
     require_table(object, field, table);
     for (const TimeKey& key : table.keys) require_above(object, field, key.value, least, unit);
@@ -78,7 +79,8 @@ Face sorted(Face face) {
     return face;
 }
 
-/// Faces of a cavity, in the orientation of the surface.
+/// Faces of a cavity, in the orientation of the surface: `wanted`, or by default faces_of_hollows. Throws SceneError if
+/// `wanted` is empty, repeats a face or has one that is not on the surface.
 std::vector<Face> chosen_faces(const Model& model, std::size_t body, const std::string& object,
                                const std::optional<std::vector<Face>>& wanted) {
     if (model.bodies.core_nodes[body] > 0)
@@ -340,7 +342,7 @@ void require_conductance(const std::string& object, Real conductance) {
         refuse(object, "conductance", short_text(conductance), "a number >= 0 (kg/(s Pa))");
 }
 
-/// Checks a cavity at the end of a pipe.
+/// Throws SceneError if a cavity at the end of a pipe contains no gas. `field`: this end.
 void require_gas(const Model& model, const std::string& object, std::size_t cavity, const char* field) {
     if (const CavityLaw law = model.cavities.law[cavity]; law != CavityLaw::gas)
         refuse(object, field, "a cavity with the law " + std::string(name_of(law)), "a cavity with a gas");

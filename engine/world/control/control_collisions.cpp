@@ -24,14 +24,14 @@ RowPair rows_of(const Model& model, BodyHandle body, ColliderHandle collider, co
     return {PairKind::collider, model.row(body, call), model.row(collider, call)};
 }
 
-void look_for_overlaps(Model& model, Index body) {
+void request_overlap_check(Model& model, Index body) {
     model.body_records[static_cast<std::size_t>(body)].settled = model.settled = false;
 }
 
-void look_for_overlaps_of_collider(Model& model, Index collider) {
+void request_overlap_check_of_collider(Model& model, Index collider) {
     const auto c = static_cast<std::size_t>(collider);
     model.collider_records[c].settled = model.settled = false;
-    if (model.colliders.body[c] != no_index) look_for_overlaps(model, model.colliders.body[c]);
+    if (model.colliders.body[c] != no_index) request_overlap_check(model, model.colliders.body[c]);
 }
 
 /// In the next step all pairs of a body are searched again. Wakes the body, and all bodies that touch it or may touch
@@ -53,7 +53,7 @@ void set_collision(WorldState& world, const RowPair& pair, bool on) {
     const auto at = static_cast<std::size_t>(place - disabled.begin());
     if (on) {
         disabled.erase(at, 1);
-        look_for_overlaps(model, pair.first);
+        request_overlap_check(model, pair.first);
     } else {
         disabled.push_back(key);
         std::rotate(disabled.begin() + static_cast<std::ptrdiff_t>(at), disabled.end() - 1, disabled.end());
@@ -111,7 +111,7 @@ void World::set_collision_groups(BodyHandle body, std::uint32_t group, std::uint
     CollisionFilter& filter = model.bodies.filter[static_cast<std::size_t>(row)];
     if (filter == CollisionFilter{group, mask}) return;
     filter = {group, mask};
-    look_for_overlaps(model, row);
+    request_overlap_check(model, row);
     find_pairs_of(*state_, row);
 }
 
@@ -122,7 +122,7 @@ void World::set_collision_groups(ColliderHandle collider, std::uint32_t group, s
     CollisionFilter& filter = model.colliders.filter[static_cast<std::size_t>(row)];
     if (filter == CollisionFilter{group, mask}) return;
     filter = {group, mask};
-    look_for_overlaps_of_collider(model, row);
+    request_overlap_check_of_collider(model, row);
     state_->cache.forget_collider(model, static_cast<std::size_t>(row));
     state_->edits.places.add_collider(model, static_cast<std::size_t>(row), time());
 }

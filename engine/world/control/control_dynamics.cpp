@@ -149,7 +149,7 @@ std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     const BodyRecord record = model.body_records[body];
     const RigidPose pose = pose_of_body(model, body);
     const std::span<const Vec3> shape = model.mesh_shape(body);
-    const std::vector<Vec3> mesh_shape(shape.begin(), shape.end());  // the row of the body may move
+    const std::vector<Vec3> mesh_shape(shape.begin(), shape.end());  // a copy, because appending rows may move `shape`
     std::vector<Vec3> frozen;
     if (next == BodyDynamics::rigid) frozen = deformed_shape_of(model, body, pose, mesh_shape);
     if (!frozen.empty()) require_upright_shape(model, body, frozen);

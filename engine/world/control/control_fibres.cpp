@@ -34,8 +34,8 @@ void require_modulus(const std::string& object, const char* field, Real found, c
     if (!(std::isfinite(found) && found >= 0)) refuse(object, field, short_text(found), expected);
 }
 
-/// Checks that fibres can act on a body. With theta < 1 a force that follows the deformation of an implicit body would
-/// add energy to the body.
+/// Throws SceneError if fibres cannot act on a body. With theta < 1 a force that follows the deformation of an implicit
+/// body would add energy to the body.
 void require_deforming(const Model& model, std::size_t body, const std::string& object) {
     if (model.bodies.kind[body] != BodyKind::deformable || model.is_rigid(body))
         refuse(object, "body", "a body that does not deform", "an explicit or implicit body");
@@ -44,7 +44,8 @@ void require_deforming(const Model& model, std::size_t body, const std::string& 
                "theta 1 in the settings, or an explicit body");
 }
 
-/// Tetrahedra of the fibres; all tetrahedra of the body if the list is empty.
+/// Tetrahedra of the fibres; all `count` tetrahedra of the body if the settings list none. Throws SceneError if a
+/// number is out of range or repeated.
 std::vector<Index> tetrahedra_with(const FibreSettings& fibres, std::size_t count, const std::string& object) {
     std::vector<Index> tetrahedra = fibres.tetrahedra;
     if (tetrahedra.empty()) {
@@ -72,7 +73,7 @@ void require_directions(const std::vector<Vec3>& direction, std::size_t count, c
                    "a vector that is not zero");
 }
 
-/// Must be called after each change of fibres.
+/// Completes a change of fibres: wakes the body, updates the data of force elements and closes the energy balance.
 void note_fibres(WorldState& world, Index body) {
     world.model.wake(static_cast<std::size_t>(body));
     note_forces(world.model);

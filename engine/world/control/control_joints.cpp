@@ -194,8 +194,8 @@ OfHead of_head(const JointTable& table, Index joint) {
     return of;
 }
 
-/// Checks that the joints which mimic each other, directly or through others, have a common position within their
-/// limits. `joint`: one of them, whose `field` is to be changed. `table`: the joints after the change.
+/// Throws SceneError if the joints that mimic each other, directly or through others, have no common position within
+/// their limits. `joint`: one of them, whose `field` is to be changed. `table`: the joints after the change.
 void require_common_position(const JointTable& table, std::size_t joint, const char* field) {
     const OfHead own = of_head(table, static_cast<Index>(joint));
     Real lower = -infinity, upper = infinity;  // limits of the coordinate of `joint`
@@ -242,7 +242,8 @@ JointHandle Joints::add(const JointSettings& joint) {
     table.first[row] = first;
     table.second[row] = second;
     table.first_frame[row] = frame_on(model, first, joint.point, axes);
-    // The frame on the second body is where that on the first body is at coordinate 0.
+    // At coordinate 0 the two frames coincide. The frame on the second body is therefore the given frame, moved back by
+    // the coordinate.
     if (joint.kind == JointKind::hinge)
         table.second_frame[row] =
             frame_on(model, second, joint.point, Eigen::AngleAxis<Real>(-joint.coordinate, axis) * axes);

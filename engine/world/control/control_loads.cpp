@@ -75,7 +75,7 @@ LoadHandle append_load(World& world, const LoadRow& row, const TimeTable& scale)
     return handle;
 }
 
-/// Row of the body of a field, or no_index for all bodies.
+/// Row of the body of a field, or no_index for all bodies. Throws SceneError for a stale handle.
 Index body_of_field(const Model& model, const std::optional<BodyHandle>& body) {
     return body ? model.row(*body, "add_load") : no_index;
 }

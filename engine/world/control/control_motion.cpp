@@ -47,7 +47,7 @@ struct Scripted {
         table.initial[row] = {pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()};
     }
     /// Replaces the script by the key `from` and the poses `to`. A rotation has many rotation vectors, which differ by
-    /// full revolutions. The vector nearest to that of the key before is used, so that the object makes no additional
+    /// full revolutions. The vector nearest to that of the previous key is used, so that the object makes no additional
     /// revolution.
     void start_keys(const Keyframe& from, std::span<const Keyframe> to) const {
         if (keys().size() != to.size() + 1) {
@@ -239,7 +239,7 @@ void World::set_pose(ColliderHandle collider, const Pose& pose) {
     require_pose([&] { return title_of(model, row); }, pose);
     const auto c = static_cast<std::size_t>(row);
     if (is_at(Scripted{model.colliders, c}.pose(time()), pose)) return;
-    // bodies that rest on the collider at its old position may lose their support
+    // wakes bodies that rest on the collider at its old position and may lose their support
     state_->edits.places.add_collider(model, c, time());
     const RigidPose there = skerry::set_pose(Scripted{model.colliders, c}, pose, time());
     if (const Index a = attachment_of(model, row); a != no_index) {

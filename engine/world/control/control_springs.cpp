@@ -38,8 +38,8 @@ void validate_rest_length(const std::string& object, const TimeTable& rest_lengt
                    short_text(rest_length.keys[k].value), "a length >= 0 (m)");
 }
 
-/// Checks an anchor of a spring. At theta < 1 a force that follows the deformation of an implicit body would add energy
-/// to the body.
+/// Throws SceneError if an anchor of a spring is on an implicit body and theta is below 1: a force that follows the
+/// deformation would then add energy to the body.
 void require_stable(const Model& model, const std::string& object, const PlacedAnchor& anchor, const char* field) {
     if (anchor.body == no_index || model.settings.theta == 1) return;
     const auto body = static_cast<std::size_t>(anchor.body);
@@ -60,7 +60,7 @@ void wake_bodies_of(Model& model, std::size_t row) {
         if (body != no_index) model.wake(static_cast<std::size_t>(body));
 }
 
-/// Must be called after each change of a spring.
+/// Completes a change of a spring: wakes its bodies, updates the data of force elements and closes the energy balance.
 void note_change(WorldState& world, std::size_t row) {
     wake_bodies_of(world.model, row);
     note_forces(world.model);

@@ -38,7 +38,8 @@ std::string title_of(const Model& model, std::size_t body) {
     return "surface set of body '" + model.body_records[body].name + "'";
 }
 
-/// Ratio of the friction coefficients across and along the direction of a set.
+/// Ratio of the friction coefficients across and along the direction of a set; 1 without `across`. Throws SceneError if
+/// a value is out of range, or if `across` is given without a direction or without a coefficient along it.
 Real checked_ratio(const std::string& object, const SurfaceSettings& surface, const std::optional<Real>& across,
                    bool has_direction) {
     validate(surface, object);

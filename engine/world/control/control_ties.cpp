@@ -137,7 +137,8 @@ bool is_deforming(const Model& model, Index body) {
     return body != no_index && !model.is_rigid(static_cast<std::size_t>(body));
 }
 
-/// Present positions of the points that are tied: the nodes, or for each node the mean point of all [m].
+/// Present positions of the tied points [m], one for each node: the position of the node, or for a ball the mean point
+/// of all nodes.
 std::vector<Vec3> tied_points(const Model& model, const TiedObjects& objects, const TieSettings& tie) {
     const Index first = model.bodies.nodes[static_cast<std::size_t>(objects.first)].begin;
     std::vector<Vec3> points;
@@ -173,7 +174,7 @@ void require_close(WorldState& world, const TiedObjects& objects, std::span<cons
     }
 }
 
-/// Frame in which TieTable stores the place of a node.
+/// Frame in which TieTable stores the position of a node.
 RigidPose frame_of(const Model& model, const TiedObjects& objects, std::span<const RigidMotion> pose) {
     if (objects.second != no_index && model.has_frame(static_cast<std::size_t>(objects.second)))
         return pose_of_body(model, static_cast<std::size_t>(objects.second));
@@ -192,7 +193,7 @@ void append_node(TieTable& table, Index node, const OnSurface& on, const Vec3& p
     table.broken.push_back(infinity);
 }
 
-/// Appends a tied node. `point`: present place of the node, or of the mean point of all nodes [m].
+/// Appends a tied node. `point`: present position of the node, or of the mean point of all nodes [m].
 void tie_node(WorldState& world, const TieSettings& tie, const TiedObjects& objects, std::span<const RigidMotion> pose,
               Index node, const Vec3& point) {
     Model& model = world.model;

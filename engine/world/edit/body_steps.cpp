@@ -64,7 +64,7 @@ std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
         const Index material = body.material_of(t);
         auto zone = std::find_if(zones.begin(), zones.end(), [&](const auto& z) { return z.material == material; });
         if (zone == zones.end()) {
-            // Plastic flow keeps the volume, as an incompressible material does.
+            // Plastic flow keeps the volume, so elements that yield are chosen as for an incompressible material.
             const auto row = static_cast<std::size_t>(material);
             const Real poisson_ratio =
                 model.materials.constants[row].yields() ? 0.5 : model.materials.poisson_ratio[row];
@@ -164,7 +164,8 @@ MassProperties mass_properties(const Model& model, const NewBody& body) {
 
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
-    // All nodes of a body that shares its mass can move. share_mass replaces their masses.
+    // Nodes without a tetrahedron would get the inverse mass 0, as if they were held. Rigid bodies that share_mass
+    // handles later therefore begin with positive masses.
     if (body.tetrahedra.empty() || body.mass) std::ranges::fill(rows_of(nodes.mass, range), Real(1));
     add_lumped_mass(body.tetrahedra, body.shape_of_masses(), densities(model, body), rows_of(nodes.mass, range));
     // A round body is drawn with a mesh that lies inside the exact shape and has less volume. The masses of its nodes
@@ -189,13 +190,13 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     const Real by_shares = step();
     kernels().find_mass_forms(model.all_elements(), blocks, position, model.nodes.mass, products_of_group, form);
     // In a large body, mass forms are verified for groups of elements instead of the whole body. Such mass forms
-    // lengthen the stable step less.
+    // lengthen the stable step less. They are dropped if they do not lengthen it.
     const Real by_forms = step();
     if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
     // Frame masses are chosen for linear elements only. The mass forms of smoothed elements already allow steps near
     // the stability limit. Still closer to this limit, the energies of the highest frequencies are less accurate.
     const Real by_either = by_forms > by_shares ? by_forms : by_shares;
-    // Frame masses do not follow plastic flow either.
+    // A body that yields gets no frame masses either, because they do not follow plastic flow.
     const auto b = static_cast<std::size_t>(row);
     if (model.body_records[b].element != ElementKind::linear || model.yields(b)) return by_either;
     // Least ratio of the stable step with frame masses to the stable step without them. A smaller gain does not justify

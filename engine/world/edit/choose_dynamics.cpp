@@ -89,7 +89,7 @@ void compare_costs(const Model& model, const NewBody& body, const KnownElements&
     if (damps > 0) estimate.damped_above = 1 / (4 * std::numbers::pi * estimate.deforming_step);
 }
 
-/// Calls `has` with the rows of the materials of a body, and returns true if one of them has a property.
+/// True if has(row) is true for the row of at least one material of a body.
 bool any_material(Index material, std::span<const Index> tetrahedron_material, auto&& has) {
     const auto of_row = [&](Index row) { return has(static_cast<std::size_t>(row)); };
     return tetrahedron_material.empty() ? of_row(material) : std::ranges::any_of(tetrahedron_material, of_row);

@@ -10,8 +10,8 @@
 
 namespace skerry {
 
-/// Entries that a row of a joining table has in a column. In a column without one entry per row of the table, a row has
-/// the list of entries that Table::list_of returns.
+/// Entries of a column that belong to one row of a joining table. A column has one entry for each row, or a list of
+/// entries for each row, which Table::list_of returns.
 template <class Table>
 Range entries_of(const Table& table, const ColumnInfo& column, std::size_t row) {
     if constexpr (requires { table.list_of(row); })
@@ -19,8 +19,8 @@ Range entries_of(const Table& table, const ColumnInfo& column, std::size_t row) 
     return {static_cast<Index>(row), static_cast<Index>(row) + 1};
 }
 
-/// The lists of entries that the rows of a table have in columns without one entry per row: `rows` is the column with
-/// the range of each row, and `columns` are the columns with its entries.
+/// Columns that have a list of entries for each row of a table. `rows`: column with the range of entries of each row.
+/// `columns`: columns with the entries.
 struct RowLists {
     Column<Range>* rows;
     std::vector<AnyColumn> columns;
@@ -115,8 +115,7 @@ void erase_rows_joining(ColumnRole role, Index object, Model& model);
 /// this body to another object; no_index: all of these tables.
 std::vector<const char*> tables_joining(Index body, Model& model);
 
-/// Hands rows that act on one body only, such as loads, over from the body `before` to the body `after` with the same
-/// mesh.
+/// Moves rows that act on one body only, such as loads, from the body `before` to the body `after` with the same mesh.
 void hand_over_rows(std::size_t before, std::size_t after, Model& model);
 
 /// Renumbers the bodies or colliders in joining rows after other bodies or colliders were removed. `role`: `body` or

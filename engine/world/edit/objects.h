@@ -20,7 +20,7 @@ struct ObjectColumns {
     static auto& handles(auto& model) { return model.*handles_member; }
 };
 
-/// Table and handles of the objects with a type of handle, and a noun for these objects.
+/// For each type of handle: table and handles of its objects, and a noun for these objects.
 template <class HandleType>
 struct ObjectsOf;
 template <>

@@ -59,9 +59,9 @@ void stop_rigid_body(Model& model, std::size_t body);
 /// Sets the pose of a body and moves the nodes of the body along. The momentum and the angular momentum do not change.
 void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Mat3& rotation);
 /// Sets the node positions of an implicit body. The nearest rigid pose becomes the pose of the body, and the difference
-/// to this pose its deformation.
+/// from this pose its deformation.
 void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> position);
-/// Sets the momenta of a body to those of the rigid motion nearest to its node velocities. The difference to this
+/// Sets the momenta of a body to those of the rigid motion nearest to its node velocities. The difference from this
 /// motion becomes the deformation velocity of an implicit body, and is lost for a rigid body.
 void follow_node_velocities(Model& model, std::size_t body);
 

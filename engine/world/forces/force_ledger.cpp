@@ -92,7 +92,7 @@ void ForceLedger::start(const Model& model, const RestingContactTable& resting, 
 }
 
 /// Initialises the forces on sleeping bodies. The sums of pairs and attachments start with the forces of the last step
-/// before the bodies fell asleep, times one second.
+/// before the bodies fell asleep, as if these had acted for one second (still_seconds).
 void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& resting) {
     Column<Vec3> force, held;
     for (std::size_t c = 0; c < resting.size(); ++c) force.push_back(resting.contact.impulse[c] / resting.step[c]);
@@ -111,9 +111,9 @@ void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& 
     take_over_reactions(model, held);
 }
 
-/// Computes the forces of attachments on sleeping bodies, and starts the sums of these attachments with the forces
-/// times one second. The elastic forces and moments on held nodes follow from virtual work, which is the change of
-/// elastic energy when only these nodes move. `contact_force`: force on each node [N].
+/// Computes the forces of attachments on sleeping bodies, and starts the sums of these attachments with the forces, as
+/// if these had acted for one second. The elastic forces and moments on held nodes follow from virtual work, which is
+/// the change of elastic energy when only these nodes move. `contact_force`: force on each node [N].
 void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     Column<Vec3> motion;
@@ -158,7 +158,7 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
     }
 }
 
-/// Like take_over_reactions, for an attachment that holds its nodes along single directions.
+/// Does the work of take_over_reactions for an attachment that holds its nodes along single directions.
 void ForceLedger::take_over_axes(const Model& model, std::size_t attachment, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     const Mat3& held = model.attachments.held[attachment];

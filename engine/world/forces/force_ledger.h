@@ -68,8 +68,8 @@ public:
     /// Time for which forces have acted between the objects of a pair in this call [s]. If all bodies of the pair are
     /// implicit, it is the sum of the step lengths. Otherwise it is the sum of the kicks of the steps.
     Real seconds_of(const Model& model, const PairKey& key) const;
-    /// True if the call was long enough to show contact forces. Gaps that the step before the call has left open may
-    /// stay open during a call that is much shorter than that step.
+    /// True if the call was long enough for contact forces to be measured. Gaps that the step before the call has left
+    /// open may stay open during a call that is much shorter than that step.
     bool shows_contacts() const;
     /// True if rounding errors of positions and velocities changed the force of an attachment by little. `attachment`:
     /// row of AttachmentTable.

@@ -103,7 +103,8 @@ ForceReport Forces::on(ColliderHandle collider) const {
     (void)world_->model.row(collider, "forces");
     const ForceLedger& ledger = world_->record.forces;
     ForceReport report = report_of(ledger, ledger.collider(collider.slot), ledger.seconds_on(world_->model, no_index));
-    // If the step length changes, forces act for different times on implicit bodies and on other bodies.
+    // In a step, forces act on implicit bodies for its length, and on other bodies for the kick. If the step length
+    // changes, these times differ. If they differ too much, no mean force of all bodies is defined.
     Real shortest = infinity, longest = 0;
     bool touched = false, awake = false;
     for (const ForceLedger::PairRow& pair : ledger.pairs()) {
@@ -116,7 +117,7 @@ ForceReport Forces::on(ColliderHandle collider) const {
         add(pair.sums, PairSide::second, report);
     }
     if (touched) report.seconds = longest;
-    constexpr Real small_share = 0.01;  // largest error of the mean force due to these different times
+    constexpr Real small_share = 0.01;  // largest accepted relative difference between the times
     const bool even = !touched || longest - shortest <= small_share * longest;
     report.measured = report.seconds > 0 && even && ((touched && !awake) || ledger.shows_contacts());
     return report;

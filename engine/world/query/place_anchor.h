@@ -28,8 +28,8 @@ PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::st
 std::string title_of_end(const Model& model, Index body, Index collider);
 std::string title_of_end(const Model& model, const Anchor& anchor);
 
-/// Inputs of anchors between steps. They stay valid until the world changes. Velocities of colliders are mean
-/// velocities of the last step, because the velocities of nodes also are.
+/// Inputs of anchors between steps. They stay valid until the world changes. Velocities of colliders are means over the
+/// last step, as the velocities of nodes are.
 class AnchorsBetweenSteps {
 public:
     explicit AnchorsBetweenSteps(const WorldState& world);
@@ -39,7 +39,7 @@ public:
 
 private:
     const Model& model_;
-    Column<RigidMotion> motion_;  // of colliders
+    Column<RigidMotion> motion_;  // motions of the colliders
 };
 
 }  // namespace skerry

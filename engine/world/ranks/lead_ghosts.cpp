@@ -39,8 +39,8 @@ struct LedBodies {
     }
 };
 
-/// Sends the predicted velocities of the bodies that this rank leads, in body order, and receives those of its led
-/// ghosts. Sleeping bodies have no velocity and are left out.
+/// Sends the predicted velocities of the bodies whose ghosts this rank leads, in body order, and receives those of its
+/// own led ghosts. Sleeping bodies have no velocity and are left out.
 void send_predictions(const LedBodies& bodies, std::span<Vec3> velocity_next, PredictionMail& mail,
                       RankChannel& channel) {
     mail.start(bodies.peers.size());

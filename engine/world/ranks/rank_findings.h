@@ -9,10 +9,10 @@
 
 namespace skerry {
 
-/// Findings of this rank in an attempt at a step, or the combined findings of all ranks. They name bodies by their
-/// place, the row of the body in the undivided world, because rows of BodyTable differ between ranks. Every number
-/// counts the crossings, elements, contacts and regions of all ranks once. Sums of energy are not included, because
-/// their last digits would depend on the order of the ranks.
+/// Findings of this rank in an attempt at a step, or the combined findings of all ranks. They name bodies by their rows
+/// in the undivided world, because rows of BodyTable differ between ranks. Every number counts the crossings, elements,
+/// contacts and regions of all ranks once. Sums of energy are not included, because their last digits would depend on
+/// the order of the ranks.
 struct RankFindings {
     // First fault of the attempt (StepVerdict).
     StepFault fault = StepFault::none;
@@ -31,7 +31,7 @@ struct RankFindings {
     Index inverted_tetrahedron = no_index;  // number of the tetrahedron within the body
     bool inverts_first = false;
     bool beyond_lists = false;  // CrossingTable::beyond_lists
-    // Reasons to repeat the attempt that only ranks have:
+    // The next members are reasons to repeat an attempt that exist only with several ranks.
     bool labels_open = false;     // the labels of regions had not settled in the last round
     int label_rounds = 0;         // number of rounds of labels that this attempt needed (LabelRounds)
     bool pushed = false;          // RegionTable::pushed
@@ -45,7 +45,8 @@ struct RankFindings {
     bool far = false;      // a body may be too far from the origin (check_distance)
     RunCounters counters;  // contacts, regions and solver work of the attempt (count_step)
 
-    // Placeholder for no body. It is greater than all places, so that the least place of all ranks is that of a body.
+    // Placeholder for no body. It is greater than all row numbers, so that the least number of all ranks is that of a
+    // body.
     static constexpr Index nobody = std::numeric_limits<Index>::max();
     bool again_over_ranks() const { return labels_open || bodies_missing || ghosts_expired; }
 };

@@ -40,7 +40,7 @@ struct PredictionMail : RankMail {
 /// Message about a set of touching bodies that one rank has found: one entry for each body of the set that has several
 /// holders.
 struct SetMember {
-    Index place;         // place of the body: its row in the undivided world
+    Index place;         // row of the body in the undivided world
     Index set;           // row of the first body of the set on the rank that has found the set
     Index must_stay_up;  // nonzero if a body of the set must stay awake
 };
@@ -49,9 +49,10 @@ struct SetMember {
 struct RankSleep {
     Column<std::uint8_t> asleep;  // by body
     Column<Real> still_time;      // by body [s]
-    Column<Index> woken;          // places of the bodies with several holders that this rank wakes
+    Column<Index> woken;          // rows in the undivided world of the bodies with several holders that this rank wakes
     Column<SetMember> members;    // entries for the sets that this rank has found
-    // A node of `joined` for each place, and for each set of the message that is being read; no_index: none yet.
+    // A node of `joined` for each row of the undivided world, and for each set of the message that is being read;
+    // no_index: none yet.
     Column<Index> node_of_place, node_of_set;
     Column<std::uint8_t> restless;  // for each node of `joined`: 1 if its set must stay awake
     UnionFind joined;               // sets of all ranks, joined where they share a body
@@ -60,7 +61,7 @@ struct RankSleep {
 /// A body that a rank must hold to solve a region.
 struct BodyRequest {
     int rank;
-    Index place;  // place of the body: its row in the undivided world
+    Index place;  // row of the body in the undivided world
 };
 
 /// Rounds in which ranks exchange the labels of their regions (docs/methods/ranks.md 3).
@@ -87,8 +88,8 @@ struct LabelRounds {
     }
 };
 
-/// Row of BodyTable of the body at a place of the undivided world; no_index if this rank does not hold it. `place`:
-/// RankState::place.
+/// Row of BodyTable of the body that has the row `of_place` in the undivided world; no_index if this rank does not hold
+/// it. `place`: RankState::place.
 inline Index row_of_place(std::span<const Index> place, Index of_place) {
     const auto at = std::ranges::lower_bound(place, of_place);
     return at != place.end() && *at == of_place ? static_cast<Index>(at - place.begin()) : no_index;
@@ -104,14 +105,15 @@ struct RankState {
     Column<std::int32_t> owner;
     // For each row of BodyTable: the other ranks that hold the body, as indices in `peers`, ascending.
     std::vector<std::vector<int>> holders;
-    // For each row of BodyTable: place of the body, its row in the undivided world. The places ascend.
+    // For each row of BodyTable: row of the body in the undivided world. These numbers ascend.
     Column<Index> place;
     // For each row of BodyTable: distance by which the body may move before its holders must be found again; infinite
     // for ghosts. `moved`: bound of the distance by which it has moved since they were found [m].
     Column<Real> margin, moved;
     Column<Real> tried_speed;  // by row of BodyTable: greatest speed in the last attempt at a step [m/s]
     WholeWorld whole;          // empty if `ranks` is null
-    // For each place: number of pieces of the stable-step checks of all bodies before it (count_pieces).
+    // For each row of the undivided world: number of pieces of the stable-step checks of all bodies before it
+    // (count_pieces).
     Column<std::uint64_t> pieces_before;
     // For each row of BodyTable: 1 if this rank sends the predicted velocities of the body to its holders
     // (note_ghosts).
@@ -120,19 +122,19 @@ struct RankState {
     PredictionMail predictions;
     RankSleep sleep;
     RankShare share;
-    // keys of the pairs that released ties have enabled, as far as this rank knows (DisabledPairTable)
+    // keys (DisabledPairTable) of pairs that released ties have enabled, as far as this rank knows
     Column<std::uint64_t> enabled_pairs;
     LabelRounds label_rounds;
     Column<BodyRequest> requests;  // bodies that other ranks need to solve regions, found in the last attempt
-    Column<Index> stale;           // places of bodies of this rank whose copies on other ranks are outdated
-    RankFindings mine;   // findings of this rank in this attempt at a step; complete when reduce_findings runs
-    RankFindings all;    // combined findings of all ranks in this attempt at a step
-    bool stops = false;  // true if a callback of this rank has asked to end the present call of World::advance
+    Column<Index> stale;  // rows (of the undivided world) of own bodies whose copies on other ranks are outdated
+    RankFindings mine;    // findings of this rank in this attempt at a step; complete when reduce_findings runs
+    RankFindings all;     // combined findings of all ranks in this attempt at a step
+    bool stops = false;   // true if a callback of this rank has asked to end the present call of World::advance
 
     bool on() const { return ranks != nullptr; }
     bool owns(std::size_t body) const { return ranks == nullptr || owner[body] == rank; }
     Index place_of(Index row) const { return on() && row != no_index ? place[row] : row; }
-    /// Row of BodyTable of the body at a place of the undivided world; no_index if this rank does not hold it.
+    /// Row of BodyTable of the body in a row of the undivided world; no_index if this rank does not hold it.
     Index row_of(Index of_place) const { return on() ? row_of_place(place, of_place) : of_place; }
 };
 

@@ -12,7 +12,8 @@ namespace skerry {
 
 namespace {
 
-/// Columns by which bodies are named to other ranks.
+/// Columns that convert rows of this rank to the numbers that all ranks use, and that describe the bodies for the next
+/// step.
 struct NamedBodies {
     std::span<const Index> place;         // RankState
     std::span<const std::int32_t> owner;  // RankState
@@ -116,7 +117,8 @@ Index or_none(Index place) {
     return place == RankFindings::nobody ? no_index : place;
 }
 
-/// Replaces the findings of the stages by those of all ranks. Bodies are named by their place afterwards.
+/// Replaces the findings of the stages by those of all ranks. Bodies are named by their rows in the undivided world
+/// afterwards.
 void take_findings(const RankFindings& all, const StageFindings& found) {
     found.verdict = {.fault = all.fault,
                      .body = or_none(all.fault_body),
@@ -126,8 +128,8 @@ void take_findings(const RankFindings& all, const StageFindings& found) {
                      .fastest = {all.strain_rate, or_none(all.strained_body)}};
     if (all.fault == StepFault::not_finite) found.verdict.fastest = {};
     found.strained.unsolved = or_none(all.unsolved_body);
-    // A process that simulates the whole world tests for inversions and crossings only if no body has a fault, and
-    // tests for crossings only if no candidate list is too short.
+    // The findings must equal those of a process that simulates the whole world. It tests for inversions and crossings
+    // only if no body has a fault, and for crossings only if no candidate list is too short.
     const bool tested = all.fault == StepFault::none;
     found.inversions =
         tested ? Inversions{all.inversions, or_none(all.inverted_body), all.inverted_tetrahedron, all.inverts_first}

@@ -8,7 +8,7 @@ namespace skerry {
 
 namespace {
 
-/// Limits by the bodies that this rank owns. Model::of_ranks must have its initial value.
+/// Limits by the bodies that this rank owns. Model::of_ranks must have its initial value, which limits nothing.
 LimitsOfRanks limits_of_rank(const WorldState& world) {
     const Model& model = world.model;
     LimitsOfRanks limits;

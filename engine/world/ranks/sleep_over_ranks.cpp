@@ -47,8 +47,8 @@ void copy(std::span<const Row> from, Column<Row>& to) {
     std::ranges::copy(from, to.begin());
 }
 
-/// Lists the sleeping bodies with several holders that this rank wakes, apart from bodies that are joined to awake
-/// ones: all holders know these. Also notes whether such a body may fall asleep in this step.
+/// Lists the sleeping bodies with several holders that this rank wakes. Bodies that are joined to awake ones are left
+/// out, because all holders find them. Also notes whether a body with several holders may fall asleep in this step.
 void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                 std::span<const std::uint8_t> driven, const AttachmentTable& attachments, const SleepStep& step,
                 RankSleep& memory, RankFindings& mine) {
@@ -68,7 +68,7 @@ void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<
     mine.wakes = !memory.woken.empty();
 }
 
-/// Marks the bodies that other ranks wake in `pressed`.
+/// Marks in `pressed` the bodies that other ranks wake.
 void join_wakes(const HeldBodies& bodies, const RankSleep& memory, Column<std::uint8_t>& pressed,
                 RankChannel& channel) {
     pressed.resize(bodies.place.size(), 0);

@@ -98,7 +98,7 @@ bool is_of_collider(const Candidate& candidate, const BodyTable& bodies, Index a
     return inside(candidate.first, bodies.vertices[a]) && second < parts;
 }
 
-/// Complains about leaves that are not in the tree of the body. The first row is the root of the tree.
+/// Throws SceneError if a leaf is not in the tree of its body. The first row is the root of the tree.
 void check_leaf_pairs(const SavedFile& file, const Model& model, const PairTable& pairs, std::size_t p) {
     const Range tree = model.bodies.bvh_nodes[pairs.first[p]];
     const auto is_leaf = [&](Index row) {

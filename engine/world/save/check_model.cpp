@@ -225,7 +225,7 @@ void check_moved(const SavedFile& file, const Model& model) {
     expect_partition(file, "attachments/nodes", attachments.nodes, attachments.node.size());
     for (std::size_t a = 0; a < attachments.slot.size(); ++a) {
         const Mat3& held = attachments.held[a];
-        const Mat3 products = held.transpose() * held;  // of orthonormal or zero columns
+        const Mat3 products = held.transpose() * held;  // diagonal if the columns are orthonormal or zero
         const Vec3 lengths = products.diagonal();
         const bool unit = ((lengths.array() - 1).abs() < 1e-9 || lengths.array() == 0).all() && lengths.maxCoeff() > 0;
         if (!unit || !(products - Mat3(lengths.asDiagonal())).isZero(1e-9))

@@ -57,7 +57,8 @@ void expect_size(const SavedFile& file, std::string_view path, std::size_t found
 /// that contain lists may have any size.
 void expect_one_size(const SavedFile& file, const char* name, AnyTable table, std::size_t rows);
 
-/// Checks that offsets, at least one, ascend from 0 to the number of items. `of` ends the found value in the message.
+/// Checks that offsets, at least one, ascend from 0 to the number of items. `of`: text after the found value in the
+/// message.
 void expect_all_offsets(const SavedFile& file, const std::string& path, std::span<const Index> offset,
                         std::size_t items, const std::string& of = {});
 

@@ -79,7 +79,7 @@ void list_records(SavedRows& saved, Archive& archive) {
 
 void list_watch(StepWatch& watch, Archive& archive) {
     archive.value("watch/progress", watch);
-    archive.value("watch/look", watch.look);
+    archive.value("watch/look", watch.evaluation);
     archive.column("watch/position", watch.position);
     archive.column("watch/stiffness_sum", watch.stiffness_sum);
     archive.column("watch/step", watch.step);

@@ -38,7 +38,7 @@ private:
             add(path + "/" + member.name, *member.type, rows == 0 ? nullptr : first + member.offset, stride, rows);
     }
 
-    /// A file with this number could not be loaded.
+    /// Throws SceneError, because a file with this number could not be loaded.
     [[noreturn]] static void refuse(const std::string& path, const WrongReal& wrong) {
         skerry::refuse("save", path, at_row(wrong.found, wrong.row), "finite numbers",
                        "a position, a velocity or a load of the world is too large");

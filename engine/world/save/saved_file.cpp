@@ -23,7 +23,7 @@ constexpr std::string_view metadata = "__metadata__";
 // names of the number types in the header, in the order of NumberType
 constexpr std::array<std::string_view, 7> type_names{"F64", "F32", "I32", "U8", "U16", "U32", "U64"};
 
-/// Returns the start of the header. The checksum follows, so its place does not depend on the contents of the file.
+/// Returns the start of the header. The checksum follows, so its position does not depend on the contents of the file.
 const std::string& header_opening() {
     static const std::string text = "{\"" + std::string(metadata) + "\":{\"format\":\"" + std::string(file_title) +
                                     std::to_string(world_file_version) + "\",\"checksum\":\"";

@@ -71,7 +71,7 @@ inline constexpr std::size_t start_bytes = 512;
 void require_file_start(const std::string& name, std::span<const std::byte> start, std::uint64_t size);
 
 /// Throws SceneError about a file that is not a saved world of the present version. If `expected` is empty, the message
-/// describes such a file.
+/// names a saved world of the present version as the expected file.
 [[noreturn]] void refuse_file(const std::string& name, const std::string& found, const std::string& hint,
                               const std::string& expected = {});
 

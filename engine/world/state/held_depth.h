@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Largest overlap of surfaces whose nodes no contact can move, because attachments or scripts lead them.
+/// Largest overlap of surfaces whose nodes no contact can move, because attachments or scripts prescribe their motion.
 struct HeldDepth {
     static constexpr std::uint64_t no_pair = ~std::uint64_t{0};
 

@@ -86,7 +86,7 @@ struct BodyRecord {
     // NodeTable::rest_position contains the frozen shape. For all other bodies the list is empty.
     std::vector<Vec3> mesh_shape{};
     GivenMass given_mass = GivenMass::none;
-    DynamicsEstimate choice{};  // estimate behind the choice, for a body added as `automatic`
+    DynamicsEstimate choice{};  // estimate that decided the choice, for a body added as `automatic`
     FieldCache fields{};
 };
 
@@ -106,11 +106,11 @@ struct NamedHandles : HandleMap<HandleType> {
 /// (reduce_limits). Without ranks it limits nothing.
 struct LimitsOfRanks {
     Real stable_step = infinity;   // shortest stable step [s]
-    Index stiffest = no_index;     // place of the body with this stable step: its row in the undivided world
+    Index stiffest = no_index;     // row in the undivided world of the body with this stable step
     bool strained = false;         // true if strain has shortened this stable step (is_strained)
     Real rest_step = infinity;     // shortest stable step at rest of a body with elements [s]
     Real spin = 0;                 // greatest angular speed of a body with a joint or tie [rad/s]
-    Index spinning = no_index;     // place of the body with this speed
+    Index spinning = no_index;     // row in the undivided world of the body with this speed
     bool has_frames = false;       // true if some body is rigid or implicit
     bool has_implicit = false;     // true if some body is implicit
     bool has_clusters = false;     // true if some body has clusters
@@ -243,7 +243,7 @@ struct Model {
         ColliderGeometry geometry;
         RigidMotion motion;  // without velocities
     };
-    /// Returns nullopt for a body that has faces, so that it is not round.
+    /// Returns the shape of a round body; nullopt for a body that has faces.
     std::optional<RoundShape> round_shape(std::size_t body) const;
     /// Name of the shape of a round body: "sphere", "capsule" or "cylinder".
     const char* round_name(std::size_t body) const;

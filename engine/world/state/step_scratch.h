@@ -153,7 +153,7 @@ struct StepScratch {
     ForceScratch forces;
     HeldRows held_rows;
     Column<Vec3> axis_impulse;         // impulses that hold nodes along single directions, by held node [N s]
-    Column<Real> stiffness_sum;        // one entry per node; working memory of stable_step
+    Column<Real> stiffness_sum;        // one entry per node; written by stable_step, read by find_mass_shares too
     Column<std::uint8_t> beside_fast;  // one entry per node; working memory of check_state
     Column<Vec3> cluster_kick;         // used by kick_clusters
     Column<Real> cluster_work;         // used by kick_clusters

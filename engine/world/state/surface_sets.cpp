@@ -1,4 +1,4 @@
-// Which surface features belong to which surface set (components/surface_rules.h).
+// Assignment of surface features to surface sets (components/surface_rules.h).
 #include <algorithm>
 
 #include "engine/mesh/sets.h"
@@ -56,7 +56,8 @@ private:
     Index set_;
     SetOfFeature& of_;
     std::size_t body_;
-    std::vector<bool> listed_, in_set_;  // by local node: named as a node; part of the set
+    // by local node: `listed_`: the set lists the node itself; `in_set_`: the node belongs to the set
+    std::vector<bool> listed_, in_set_;
 };
 
 }  // namespace

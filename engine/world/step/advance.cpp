@@ -83,7 +83,8 @@ void blame(const WorldState& world, StepReport& report) {
     report.body_name = name;
     report.node = verdict.node;
     report.element = verdict.tetrahedron;
-    if (world.ranks.on()) return;  // the findings of all ranks count nodes and elements within the body
+    // with ranks, the node and element numbers of the findings are already local to the body
+    if (world.ranks.on()) return;
     const auto b = static_cast<std::size_t>(verdict.body);
     if (verdict.node != no_index) report.node -= world.model.bodies.nodes[b].begin;
     if (verdict.tetrahedron != no_index) report.element = world.model.user_tetrahedron(b, verdict.tetrahedron);
@@ -193,9 +194,9 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.place_of(row);
 }
 
-/// Exchanges bodies with other ranks after an attempt that lacked some of them. Returns true if the next attempt then
-/// computes the forces anew, because new ghosts have none. It must find the clusters as the abandoned attempt has found
-/// them: the forces contain the impulses of clusters that become stiffer.
+/// Exchanges bodies with other ranks after an attempt that lacked some of them. Returns true if the next attempt must
+/// compute the forces anew, because new ghosts have none. The assumed stiffness of clusters is then restored: the next
+/// attempt must stiffen the same clusters again, so that its forces contain the impulses of this change.
 bool fetch_ghosts(WorldState& world) {
     if (!world.ranks.all.bodies_missing && !world.ranks.all.ghosts_expired) return false;
     world.transaction.restore_stiffness(world.model);
@@ -394,9 +395,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     return report;
 }
 
-void World::watch_steps(std::function<void(const StepReport&)> look) {
+void World::watch_steps(std::function<void(const StepReport&)> observe) {
     state_->require_between_steps("watch_steps");
-    state_->record.step_watch = std::move(look);
+    state_->record.step_watch = std::move(observe);
 }
 
 }  // namespace skerry

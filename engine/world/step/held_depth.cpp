@@ -21,7 +21,7 @@ bool has_held_nodes(const Model& model, Index body) {
     return model.bodies.pinned_count[static_cast<std::size_t>(body)] > 0;
 }
 
-/// True if an attachment of the body moves in this step.
+/// True if an attachment moves nodes of the body in this step.
 bool is_led(const Model& model, Index body) {
     for (std::size_t a = 0; a < model.attachments.slot.size(); ++a)
         if (model.attachments.body[a] == body && !model.attachments.motion[a].stands_still()) return true;

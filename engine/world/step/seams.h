@@ -37,11 +37,12 @@ struct ForceElement {
     // act as at the start of the step, and limit the stable step too.
     void (*add_drag)(const Model&, std::span<Real> of_body) = nullptr;
     ListStages mark_driven = nullptr;  // marks bodies that a change over time keeps awake, in StepScratch::driven
-    // Whether the forces change in the step of length `h` that starts at time `t` although no body moves.
+    // Returns true if the forces change in the step of length `h` that starts at time `t` although no body moves.
     bool (*is_driven)(const Model&, Real t, Real h) = nullptr;
     ListStages measure = nullptr;   // measures work and losses, which the balance then no longer counts as external
     ListStages remember = nullptr;  // stores results for the next step, if the step can be committed
-    // Stored energy at the time `t`, in the sense of spring_energy (systems/forces/springs.h) [J].
+    // Stored energy at the time `t`, corrected for the lag of velocities like spring_energy (systems/forces/springs.h)
+    // [J].
     Real (*energy)(const Model&, Real t, Real lag) = nullptr;
 };
 

@@ -217,7 +217,8 @@ struct PiecesAtPlace {
     std::uint32_t pieces;
 };
 
-/// Numbers of pieces of all bodies of the undivided world before each place, and the number of all pieces.
+/// For each row of the undivided world: number of pieces of the checks of all bodies before it. Also the number of all
+/// pieces.
 void gather_pieces(const Model& model, RankState& ranks) {
     std::vector<PiecesAtPlace> mine;
     const ElementInputs elements = model.all_elements();

@@ -17,7 +17,8 @@ void list_step_again(WorldState& world);
 /// Counters of a step alone, after the solve. Sums of energy are zero. `unstrained`: see StepFindings.
 RunCounters count_step(const ContactTable& contacts, const RegionTable& regions, const ContactMeasures& measures,
                        const NewtonCounts& newton, Index unstrained);
-/// Adds the sums of `from` to those of `into`, except for sums of energy, and takes over maxima.
+/// Adds the sums of `from` to those of `into`, except for sums of energy. Each maximum in `into` becomes the
+/// greater of both maxima.
 void add_counters(const RunCounters& from, RunCounters& into);
 /// Adds a committed step to the counters of the run.
 void count_committed_step(const RunCounters& step, RunCounters& run);
@@ -31,10 +32,10 @@ struct NamedBody {
     BodyHandle body{};  // a stale handle for a mesh collider
     std::string name;
 };
-/// Returns the handle and name of the body at a place of the undivided world, which this rank may not hold. Without
-/// ranks the place is the row in BodyTable.
+/// Returns the handle and name of the body in a row of the undivided world, which this rank may not hold. Without ranks
+/// the place is the row in BodyTable.
 NamedBody name_body(const WorldState& world, Index place);
-/// Place of the body with the shortest stable step. `row`: result of stable_step.
+/// Row in the undivided world of the body with the shortest stable step. `row`: result of stable_step.
 Index place_of_stiffest(const WorldState& world, Index row);
 
 // ranks/lead_ghosts.cpp

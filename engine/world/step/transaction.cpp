@@ -48,7 +48,7 @@ constexpr Real fast_growth = 1.5;
 /// Fraction of the allowed strain change for which the next step is planned, because the next step may deform elements
 /// faster than the present one. This margin usually suffices.
 constexpr Real strain_margin = 0.9;
-/// If a step deforms an element too fast, the length of its repetition lies between these two fractions of its length.
+/// A step that deforms an element too fast is repeated with a length between these two fractions of its length.
 constexpr Real least_at_once = 0.9, most_at_once = 0.25;
 
 void copy(std::span<const Real> from, Column<Real>& to) {
@@ -132,7 +132,8 @@ void keep_frames(WorldState& world) {
         elements.spring_strain.swap(elements.spring_strain_next);
         return;
     }
-    // The elements that the stages of this step computed. Bodies that fall asleep or wake count from the next step on.
+    // Applies to the elements that the stages of this step computed. Bodies that fall asleep or wake count from the
+    // next step on.
     keep_memory(*world.executor, world.model.awake_elements(), elements);
 }
 

@@ -45,14 +45,14 @@ struct AttemptLimits {
     // bound grows in each committed step.
     Real longest = infinity;
     Real slow_enough = infinity;   // upper bound by the rate of deformation and the rotation of joints [s]
-    Index fastest = no_index;      // body that causes this bound, by its place in the undivided world
+    Index fastest = no_index;      // row in the undivided world of the body that causes this bound
     int with_longer_lists = 0;     // number of attempts at this step whose contact lists were incomplete
     int with_crossings = 0;        // number of attempts with this step length in which features crossed
     bool over_ranks = false;       // true after an attempt at this step that all ranks have abandoned together
     bool letting_through = false;  // true if the next attempt is the last, which accepts crossings and inversions
     // Cause of the bound `longest`: the last cause for which an attempt was shortened, apart from speed.
     StepLimit limit = StepLimit::inversion;
-    Index body = no_index;  // body that caused the bound `longest`, by its place in the undivided world
+    Index body = no_index;  // row in the undivided world of the body that caused the bound `longest`
 
     Real at_most() const { return std::min(longest, slow_enough); }
 };

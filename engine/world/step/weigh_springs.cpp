@@ -58,8 +58,8 @@ Real inverse_mass_of_frame(const Model& model, const AnchorInputs& anchors, std:
 }  // namespace
 
 // A spring of stiffness k between anchors with the inverse masses u and v, on two bodies, adds a matrix to the squared
-// frequencies whose blocks have the norms k u, k sqrt(u v) and k v. By the block form of Gershgorin's theorem the
-// largest squared frequency grows by at most the largest sum of norms in a row.
+// frequencies whose blocks have the norms k u, k sqrt(u v) and k v. The block form of Gershgorin's theorem shows
+// that the largest squared frequency grows by at most the largest sum of norms in a row.
 void add_spring_rates(Model& model, std::span<Real> of_body) {
     const SpringInputs springs = springs_of(model);
     for (std::size_t s = 0; s < springs.size(); ++s) {
@@ -73,7 +73,8 @@ void add_spring_rates(Model& model, std::span<Real> of_body) {
     }
 }
 
-// If each mass is divided among the dampers that act on it, a damper reduces a velocity at most by its own factor.
+// Raises the bound of each body to the largest rate of its dampers. The rates are not summed, because each mass is
+// divided among the dampers that act on it.
 void bound_spring_damping(const Model& model, std::span<Real> of_body) {
     const SpringInputs springs = springs_of(model);
     const auto divided = [&](const AnchorMass& mass, const AnchorInputs& anchors, std::size_t s) {

@@ -126,7 +126,8 @@ public:
     }
 
 private:
-    // Test parameters are placed at this distance on both sides of a predicted position, so that they enclose it.
+    // Test parameters are placed at this distance on both sides of a predicted position. If they enclose the position,
+    // the interval is shorter than place_tolerance, and the search ends.
     static constexpr Real least_step = 0.45 * place_tolerance;
 
     /// Evaluates the derivative at `s` and shrinks the interval. Does nothing if `s` is outside of the interval.
@@ -202,7 +203,7 @@ private:
         }
     }
     /// add_before and add_behind add a second contact point, at least shortest_stretch before or behind the point
-    /// `other`. They add none if the distance is too steep at all these places. One evaluation shows this, because the
+    /// `other`. They add none if the distance is too steep at all points there. One evaluation shows this, because the
     /// derivative increases along the edge.
     void add_before(Real other) {
         const Real last = other - shortest_stretch;

@@ -157,8 +157,8 @@ std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, co
     if (!contains(body.solid, point - body.shift, 0)) return PointsInside({geometry, motion, body}, tolerance).find();
     Vec3 way = to_surface(body.solid, point - body.shift);
     const Real length = way.norm();
-    // The body moves in the direction from its nearest surface point to the collider. The distance takes it past the
-    // far side of the collider.
+    // The body moves in the direction from its nearest surface point to the collider. The distance takes the body past
+    // the far side of the collider.
     return Overlap{OverlapKind::around, length + collider_radius(geometry),
                    length > 0 ? Vec3(-way / length) : Vec3(Vec3::UnitZ()), point};
 }

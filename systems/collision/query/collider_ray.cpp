@@ -121,7 +121,7 @@ std::optional<ShapePoint> cast_ray(const ColliderGeometry& geometry, const Rigid
             add_bucket(size[0], size[1], size[2], pieces);
             break;
         case ColliderShape::mesh:
-            SKERRY_CHECK(false);  // triangles are used to intersect a ray with a mesh
+            SKERRY_CHECK(false);  // the triangles of a mesh are tested instead (surface_query.h)
             break;
     }
     if (!pieces.nearest()) return std::nullopt;

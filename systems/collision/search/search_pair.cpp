@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "components/ask_for_lines.h"
 #include "components/node_block_table.h"
+#include "components/prefetch_lines.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/narrow/candidate_lanes.h"
 #include "systems/collision/narrow/rest_distance.h"
@@ -26,7 +26,7 @@ constexpr std::size_t kept_leaves = 16, kept_leaves_of_self = 128;
 template <class Features, std::size_t Count>
 using KeptLeaves = std::array<Features, Count>;
 
-/// Cached features of the leaves of one tree. The row of a leaf determines its place.
+/// Cached features of the leaves of one tree. The row of a leaf determines its position in the cache.
 template <std::size_t Count>
 struct KeptFeatures {
     KeptLeaves<LeafPoints, Count> points;
@@ -105,9 +105,9 @@ private:
         constexpr std::size_t owned_edges = 12, owned_points = 4;
         const LeafFeatures& features = inputs_.leaf_features[node(a).leaf];
         const LeafNodes& nodes = inputs_.leaf_nodes[node(a).leaf];
-        ask_for_lines(features.edge.data(), owned_edges);
-        ask_for_lines(features.point.data(), owned_points);
-        ask_for_lines(nodes.corner.data(), nodes.corner.size());
+        prefetch_lines(features.edge.data(), owned_edges);
+        prefetch_lines(features.point.data(), owned_points);
+        prefetch_lines(nodes.corner.data(), nodes.corner.size());
     }
 
     const LeafTriangles& leaf_triangle(Index a) const { return inputs_.leaf_triangle[node(a).leaf]; }
@@ -190,7 +190,8 @@ private:
                 });
     }
 
-    /// Compares a point with the triangles of a leaf.
+    /// Puts the pairs of a point and the near triangles of a leaf into the queue, in which their distances are
+    /// computed.
     void compare_point(Index n, Index vertex, Index other, bool of_second) {
         const LeafBoxes& boxes =
             of_second ? features_of(other, first_.boxes).box : features_of(other, second_.boxes).box;

@@ -99,7 +99,8 @@ void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool 
 Real least_spare(std::span<const LeafPair> pairs);
 
 /// True if the nodes move so nearly at their present velocities that the motion of the step is within the reach R of
-/// all pairs of leaves. R exceeds the relative motion at constant velocities by at least the reach at zero speed.
+/// all pairs of leaves. R exceeds the relative motion at constant velocities by at least the reach at zero speed, so
+/// each node may deviate by half of that reach.
 bool moves_as_expected(const SelfMotion& motion, const StepMotion& step);
 
 /// True if features that are not in the candidate list of the body with itself cannot meet during the motion of the

@@ -21,8 +21,8 @@ BodyReach body_reach(const CollisionInputs& inputs, const CollisionSettings& set
 /// Distance by which the relative motion of the two bodies' frames may close a gap in this step [m].
 Real frame_reach(const CollisionInputs& inputs, Index first, Index second, Real h);
 
-/// Distance by which a collider may close a gap in this step [m]. `extent`: distance from its origin to its furthest
-/// point that may touch a body [m].
+/// Distance by which a collider may close a gap in this step [m]. `extent`: distance from the origin of the collider to
+/// its furthest point that may touch a body [m].
 Real collider_reach(const CollisionInputs& inputs, Index collider, Real extent, Real h);
 
 }  // namespace skerry

@@ -43,7 +43,8 @@ struct CheckInputs {
     std::span<const Real> body_min_altitude;
     std::span<const Vec3> velocity;  // velocity at the start of the step [m/s]
     std::span<const Vec3> velocity_next;
-    // Velocity by which contacts move positions only; empty if no contact does so [m/s]
+    // Velocity with which contacts push nodes out of overlaps, which changes only positions; empty if none does so
+    // [m/s]
     std::span<const Vec3> push_out;
     std::span<const Vec3> rest_position = {};                 // m
     std::span<const TetrahedronNodes> tetrahedron_node = {};  // TetrahedronBlockTable
@@ -51,7 +52,8 @@ struct CheckInputs {
     // Factor on max_strain_step; empty means 1 for all tetrahedra.
     std::span<const ElementLane> tetrahedron_leeway = {};
     std::span<const Range> body_blocks = {};  // tetrahedra, from BodyTable; if empty, check_state tests node speeds
-    // ElementBlockTable and ElementNodeTable. If empty, the tetrahedra are the elements.
+    // The next two spans are columns of ElementBlockTable and ElementNodeTable. If they are empty, the tetrahedra are
+    // the elements.
     std::span<const Range> body_element_blocks = {};
     std::span<const Index> element_first = {}, element_count = {};
     std::span<const NodeLane> element_node = {};
@@ -60,7 +62,7 @@ struct CheckInputs {
     std::span<const ElementPart> element_part = {};  // empty if no element is an inversion barrier
     // column of BodyTable; empty if the frames of all bodies are at rest
     std::span<const MovingFrame> body_frame = {};
-    GhostMarks ghosts = {};  // the deformation rates of their elements are not checked
+    GhostMarks ghosts = {};  // ghosts, for which deformation rates are not checked
 
     /// `pushed`: true if a contact pushes nodes out of penetration in this step.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "components/ask_for_lines.h"
 #include "components/check.h"
+#include "components/prefetch_lines.h"
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/geometry/lane_mask.h"
@@ -17,8 +17,8 @@ namespace {
 // Greatest number of blocks in a part of a body. Several small bodies share a job, up to this number of blocks.
 constexpr Index blocks_per_part = 256;
 
-// A block with narrow tetrahedra computes its width (the least width of a tetrahedron) once in this number of checks,
-// because this takes half of the time of a check.
+// A block with narrow tetrahedra computes its width (the least width of a tetrahedron) only once in this number of
+// checks, because the width takes half of the time of a check.
 constexpr std::uint8_t checks_at_narrow = 8;
 
 // Number of blocks whose travel budgets (distances that need no check) are compared together, without a branch for each
@@ -82,8 +82,8 @@ struct Body {
             for (std::size_t i = b; i < stop; ++i) {
                 if (travel_bound < uninverted_until[i]) continue;
                 due[due_count++] = i;
-                ask_for_lines(&inputs.tetrahedron_node[i], 1);
-                ask_for_lines(&inputs.tetrahedron_volume[i], 1);
+                prefetch_lines(&inputs.tetrahedron_node[i], 1);
+                prefetch_lines(&inputs.tetrahedron_volume[i], 1);
             }
         });
         for (std::size_t k = 0; k < due_count; ++k)
@@ -156,7 +156,7 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
                 InversionMemory& memory) {
     memory.part.clear();
     memory.job.clear();
-    // This capacity is enough for any later step, whichever bodies will be checked.
+    // With this capacity later steps allocate nothing, whichever bodies they check.
     const std::size_t most = inputs.tetrahedron_node.size() / blocks_per_part + inputs.body_blocks.size();
     memory.part.reserve(most);
     memory.job.reserve(most + 1);

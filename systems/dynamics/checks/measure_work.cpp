@@ -15,7 +15,8 @@ void add_load(const WorkInputs& nodes, std::size_t n, Real h, Real kick, Real la
         sum.work += lag * (nodes.load[n] - nodes.load_before[n]).dot(nodes.velocity[n]);
 }
 
-/// Adds the force that holds a node completely. Nodes with a mass are held along single directions, see hold_axes.
+/// Adds impulse and work of the force that holds a node completely. For nodes held along single directions see
+/// hold_axes.
 void add_hold(const WorkInputs& nodes, std::size_t n, Real h, Real kick, ExternalWork& sum) {
     const Vec3 &force = nodes.force[n], &velocity = nodes.velocity_next[n];
     sum.impulse -= kick * force;

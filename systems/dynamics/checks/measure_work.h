@@ -62,8 +62,8 @@ struct WorkInputs {
 ///
 /// A force F has the impulse kick F, with the force interval `kick` [s]. A constant force does the work h F .
 /// velocity_next, since h velocity_next is the displacement in symplectic Euler. If a force has changed by dF since the
-/// last step, its work on a free node is greater by lag dF . velocity, because each force acts over half of the step
-/// before and half of the step after. `lag`: half of the step before [s]. With leapfrog `lag` is 0, and the
+/// last step, its work on a free node is greater by lag dF . velocity, because each force acts over half of the
+/// previous step and half of this step. `lag`: half of the previous step [s]. With leapfrog `lag` is 0, and the
 /// displacement of a free node during the force interval is that with the mean of both velocities. The work of a
 /// holding force is computed with the step length `h` [s] where it balances weight and loads, and with `kick` where it
 /// balances element forces.

@@ -10,7 +10,8 @@ namespace skerry {
 
 /// Statistics of the ratio of present volume to rest volume, over some tetrahedra or elements. `smallest`: the smallest
 /// ratio; NaN counts as the smallest. `item`: the tetrahedron or element with the smallest ratio, in lane i % 8 of
-/// block i / 8. `near_inversion`: number of ratios below 0.1 or another limit. `inverted`: number of ratios below 0.
+/// block i / 8. `near_inversion`: number of ratios below a limit (0.1 unless another one is given). `inverted`: number
+/// of ratios below 0.
 struct VolumeRatios {
     Real smallest;
     Index item;

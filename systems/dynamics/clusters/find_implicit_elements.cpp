@@ -257,7 +257,8 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
     std::ranges::fill(out_.modulus, ElementLane{});
     least_need_ = 1;
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
-        // The element would be unstable even with the full masses of its nodes.
+        // An element that would be unstable even with the full masses of its nodes gets no mass share, which makes it
+        // implicit.
         if (need(b, l, goal.stable) > 1) share(b, l) = 0;
     });
     ImplicitShare found = add_implicit(goal);

@@ -112,7 +112,7 @@ private:
     std::span<Real> stiffness_sum_;
     ImplicitOutputs out_;
     ElementBounds bounds_;
-    std::vector<Index> nodes_;  // of the elements
+    std::vector<Index> nodes_;  // nodes of the elements
     Real least_moment_;         // kg m^2
     Index first_node_ = 0;
     std::vector<Hold> holds_;

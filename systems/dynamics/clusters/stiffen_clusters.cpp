@@ -16,7 +16,8 @@ namespace skerry {
 
 namespace {
 
-// Fraction of the assumed modulus; elements whose stiffness exceeds it get a new assumed modulus.
+// Fraction of the assumed modulus. If the stiffness of an element exceeds it, the assumed modulus is raised, before the
+// stiffness grows beyond the assumed modulus.
 constexpr Real too_near = 0.9;
 constexpr Real raised_to = 2;  // ratio of the new assumed modulus to the present stiffness
 

@@ -19,7 +19,7 @@ struct StiffenInputs {
     std::span<const std::uint8_t> body_asleep;
     std::span<const Vec3> position, velocity;
     std::span<const Real> inverse_mass;
-    GhostMarks ghosts = {};  // their elements are stiffened, but the energy leaves them out
+    GhostMarks ghosts = {};  // ghosts, whose elements are stiffened but do not count in the energy
 
     static StiffenInputs bind(const Binder& binder, const BodyTable& body, const NodeTable& node) {
         return {.body_blocks = binder.read(body.blocks),

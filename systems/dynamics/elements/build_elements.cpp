@@ -307,7 +307,7 @@ void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNod
         const auto first_row = static_cast<std::size_t>(blocks.first[begin]);
         const auto end_row = static_cast<std::size_t>(blocks.first[end - 1] + blocks.count[end - 1]);
         for (std::size_t b = begin; b < end; ++b) SKERRY_CHECK(blocks.body[b] == blocks.body[begin]);
-        // The nodes of a patch are sorted, since the kernel fetches their positions from memory.
+        // The nodes of a patch are sorted, so that the kernel reads their positions in the order of memory.
         for (std::size_t row = first_row; row < end_row; ++row)
             for (const Index n : nodes.node[row].lane)
                 if (Index& slot = slot_of(n); slot == no_index) {

@@ -4,9 +4,9 @@
 #include <array>
 #include <numeric>
 
-#include "components/ask_for_lines.h"
 #include "components/check.h"
 #include "components/flush_subnormals.h"
+#include "components/prefetch_lines.h"
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/dynamics/elements/idle_guards.h"
@@ -36,7 +36,7 @@ struct Run {
     MaxwellStep maxwell;
     PatchRows<const Real> position;  // positions of the nodes of the patch [m]
     PatchRows<Real> force;           // forces on the nodes of the patch [N]
-    std::span<const Vec3> velocity;  // of all nodes
+    std::span<const Vec3> velocity;  // velocities of all nodes [m/s]
     std::span<const ElementRotation> rotation;
     const ElementMemory& next;
     const PatchForces& patches;
@@ -50,9 +50,9 @@ struct Run {
     /// Prefetches a later row of nodes, which may belong to another patch. Processors do not recognise that these rows
     /// are consecutive, because other loads lie between them. The distance is constant, because a loop over the rows of
     /// a later block takes more instructions than its prefetches.
-    [[gnu::always_inline]] static void ask_for_row_ahead_of(const BlockNodes& nodes, Index k) {
-        ask_for_lines_ahead(nodes.gradient + k, rows_ahead, 1);
-        ask_for_lines_ahead(nodes.node + k, rows_ahead, 1);
+    [[gnu::always_inline]] static void prefetch_row_ahead_of(const BlockNodes& nodes, Index k) {
+        prefetch_lines_ahead(nodes.gradient + k, rows_ahead, 1);
+        prefetch_lines_ahead(nodes.node + k, rows_ahead, 1);
     }
 
     template <class T>
@@ -272,7 +272,7 @@ struct Run {
     [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) const {
         const BlockNodes nodes = nodes_of(block);
         const auto take = [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) __attribute__((always_inline)) {
-            if (part == 0) ask_for_row_ahead_of(nodes, k);
+            if (part == 0) prefetch_row_ahead_of(nodes, k);
             add_lanes(f, nodes.node[k].lane + lanes_of<KernelReal> * part, force);
         };
         for_each_force(Q, nodes, take);

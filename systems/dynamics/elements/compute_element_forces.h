@@ -39,7 +39,7 @@ struct ElementInputs {
     std::span<const ElementLane> implicit_modulus = {};
     std::span<const FrameMass> frame_mass = {};
     std::span<const Real> frame_bound = {};  // empty if no body has frame masses [1/s^2]
-    GhostMarks ghosts = {};                  // their elements are computed, but sums of energy leave them out
+    GhostMarks ghosts = {};                  // ghosts, whose elements are computed but do not count in sums of energy
 
     std::size_t blocks() const { return first.size(); }
     BlockNodes nodes_of(std::size_t block) const {

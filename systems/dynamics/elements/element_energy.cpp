@@ -48,7 +48,7 @@ LaneMat3<Real8> cauchy_stress_of(const Real8& volume, const LaneMat3<Real8>& F, 
     constexpr Real least_volume_ratio = 1e-6;
     const Real8 J = determinant(F), size = J < 0.0 ? -J : J, zero{};
     const Real8 ratio = size > least_volume_ratio ? size : zero + least_volume_ratio;
-    // The stress in lanes without volume may not be finite.
+    // The stress in lanes without volume may not be finite, so it is replaced by zero.
     const auto column = [&](const Real8& x, const Real8& y, const Real8& z) -> LaneVec3<Real8> {
         const LaneVec3<Real8> sum = x * P.c0 + y * P.c1 + z * P.c2;
         return {volume > 0.0 ? sum.x / ratio : zero, volume > 0.0 ? sum.y / ratio : zero,

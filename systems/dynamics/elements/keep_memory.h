@@ -1,4 +1,5 @@
-// Updates the memory of the elements (rotation, spring strains) after a committed step with sleeping bodies.
+// Updates the memory of the elements (rotation, spring strains) after a committed step with sleeping bodies. In other
+// steps the columns are swapped instead.
 #pragma once
 
 #include <span>

@@ -15,7 +15,7 @@ namespace skerry {
 /// Lists of the tetrahedra that each element of a body covers, lane by lane of the body's blocks, including unused
 /// lanes. Tetrahedra are numbered within the body.
 struct ElementCover {
-    std::span<const ElementPart> part;  // of each block
+    std::span<const ElementPart> part;  // by block: part of the stress of its elements
     RaggedView<Index> tetrahedra;       // tetrahedra that the element of each lane covers
 };
 

@@ -178,19 +178,19 @@ bool StiffBody::is_beyond(const Displacements& displacement, const Vec3& angular
 bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
     if (!elements_.any_bends()) return false;
     if (energy_of_spin(angular_momentum) > stretching_spin_) return true;
-    if (!looked_at_.empty()) {
+    if (!evaluated_at_.empty()) {
         Real way = 0;  // largest squared change of a node's displacement since the last evaluation [m^2]
         for (std::size_t k = 0; k < displacement.size(); ++k)
-            way = std::max(way, (displacement[k] - looked_at_[k]).squaredNorm());
-        if (way == 0 && angular_momentum == looked_with_) return large_there_;
+            way = std::max(way, (displacement[k] - evaluated_at_[k]).squaredNorm());
+        if (way == 0 && angular_momentum == evaluated_with_) return large_there_;
         constexpr Real surely = 1 - 1e-9;  // margin for rounding errors
         if (strain_there_ + elements_.strain_by_displacement() * std::sqrt(way) < surely * small_strain) return false;
     }
-    looked_at_.assign(displacement.begin(), displacement.end());
-    looked_with_ = angular_momentum;
+    evaluated_at_.assign(displacement.begin(), displacement.end());
+    evaluated_with_ = angular_momentum;
     strain_there_ = elements_.largest_strain(displacement);
     large_there_ = is_beyond(displacement, angular_momentum);
-    if (!std::isfinite(strain_there_)) looked_at_.clear();
+    if (!std::isfinite(strain_there_)) evaluated_at_.clear();
     return large_there_;
 }
 

@@ -140,8 +140,8 @@ public:
     /// Sets the shape by its displacements. respond() then removes the rigid-body motion of this shape from the
     /// velocities, if its matrix is a tangent.
     void stand_in(const Displacements& displacement);
-    /// Removes momentum and angular momentum, in the shape of stand_in(), from node velocities, by position in the
-    /// elimination order [m/s].
+    /// Removes momentum and angular momentum from node velocities, for the shape that stand_in() has set. `velocity`:
+    /// by position in the elimination order [m/s].
     void take_momenta(std::span<Vec3> velocity) const { take_momenta_of(velocity); }
     const BodyShape& shape() const { return shape_; }
     /// Rotates displacements (by node) into the frame in which they contain no rigid rotation
@@ -193,8 +193,8 @@ private:
     void find_responses();
     void forget_factor();
     void forget_columns();
-    /// True if the differences of element energies or the spin exceed the bounds of becomes_large() times `part`. Does
-    /// not test the strain |F - 1|.
+    /// True if the energies or the spin are inaccurate as defined at becomes_large(), with its bounds multiplied by
+    /// `part`. Does not test the strain |F - 1|.
     bool is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part);
     /// Energy of the spin for an angular momentum, with the inertia at rest [J].
     Real energy_of_spin(const Vec3& angular_momentum) const {
@@ -235,10 +235,10 @@ private:
     std::vector<Mat3> shifts_, turns_;
     // Inverse of the matrix of total momenta and angular momenta of shifts_ and turns_.
     Eigen::Matrix<Real, 6, 6> rigid_inverse_;
-    // Inputs and results of the last evaluation in becomes_large_in_places(). looked_at_ is empty before the first
+    // Inputs and results of the last evaluation in becomes_large_in_places(). evaluated_at_ is empty before the first
     // evaluation.
-    std::vector<Vec3> looked_at_;      // displacements at the last evaluation, by position in the elimination order [m]
-    Vec3 looked_with_ = Vec3::Zero();  // angular momentum at the last evaluation [kg m^2/s]
+    std::vector<Vec3> evaluated_at_;  // displacements at the last evaluation, by position in the elimination order [m]
+    Vec3 evaluated_with_ = Vec3::Zero();  // angular momentum at the last evaluation [kg m^2/s]
     Real strain_there_ = 0;
     bool large_there_ = false;
     // For each node of the body: slot in `columns_` with the column of the node, or no_index.

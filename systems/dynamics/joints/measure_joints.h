@@ -18,7 +18,7 @@ struct JointMeasures {
 /// Joint blocks, and rigid bodies by row of RigidBodyTable, after the contact solve.
 struct JointWorkInputs {
     std::span<const JointBlock> block;
-    std::span<const Vec3> impulse;  // of the blocks
+    std::span<const Vec3> impulse;  // by joint block
     std::span<const Real> mass;
     std::span<const Vec3> center, momentum, angular_momentum;
     std::span<const Mat3> inverse_inertia;

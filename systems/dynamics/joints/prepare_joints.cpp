@@ -47,10 +47,11 @@ AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, const
     return axis;
 }
 
-/// Vector from the point of joint `j` to the point of its equations, along the axes of the second frame [m]. Bodies
-/// that cannot rotate relative to each other have the same relative velocity everywhere, those of a hinge along its
-/// axis, so the equations may use any of these points. They use the one next to the centre of mass, which couples the
-/// equations of velocity and spin least. The centres of two moving bodies are weighted by their inverse inertia.
+/// Vector from the point of joint `j` to the point of its equations, along the axes of the second frame [m]. Two bodies
+/// that cannot rotate relative to each other have the same relative velocity at all points, and two bodies on a hinge
+/// at all points of its axis, so the equations may use any of these points. They use the one next to the centre of
+/// mass, which couples the equations of velocity and spin least. The centres of two moving bodies are weighted by their
+/// inverse inertia.
 Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPlace& first, const JointPlace& second) {
     if (joints.kind[j] == JointKind::ball) return Vec3::Zero();
     Vec3 sum = Vec3::Zero();

@@ -56,9 +56,9 @@ struct DampingInputs {
 ///
 /// Damps every body with damping > 0 that is not idle, not in unstrained flight and not in RigidBodyTable. A body with
 /// pinned nodes is damped towards zero velocity. For any other body v_rigid is the rigid motion with the momentum and
-/// angular momentum of the body, at the node positions of the time `lag` ago. So a body that rotates with constant
-/// centrifugal stretch has no deformation velocity. Angular momentum is taken about the present positions, where the
-/// removed velocity then has none.
+/// angular momentum of the body, at the node positions of the time `lag` ago, to which the velocities belong. So a body
+/// that rotates with constant centrifugal stretch has no deformation velocity. Angular momentum is taken about the
+/// present positions, where the removed velocity then has none.
 ///
 /// Returns false if no body has damping (skipped). Parallel over node blocks; sums in block order.
 bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real kick,

@@ -38,7 +38,7 @@ void for_each_node(const Stencil& stencil, auto&& visit) {
 /// True if the contact touches a held node, and motion of its nodes across the held directions changes its gap.
 bool moves_held_nodes(const AxisHoldInputs& inputs, const ContactTable& contacts, std::size_t c,
                       std::span<const HeldRows::Node> node) {
-    // Least share of the mobility along the normal that the held directions must leave.
+    // If the held directions leave a smaller share of the mobility along the normal, it counts as zero.
     constexpr Real least_share = 1e-6;
     Real all = 0, left = 0;
     for_each_node(contacts.stencil[c], [&](std::size_t n, Real weight) {

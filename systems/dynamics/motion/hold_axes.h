@@ -72,20 +72,21 @@ struct HeldRows {
     Column<Node> node;    // working memory: by row of NodeTable
 };
 
-/// Appends a row to the contacts for each direction along which a node is held that contacts, ties or solved cables can
-/// move. The row demands the prescribed velocity along the direction. Contacts that no motion across the held
-/// directions can open request no rows, because no impulses satisfy both. Sequential.
+/// Appends rows to the contacts for the held nodes that contacts, ties or solved cables can move: one row for each held
+/// direction of such a node. The row demands the prescribed velocity along the direction. Contacts that no motion
+/// across the held directions can open request no rows, because no impulses satisfy both the contact and the row.
+/// Sequential.
 void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cables, Real h, ContactTable& contacts,
                        HeldRows& rows);
 
-/// Takes these rows out of the contacts after the solve, and adds their impulses to `held_impulse`. Returns the sum and
-/// the work of the impulses. Sequential.
+/// Takes the rows of prepare_held_rows() out of the contacts after the solve, and adds their impulses to
+/// `held_impulse`. Returns the sum and the work of the impulses. Sequential.
 ExternalWork take_held_rows(const AxisHoldInputs& inputs, std::span<const Vec3> velocity_next, ContactTable& contacts,
                             const HeldRows& rows, std::span<Vec3> held_impulse);
 
-/// Removes the error that the contact solver has left in the prescribed velocities, and adds the impulses that this
-/// takes to `held_impulse`. Also removes the parts along these directions from `push_out`. Returns the sum and the work
-/// of the added impulses.
+/// Removes the error that the contact solver has left in the prescribed velocities, and adds the impulses of this
+/// correction to `held_impulse`. Also removes the parts along the held directions from `push_out`. Returns the sum and
+/// the work of the added impulses.
 ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec3> velocity_next,
                              std::span<Vec3> push_out, std::span<Vec3> held_impulse);
 

@@ -68,7 +68,7 @@ public:
             if (!first && furthest > limits::growth * least)
                 still = 0;
             else if (!first && (goes_on || !is_balanced(half) || !has_its_shape(goes_one_way)))
-                still = half;  // keeps half of the sleep time, so that the next half is compared with this one
+                still = half;  // half of the sleep time is kept, so that the next half is compared with this one
             state_.drift_before[body_] = furthest;
             state_.creep_before[body_] = goes_one_way ? shape_drift : 0;
             begin_half();

@@ -43,9 +43,10 @@ public:
     RecoveryPlan take() { return std::move(plan_); }
 
 private:
-    /// Rotates the rest positions into the frame of the gradients. The gradients were rotated with the body when it was
-    /// added. The elements have the inverse of this rotation as deformation gradient in the rest shape of the mesh.
-    /// Elements that yield do not; they need no rotation, because fits do not depend on the frame.
+    /// Rotates the rest positions into the frame of the gradients, which were rotated with the body when it was added.
+    /// The elements have the inverse of this rotation as deformation gradient in the rest shape of the mesh. Elements
+    /// that yield are skipped, because plastic flow has changed their gradients. A body of such elements alone needs no
+    /// rotation, because fits do not depend on the frame.
     void turn_rest() {
         for (Index b = body_.blocks.begin; b < body_.blocks.end; ++b) {
             const auto block = static_cast<std::size_t>(b);
@@ -166,7 +167,7 @@ private:
         return body_.elements.volume[block_of(p)][p % element_lanes];
     }
 
-    /// Factors of the mean over elements, times `share`.
+    /// For each element, factor of its value in the mean weighted by volume, times `share`.
     std::vector<Share> mean_of(std::span<const Index> places, Real share) const {
         Real whole = 0;
         for (const Index place : places) whole += volume(place);
@@ -176,7 +177,8 @@ private:
         return shares;
     }
 
-    /// Factors of a fit to the values of elements, evaluated at a rest position.
+    /// For each element, factor of its value in the value of a least-squares fit at the rest position `at`. The offsets
+    /// of the element centres are divided by `size`.
     std::vector<Share> fit_of(bool is_quadratic, std::span<const Index> places, const Vec3& at, Real size) const {
         std::vector<Vec3> offset;
         std::vector<Real> factor;
@@ -227,8 +229,8 @@ private:
         append_row<Share>(plan_.volumetric_around, volumetric);
     }
 
-    /// Appends the factors of a linear fit to the donors of one material, times `share`. If they do not suffice, the
-    /// factors of the mean over the elements of this material are appended.
+    /// Appends the factors of a linear fit to the donors of one material, times `share`. If the donors do not suffice,
+    /// the factors of the mean over the elements of this material are appended.
     void extrapolate(Index n, Index material, Real share, std::vector<Share>& donors, std::vector<Share>& strained,
                      std::vector<Share>& volumetric) {
         const std::vector<Index> nodes = patches_.donors(n, material);

@@ -150,8 +150,8 @@ std::optional<SurfaceTriangle> surface_triangle(const std::array<Index, 3>& node
 
 SurfaceAround surface_around(std::span<const std::array<Index, 3>> surface, std::span<const Index> triangles,
                              std::span<const Vec3> rest) {
-    // Least cosine of the angle between a triangle and the mean surface. Two faces that form an edge differ by 60
-    // degrees or more.
+    // Least cosine of the angle between a triangle and the mean surface (30 degrees). Two faces that differ by 60
+    // degrees or more thus form an edge.
     constexpr Real least_cosine = 0.866;
     const auto corner = [&](Index t, std::size_t k) {
         return static_cast<std::size_t>(surface[static_cast<std::size_t>(t)][k]);

@@ -40,8 +40,8 @@ SurfaceAround surface_around(std::span<const std::array<Index, 3>> surface, std:
 /// Sum of area times the deformation gradient within the plane of each triangle [m^2]. `position`: of all nodes [m].
 Mat3 surface_stretch(std::span<const SurfaceTriangle> triangles, std::span<const Vec3> position);
 
-/// Deformation gradient F for which P(F) N is the traction, with the outward normal N. Of all such F it is the one that
-/// differs least from the deformation gradients within the triangles (docs/methods/elasticity.md 7.9). `stretch`:
+/// Deformation gradient F for which P(F) N is the traction, with the outward normal N. Among all such F it is the one
+/// that differs least from the deformation gradients within the triangles (docs/methods/elasticity.md 7.9). `stretch`:
 /// result of surface_stretch. `start`: first guess of F N. The surface must be smooth. Empty if Newton's method finds
 /// no F.
 std::optional<Mat3> surface_gradient(const MaterialConstants& material, const SurfaceAround& around,

@@ -168,7 +168,7 @@ auto is_below(const Matrix9<T>& A, const T& volume, const T& limit) {
     const T rounding = 1e-12 * limit;
     auto below = limit > 0.0;
     T m[9][9];     // entries of L D below the diagonal
-    T inverse[9];  // of D
+    T inverse[9];  // inverse of each diagonal entry of D
     for (int c = 0; c < 9; ++c) {
         T scaled[9];  // row c of L
         T pivot = limit - volume * A.a[c][c];

@@ -23,7 +23,8 @@ namespace skerry {
 
 namespace {
 
-// Estimated ratio of the step with frame masses to the step that the bounds of single elements allow.
+// Estimated ratio of the step with frame masses to the step that the bounds of single elements allow. It decides how
+// much springs relax in a step (RestModuli).
 constexpr Real longer_in_frame = 2;
 
 // The sum is written out term by term, so that the bits do not depend on how a library vectorises it.

@@ -59,7 +59,8 @@ Real sum_of(const Real4& x) {
     return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
-// Estimated ratio of the step with mass forms to the step that the bounds of single elements allow.
+// Estimated ratio of the step with mass forms to the step that the bounds of single elements allow. It decides how much
+// springs relax in a step (RestModuli).
 constexpr Real longer_by_forms = 1.5;
 
 // Number of blocks of elements above which a body counts as large. Such a body is cut into so many groups that the

@@ -13,7 +13,7 @@ namespace skerry {
 inline constexpr Real products_of_group = 4e8;
 
 /// Diagonal entries of Q for an implicit element, which belongs to a cluster. This element gets no mass and bounds no
-/// step [1/(kg m^2)].
+/// step. The entries are not 0, because 0 means that a block has no mass forms [1/(kg m^2)].
 inline constexpr Real form_of_implicit = 1e-100;
 
 /// Finds the matrices Q of the explicit elements of a body (docs/methods/stable_step.md 2.3). Sequential, about 10 us

@@ -78,7 +78,7 @@ struct BandMatrix {
     std::size_t width;  // number of entries stored per row
     std::size_t group;  // number of rows per group
     /// Adds the entries of the rows of a group to `rows`, which contains zeros. Each row begins `stride` numbers after
-    /// the row before.
+    /// the previous row.
     FunctionRef<void(std::size_t of_group, Real* rows, std::size_t stride)> add_rows;
 };
 

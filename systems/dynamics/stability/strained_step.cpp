@@ -18,8 +18,8 @@ namespace skerry {
 
 namespace {
 
-// Base of the bound, divided by the omega^2 for which the step `goal.longest` is stable. Most elements of a strained
-// body have a lower omega^2 than the base.
+// Ratio of the base of the bound to the omega^2 for which the step `goal.longest` is stable. With this ratio most
+// elements of a strained body are below the base, and thus have no excess.
 constexpr Real above_asked = 1.1;
 // Number of rounds of the iteration for the node weights d. After many rounds the ratio of the row sum to the mass
 // times d would be equal at all nodes.

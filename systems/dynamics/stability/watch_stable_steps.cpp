@@ -17,10 +17,10 @@ void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<Wa
             const std::uint64_t before = watch.first_piece[b];
             const std::uint64_t due = watch.target > before ? std::min(pieces, watch.target - before) : 0;
             whole = due == pieces;
-            parts.push_back({watch.body, due, whole, watch.look});
+            parts.push_back({watch.body, due, whole, watch.evaluation});
         }
         if (!whole) continue;
-        watch.look = {};
+        watch.evaluation = {};
     }
     watch.before = watch.first_piece[static_cast<std::size_t>(watch.body)];
     parallel_for(executor, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -28,14 +28,14 @@ void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<Wa
             WatchPart& part = parts[p];
             const auto b = static_cast<std::size_t>(part.body);
             continue_check(executor, inputs.elements, inputs.body_blocks[b], watch.position, inputs.mass,
-                           watch.stiffness_sum, part.until, part.look);
+                           watch.stiffness_sum, part.until, part.evaluation);
         }
     });
     for (const WatchPart& part : parts) {
         if (part.whole)
-            watch.step[static_cast<std::size_t>(part.body)] = result_of(part.look).step;
+            watch.step[static_cast<std::size_t>(part.body)] = result_of(part.evaluation).step;
         else
-            watch.look = part.look;
+            watch.evaluation = part.evaluation;
     }
 }
 

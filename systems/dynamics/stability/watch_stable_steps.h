@@ -30,7 +30,7 @@ struct WatchPart {
     Index body = no_index;
     std::uint64_t until = 0;  // number of pieces done by the end of the step
     bool whole = false;       // true if all pieces are done by the end of the step
-    StepEvaluation look;
+    StepEvaluation evaluation;
 };
 
 /// Computes the pieces of stable-step checks that are due by the end of this step, for bodies whose shape is stored. A

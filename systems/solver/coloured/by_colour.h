@@ -48,8 +48,8 @@ public:
         : order_(&order), team_(&team), partial_(partial) {}
 
     std::size_t number_of(std::size_t place) const { return static_cast<std::size_t>(order_->contact[place]); }
-    /// Visits the phases one after the other, even where any order of the contacts would do. Each worker then finds its
-    /// contacts in its cache.
+    /// Visits the phases one after the other as in a sweep, even where any order of the contacts would do, so that each
+    /// worker finds its contacts in its cache.
     template <class Body>
     void contacts(std::size_t, Body&& body) const {
         for_blocks([&body](std::size_t begin, std::size_t end, Index) { body(begin, end); });

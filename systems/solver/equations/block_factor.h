@@ -20,7 +20,7 @@ public:
     void start();
     /// Adds a part, which is a group of `size` unknowns. Returns the index of the part.
     Index add_part(Index size);
-    /// Marks the blocks of parts g and h as nonzero. Call it after close_parts().
+    /// Marks the blocks (g, h) and (h, g) as nonzero. Diagonal blocks always are. Call it after close_parts().
     void couple(Index g, Index h);
     void close_parts();
     /// Finds the elimination order. Returns false if the factor would need too much memory; no other function may be

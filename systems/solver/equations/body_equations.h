@@ -70,7 +70,7 @@ public:
     Real set_right(std::span<const Real> x);
     /// Adds J^T r to the right-hand side, where r is the impulse of a contact.
     void add_right(Index contact, const Vec3& impulse);
-    /// Begins a round, which is a sequence of Newton steps with fixed start impulses: forgets all sliding directions
+    /// Begins a round, which is a sequence of Newton steps with fixed start impulses: clears all sliding directions
     /// and marks no contact to be stopped.
     void start_round();
 
@@ -81,7 +81,7 @@ public:
     // Vectors by number [m/s, rad/s]. present: motion of the current iterate. answered: motion that the impulses for
     // `present` produce. change: answered - present. step: Newton step. before: `present` before the step.
     Column<Real> present, answered, change, step, before;
-    Column<Mat3> answer;  // by contact: derivative of the impulse in the last matrix
+    Column<Mat3> answer;  // by contact: derivative of the impulse from which the last matrix was built
     // Data by contact. way: sliding direction for which the last matrix was built, or zero. stops: 1 if the next step
     // shall stop the contact.
     Column<Vec3> way;

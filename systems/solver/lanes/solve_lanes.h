@@ -114,7 +114,8 @@ public:
         return sweep_lanes<T, K>(problem_, previous_, swept_, relaxation);
     }
     T error() const { return lane_error<T, K>(problem_); }
-    /// `tolerance` is one number for all lanes, or one number per lane.
+    /// True if the change of the last sweep suggests that the error is within the tolerance. `tolerance`: one number
+    /// for all lanes, or one number per lane.
     LaneMask<T> suggests_check(const T& change, const auto& tolerance) const {
         return change <= (tolerance * tolerance) * (problem_.scale * problem_.scale);
     }

@@ -83,7 +83,7 @@ Real CableLaw::step(std::size_t s) const {
     const std::size_t count = segments();
     const Real present = impulse[s];
     const auto ratio = [&](std::size_t m) { return present > 0 ? impulse[m] / present : Real(1); };
-    MobilitySum of;  // mobility of the far rate for such changes
+    MobilitySum of;  // mobility of the far rate for changes that keep the ratios of the impulses
     for (std::size_t m = s; m < count; ++m)
         for (std::size_t row = s; row < count; ++row) of.add(entry(row, m) * ratio(m));
     const Real next = answer(s, of.value());

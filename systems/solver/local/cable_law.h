@@ -20,7 +20,7 @@ struct CableLaw {
     // unused.
     bool is_tie = false;
     bool by_length = false;
-    Real wanted = 0;                   // greatest sum of u [m/s] if `by_length`, else the impulse r_0 [N s]
+    Real wanted = 0;  // upper bound of the sum of the rates u [m/s] if `by_length`, else the impulse r_0 [N s]
     std::span<const Vec3> direction;   // by segment: unit vector to the next point; 0 if the segment has no length
     std::span<const Real> most_ratio;  // by segment: e at the start of the segment
     std::span<const Real> mobility;    // A, row by row [1/kg]
@@ -30,14 +30,14 @@ struct CableLaw {
     // Present impulses and rates of length, by segment. Impulses before the present step of the solver, and in the
     // sweep before.
     std::span<Real> impulse, rate, before, previous;
-    static constexpr std::size_t numbers_by_segment = 5;  // number of the lists of numbers from far_mobility on
+    static constexpr std::size_t numbers_by_segment = 5;  // number of the spans by segment, from far_mobility on
 
     std::size_t segments() const { return impulse.size(); }
-    /// Computes the impulses of the segments from the impulses of the points, of which `point` lists those of the cable
-    /// first. At its two points a segment has the impulses r_s and -r_s along its direction. A segment without length
+    /// Computes the impulses of the segments from the impulses of the points. `point` begins with the points of the
+    /// cable. At its two points a segment has the impulses r_s and -r_s along its direction. A segment without length
     /// has the impulse of the segment before it, or of the first segment with a length.
     void read(std::span<const Vec4> point, std::span<Real> impulse_of_segment) const;
-    /// Impulse of point `p` by the impulses `of` of the segments or of the tie [N s].
+    /// Impulse at point `p` due to the impulses `of` of the segments or of the tie [N s].
     Vec3 at_point(std::span<const Real> of, std::size_t p) const;
     /// Fills far_mobility.
     void prepare() const;
@@ -54,7 +54,7 @@ private:
     Real entry(std::size_t row, std::size_t column) const { return mobility[row * segments() + column]; }
     /// Rate of length of the cable from segment `s` on [m/s].
     Real far_rate(std::size_t s) const;
-    /// Impulse of segment `s` by the law, if its mobility is `of` [N s].
+    /// Impulse with which segment `s` satisfies the law, for the mobility `of` [N s].
     Real answer(std::size_t s, Real of) const;
     Real step(std::size_t s) const;
     /// Change of the impulse of a tie that makes its rate zero [N s].

@@ -280,8 +280,9 @@ Mat3 sticking(const RigidPart& part) {
     return scaled * scaled.transpose();
 }
 
-/// The answer of a contact with the velocity u to the impulse `start - u / soft`. If friction depends on the direction,
-/// this is Coulomb's law in scaled variables; the derivative is with respect to `-u / soft`.
+/// Impulse that the law of a contact gives for the velocity u and the trial impulse `start - u / soft`, and its
+/// derivative. If friction depends on the direction, this is Coulomb's law in scaled variables; the derivative is with
+/// respect to `-u / soft`.
 Answer answer_at(const RigidPart& part, const Vec3& start, const Vec3& u, Real soft, FrictionLimits mu) {
     if (part.across == 1) return answer_coulomb_at(start - u / soft, part.frame[0].head<3>(), mu);
     const Mat3 scaled = scaled_frame(part);
@@ -432,7 +433,7 @@ SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index li
     // If the error of the region has decreased, a round ends when the square root of the merit function d . K d falls
     // below this fraction of the error at the start of the round.
     constexpr Real enough = 0.1;
-    // If the error has not decreased, this limit is multiplied by `solved`.
+    // If the error has not decreased, the round must be solved more accurately: the limit is multiplied by `solved`.
     constexpr Real solved = 1e-3;
     // largest number of steps in a round; a longer round is unlikely to converge soon
     constexpr Index most_in_round = 14;

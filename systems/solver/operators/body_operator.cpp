@@ -196,7 +196,7 @@ void BodyOperator::extrapolate(Real factor) {
 
 Real BodyOperator::squared_residual(Index i) const {
     if (i >= swept()) {
-        // The first point that moves represents the cable.
+        // The residual of a cable counts once, at its first point that moves.
         for (const Index cable : memory_.cable)
             if (memory_.cable_law[static_cast<std::size_t>(cable)].moving == i)
                 return read_cable(cable).squared_residual();

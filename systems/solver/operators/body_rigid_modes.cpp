@@ -70,8 +70,8 @@ void BodyOperator::push_rigid_modes(std::span<const Vec4> start) {
 }
 
 SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index limit) {
-    // Compliance of the contacts as a fraction of the mobility D. It must exceed the compliance of the bodies;
-    // otherwise rounds gain nothing.
+    // Compliance of the contacts in a round, as a fraction of the mobility D. It stands for the deformation that a
+    // round leaves out. If it is below the compliance of the bodies, rounds reduce the error too little.
     constexpr Real softness = 0.3;
     // A round ends when the square root of the merit function d . K d falls below this fraction of the error at the
     // start of the round.

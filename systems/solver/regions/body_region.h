@@ -18,7 +18,7 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     std::span<const Index> rigid;  // rows of RigidBodyTable
     bool has_axes = false;         // true if the friction of a contact depends on the direction
 
-    // Functions of the life cycle that replace those of LoadedRegion.
+    // The next functions replace those of LoadedRegion (life_cycle.h).
     bool moves_node(const RegionStage& stage, std::size_t n) const {
         // False for the rows of rigid bodies, which belong to no node, and for nodes of implicit bodies, whose
         // velocities write_contact computes from the motion of the frame and the deformation.

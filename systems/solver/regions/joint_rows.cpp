@@ -49,7 +49,8 @@ Real fastest_pull(const RegionStage& stage, bool of_spins, const BodyMotion& fir
 
 /// Sets the impulses of spring, damper and friction of a joint axis (docs/methods/joints.md 4).
 void add_passive(const AxisLaw& axis, Real mobility, Real h, AxisBounds& bounds) {
-    // Largest (omega h)^2 of the part of the spring that acts as at the start of the step.
+    // Greatest (omega h)^2 at which the spring force is evaluated at the start of the step alone, so that its energy
+    // error stays bounded. Stiffer springs are evaluated partly at the end of the step.
     constexpr Real at_start = 0.5;
     const JointPassiveRow& passive = axis.passive;
     const Real frequency = h * axis.kick * passive.stiffness * mobility;

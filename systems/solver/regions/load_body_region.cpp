@@ -188,7 +188,7 @@ private:
     }
 
     /// Adds a node that moves with a rigid body. `acts_at`: point at which the impulse acts. `beside()`: initial value
-    /// of the arm of the body, times its weight [m].
+    /// of RigidTerm::arm [m].
     void add_term(RigidPart& part, Index body, const Vec3& acts_at, Real weight, auto&& beside) {
         const RigidInputs& rigid = stage_.inputs.rigid;
         Index k = 0;

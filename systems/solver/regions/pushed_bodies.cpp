@@ -14,7 +14,8 @@ namespace {
 /// without rotation about the axis. If `place` is the lowest point of a rim, the result is the height of the rim's
 /// lowest point after the rotation, because the lowest point moves around the rim [m]
 Real height_after(const Vec3& place, const Vec3& axis, const Vec3& axis_then, const Vec3& normal) {
-    // `lowest`: fraction of the radius. `least_tilt`: below this angle many rim points are lowest [rad]
+    // A point counts as the lowest of its rim if it is higher than the lowest one by at most `lowest` times the radius.
+    // Below the angle `least_tilt` between axis and normal, many points of a rim count as lowest [rad].
     constexpr Real lowest = 1e-9, least_tilt = 1e-4;
     const Real up = axis.dot(place), radius = (place - up * axis).norm();
     const auto lowest_of_rim = [&](const Vec3& of) { return up * of.dot(normal) - radius * of.cross(normal).norm(); };

@@ -19,7 +19,7 @@ void note_stencil(const RegionInputs& inputs, const Stencil& stencil, Index numb
         if (stencil.weight[a] == 0) continue;
         if (inputs.clustered())
             note(inputs.clusters->cluster(stencil.node[a]), number, memory.region_of_cluster, memory.region_clusters);
-        // Nodes with zero inverse mass belong to held bodies.
+        // Held nodes (inverse mass 0) are left out, because no impulse moves them.
         if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)
             note(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
     }
@@ -47,8 +47,8 @@ std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memor
 }
 
 std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& regions, RegionMemory& memory) {
-    // The first four entries per contact belong to regions without clusters and rigid bodies. The entries of the other
-    // regions follow.
+    // The first entries, four for each contact, belong to regions without clusters and rigid bodies. The entries of the
+    // other regions follow.
     std::size_t end = 4 * regions.contacts.item.size();
     memory.rows = memory.contact_rows = regions.contacts.item.size();
     memory.region_clusters.clear();

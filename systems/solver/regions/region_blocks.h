@@ -23,7 +23,7 @@ inline bool needs_blocks(const RegionMemory& memory, const RegionTable& regions,
            (!memory.region_has_axes.empty() && memory.region_has_axes[static_cast<std::size_t>(number)] != 0);
 }
 
-/// Number of the points of some solved cables.
+/// Total number of points of the given solved cables.
 std::size_t points_of_cables(const RegionInputs& inputs, std::span<const Index> cables);
 
 /// Upper bound of the node rows of a region that touches clusters or rigid bodies, or that has cables. `stencils`:

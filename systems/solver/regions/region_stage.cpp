@@ -42,7 +42,8 @@ Real tolerance_of(const RegionStage& stage, std::span<const Index> row) {
     const RegionInputs& inputs = stage.inputs;
     const SolverSettings& settings = stage.settings;
     if (!(settings.still_tolerance < settings.tolerance) || inputs.still_time.empty()) return settings.tolerance;
-    // Mesh colliders have no still time, so they count as still. Bodies on a moving collider do not.
+    // A mesh collider has no still time and counts as still even if it moves. Bodies that it carries move too, so their
+    // still time is zero.
     const auto is_still = [&](Index body) {
         return body == no_index || inputs.body_kind[body] == BodyKind::kinematic || inputs.still_time[body] > 0;
     };

@@ -7,9 +7,9 @@
 
 namespace skerry {
 
-/// True if the region is solved in its coloured order. The answer does not depend on the number of workers, so results
-/// do not, either. It is false for regions that touch clusters or rigid bodies. It is also false with fixed iterations,
-/// where a region must take the same steps alone and within a larger region.
+/// True if the region is solved in its coloured order. Neither this answer nor the results depend on the number of
+/// workers. It is false for regions that touch clusters or rigid bodies. It is also false with fixed iterations, where
+/// a region must take the same steps alone and within a larger region.
 bool is_large(const RegionStage& stage, const RegionTable& regions, Index number);
 
 using RegionByColour = LumpedRegion<ByColour>;

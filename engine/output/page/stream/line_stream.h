@@ -27,7 +27,8 @@ public:
     /// 2. in the first frame with lines: f64 origin[3] and step of the lattice on which points are encoded [m];
     /// 3. for each line: its number and its number of points as counts; x, y, z and force of all points, quantity by
     /// quantity, each as change from a reference. The reference is the value of this point in the previous frame, if
-    /// the line had as many points there. Otherwise it is the value of the point before, and zero for the first point.
+    /// the line had as many points there. Otherwise it is the value of the previous point, and zero for the first
+    /// point.
     void put_frame(const Frame& frame, std::string& out);
 
     std::span<const PageLine> lines() const { return lines_; }

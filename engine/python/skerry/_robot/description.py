@@ -35,7 +35,7 @@ class Frame:
     @property
     def rotation_vector(self) -> Reals:
         """Axis times angle [rad]."""
-        # The axis is the row of largest length of the matrix q q^T of the unit quaternion q = (x, y, z, w).
+        # Each row of the matrix q q^T is a multiple of the unit quaternion q = (x, y, z, w); the longest is most exact.
         matrix = self.rotation
         sums = matrix + matrix.T - np.trace(matrix) * np.eye(3)
         turns = np.array([matrix[2, 1] - matrix[1, 2], matrix[0, 2] - matrix[2, 0], matrix[1, 0] - matrix[0, 1]])
@@ -127,7 +127,7 @@ class RobotJoint:
         return self.kind != "ball"
 
     def motion(self, coordinate: float) -> Frame:
-        """Motion of the link relative to its place at a coordinate [rad or m]."""
+        """Motion of the link from its pose at the coordinate `rest` to its pose at `coordinate` [rad or m]."""
         if self.kind == "slider":
             return Frame((coordinate - self.rest) * self.axis)
         rotation = turn((coordinate - self.rest) * self.axis if self.kind == "hinge" else np.zeros(3))

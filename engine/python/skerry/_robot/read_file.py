@@ -29,8 +29,9 @@ def load_robot(path: str | os.PathLike[str], *, packages: Mapping[str, str | os.
     """Reads a robot from a URDF or MJCF file. Needs the package mujoco.
 
     packages: folders of the packages that a URDF names as package://NAME; by default the folders of these names beside
-    the file, or above it. A mesh collides with its convex hull, of which at most 64 corners are used. Robot.warnings
-    lists what is not simulated. SceneError: a file is missing or wrong, or a link has several joints."""
+        the file, or above it. A mesh collides with its convex hull, of which at most 64 corners are used.
+        Robot.warnings lists what is not simulated.
+    SceneError: a file is missing or wrong, or a link has several joints."""
     file = Path(path_text(path, "path"))
     return _Reader(file, {name: Path(folder) for name, folder in (packages or {}).items()}).read()
 
@@ -309,7 +310,7 @@ class _Reader:
         return str(self.model.joint(self.model.actuator_trnid[a, 0]).name) if of_joint else None
 
     def drive(self, a: int, joint: RobotJoint) -> tuple[Drive, float] | None:
-        """Drive and strength of an actuator of a joint."""
+        """Drive and strength of an actuator of a joint; None if no motor acts like it."""
         model, name = self.model, self.model.actuator(a).name
         gain, bias = model.actuator_gainprm[a], model.actuator_biasprm[a]
         gear = abs(float(model.actuator_gear[a, 0]))

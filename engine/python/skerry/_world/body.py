@@ -233,7 +233,7 @@ class Body(TouchingObject):
         return positions
 
     def tetrahedra_of(self, name: str) -> Indices:
-        """Numbers of the tetrahedra of a set, shape (m,): the listed ones, or those all nodes of which are in the set.
+        """Numbers of the tetrahedra of a set, shape (m,): the listed ones, or those whose nodes are all in the set.
         SceneError: there are none, or no such set."""
         tetrahedra: Indices = self._core.set_tetrahedra(self._handle, name_text(name, "name"))
         return tetrahedra
@@ -258,9 +258,13 @@ class Body(TouchingObject):
     ) -> Indices:
         """Numbers of the nodes that meet all given conditions at their present positions, shape (j,).
 
-        set: name of a set. label: nodes of the tetrahedra with a label. box: lower and upper corner [m]. sphere: centre
-        and radius [m]. below, above: height z, inclusive [m]. surface: only nodes of the surface. where: a condition
-        for each node, shape (n,), or a function of the positions (n, 3) that returns it."""
+        set: name of a set.
+        label: nodes of the tetrahedra with a label.
+        box: lower and upper corner [m].
+        sphere: centre and radius [m].
+        below, above: height z, inclusive [m].
+        surface: only nodes of the surface.
+        where: a condition for each node, shape (n,), or a function of the positions (n, 3) that returns it."""
         x = self.positions
         chosen = np.ones(len(x), dtype=np.bool_)
         if set is not None:
@@ -317,14 +321,16 @@ class Body(TouchingObject):
     ) -> Attachment:
         """Prescribes the motion of some nodes. From now on they stay in place or follow `motion`.
 
-        nodes: numbers within the body (j,), or a truth value for each node (n,). motion: velocities, or keys at
-        absolute times; the nodes are attached to the pose that the keys have now. pivot: point about which constant
-        angular velocities rotate the nodes, default: the origin (3,) [m]. axes: world axes along which the nodes are
-        held, such as "z" or "xy"; they are free along the others, as on rollers. directions: the same by perpendicular
-        vectors, shape (d, 3). Default: all directions.
+        nodes: numbers within the body (j,), or a truth value for each node (n,).
+        motion: velocities, or keys at absolute times; the nodes are attached to the pose that the keys have now.
+        pivot: point about which constant angular velocities rotate the nodes, default: the origin (3,) [m].
+        axes: world axes along which the nodes are held, such as "z" or "xy"; they are free along the others, as on
+            rollers.
+        directions: the same by perpendicular vectors, shape (d, 3). Default: all directions.
 
         SceneError: there is no such node; the body is not explicit and only some directions are held; or fewer than
-        three nodes that are not on one line for a rigid or implicit body. BufferError: arrays of views() are in use."""
+            three nodes that are not on one line for a rigid or implicit body.
+        BufferError: arrays of views() are in use."""
         chosen = self._node_numbers(nodes)
         point = real_array((0.0, 0.0, 0.0) if pivot is None else pivot, "pivot", (3,))
         moved = checked(motion or Motion(), "motion", Motion)
@@ -354,8 +360,9 @@ class Body(TouchingObject):
         return [attachment for attachment in self._world.attachments if attachment._body_handle == handle]
 
     def reset(self, pose: Pose | None = None) -> None:
-        """Puts the body back into its rest shape, without velocity and memory, at its first pose or at the given one.
-        Attached nodes are held at their new positions; loads stay."""
+        """Puts the body back into its rest shape, without velocity, at its first pose or at the given one. Plastic
+        flow, viscous strains, sleep and stored impulses are reset. Attached nodes are held at their new positions;
+        loads stay."""
         if pose is None:
             self._core.reset(self._handle)
         else:
@@ -366,8 +373,9 @@ class Body(TouchingObject):
         added last. A body that becomes rigid is frozen in its present shape.
 
         SceneError: the body is attached, has a joint or a given mass, has no tetrahedra, is a sphere, capsule or
-        cylinder, or has deformed plastically; or the kind does not fit its self-contact, losses, plasticity or inverted
-        tetrahedra. BufferError: arrays of views() are in use."""
+            cylinder, or has deformed plastically; or the kind does not fit its self-contact, losses, plasticity or
+            inverted tetrahedra.
+        BufferError: arrays of views() are in use."""
         self._core.set_dynamics(self._handle, checked(dynamics, "dynamics", str))
 
     def wake(self) -> None:

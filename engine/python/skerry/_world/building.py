@@ -99,7 +99,7 @@ class Building(CavityBuilding):
     def _hold(self, core: Any) -> None:
         self._core: Any = core
         self._advancing = False
-        self._watch: Callable[[dict[str, Any]], bool] | None = None  # from _told()
+        self._watch: Callable[[dict[str, Any]], bool] | None = None  # from _with_report()
         self._take: Callable[[dict[str, Any]], None] | None = None  # of contact_problems()
         self._take_every = 1
         self._followers: list[Follower] = []
@@ -109,7 +109,7 @@ class Building(CavityBuilding):
 
     def _own(self, given: Any, name: str, *kinds: type) -> Any:
         """Handle of an argument that must be an object of this world, of one of the given classes. The handle of an
-        object of a copy would name an object of this world, too, so that it must not get further."""
+        object of a copy would name an object of this world, too, so it is refused."""
         if checked(given, name, *kinds)._world is not self:
             raise scene_error(
                 "",
@@ -151,19 +151,25 @@ class Building(CavityBuilding):
         """Adds a body and returns it.
 
         mesh: a Mesh; a Sphere, a Capsule or a Cylinder, which are rigid and touch others with their exact shape; or a
-        SurfaceMesh of closed shells with dynamics="rigid".
-        material: a handle, or a record; equal records become one material. materials: materials of the tetrahedra with
-        a label, or of a set by its name; sets take precedence. position, rotation: pose of the mesh (3,) [m, rad].
-        velocity, angular_velocity: initial rigid motion about the centre of mass (3,) [m/s, rad/s]. dynamics:
-        "explicit", "implicit", "rigid" or "automatic", which chooses explicit or implicit by their costs. element: kind
-        of the elements. self_contact: True: the body can touch itself. contact_distance: contact distance, default 2 %
-        of the mean edge length of the surface [m]. mass: mass of a rigid body [kg], instead of that by density.
-        center_of_mass (3,) [m] and inertia (3, 3) about it [kg m^2]: both in the frame of the mesh; they require the
-        mass, which alone scales the inertia of the shape. collision_group, collision_mask: see
-        Body.set_collision_groups(). visual: see Body.visual. name: unique in the world, default "body N".
+            SurfaceMesh of closed shells with dynamics="rigid".
+        material: a handle, or a record; equal records become one material.
+        materials: materials of the tetrahedra with a label, or of a set by its name; sets take precedence.
+        position, rotation: pose of the mesh (3,) [m, rad].
+        velocity, angular_velocity: initial rigid motion about the centre of mass (3,) [m/s, rad/s].
+        dynamics: "explicit", "implicit", "rigid" or "automatic", which chooses explicit or implicit by their costs.
+        element: kind of the elements.
+        self_contact: True: the body can touch itself.
+        contact_distance: contact distance, default 2 % of the mean edge length of the surface [m].
+        mass: mass of a rigid body [kg], instead of that by density. It alone scales the inertia of the shape.
+        center_of_mass, inertia: centre of mass (3,) [m] and inertia about it (3, 3) [kg m^2], both in the frame of the
+            mesh. They require the mass.
+        collision_group, collision_mask: see Body.set_collision_groups().
+        visual: see Body.visual.
+        name: unique in the world, default "body N".
 
-        SceneError: a value is out of range, or a body has this name. BufferError: arrays of views() are in use. Ctrl-C
-        raises KeyboardInterrupt at the end of the call, when the body is already added."""
+        SceneError: a value is out of range, or a body has this name.
+        BufferError: arrays of views() are in use. Ctrl-C raises KeyboardInterrupt at the end of the call, when the body
+            is already added."""
         name = self._new_name(name, "body", self.bodies)
         surface = None if visual is None else visual_of(visual)
         given = Arguments(
@@ -224,14 +230,19 @@ class Building(CavityBuilding):
     ) -> Collider:
         """Adds a collider and returns it.
 
-        shape: a Plane, Sphere, Box, Capsule, Cylinder, Bucket or SurfaceMesh. position, rotation: pose (3,) [m, rad].
-        motion: velocities, or keys, which are poses at absolute times. material: a handle or a record, see
-        Collider.material. friction, static_friction, dynamic_friction: a contact uses the geometric mean of this value
-        and that of the body, or that of the material or the body if not given. restitution: a contact uses the larger
-        value. contact_distance: thickness of the contact shell of a SurfaceMesh [m]. collision_group, collision_mask:
-        see Collider.set_collision_groups(). name: unique in the world, default "collider N".
+        shape: a Plane, Sphere, Box, Capsule, Cylinder, Bucket or SurfaceMesh.
+        position, rotation: pose (3,) [m, rad].
+        motion: velocities, or keys, which are poses at absolute times.
+        material: a handle or a record, see Collider.material.
+        friction, static_friction, dynamic_friction: a contact uses the geometric mean of this value and that of the
+            body, or that of the material or the body if not given.
+        restitution: a contact uses the larger value.
+        contact_distance: thickness of the contact shell of a SurfaceMesh [m].
+        collision_group, collision_mask: see Collider.set_collision_groups().
+        name: unique in the world, default "collider N".
 
-        SceneError: a value is out of range, or a collider has this name. BufferError: arrays of views() are in use."""
+        SceneError: a value is out of range, or a collider has this name.
+        BufferError: arrays of views() are in use."""
         name = self._new_name(name, "collider", self.colliders)
         given = Arguments(
             of=f"collider '{name}'",
@@ -271,10 +282,15 @@ class Building(CavityBuilding):
     ) -> Joint:
         """Joins two rigid bodies, or a rigid body and the world, in their present poses, and returns the joint.
 
-        kind: "ball", "hinge", "slider" or "fixed". point: position of the joint (3,) [m]. axis: axis of a hinge or a
-        slider (3,). coordinate: present coordinate; lower, upper: its limits [rad or m]. motor: motor on the axis.
-        passive: spring, damper and dry friction on the axis. bodies_touch: True: the two bodies may collide. name: see
-        Joint.name. SceneError: a body is not rigid, or a value is out of range."""
+        kind: "ball", "hinge", "slider" or "fixed".
+        point: position of the joint (3,) [m].
+        axis: axis of a hinge or a slider (3,).
+        coordinate, lower, upper: present coordinate and its limits [rad or m].
+        motor: motor on the axis.
+        passive: spring, damper and dry friction on the axis.
+        bodies_touch: True: the two bodies may collide.
+        name: see Joint.name.
+        SceneError: a body is not rigid, or a value is out of range."""
         name = optional_name(name)
         given = Arguments(
             of="joint",
@@ -307,12 +323,15 @@ class Building(CavityBuilding):
         """Ties nodes of a deformable body in their present places to the nearest points of another body or a collider,
         or to the world, and returns the tie.
 
-        nodes: numbers within the body (j,), or a truth value for each node (n,). kind: "weld", or "slide" for nodes
-        that may move in the plane of the surface, or "ball": only the mean point of all nodes, weighted by their
-        masses, is tied. break_force: force at which a node, or the ball, breaks off [N]. close_gap: True:
-        the nodes move to the surface. bodies_touch: True: the two objects may collide while nodes are tied. name: see
-        Tie.name. SceneError: the body is rigid, or a value is out of range. BufferError: arrays of views() are in
-        use."""
+        nodes: numbers within the body (j,), or a truth value for each node (n,).
+        kind: "weld", or "slide" for nodes that may move in the plane of the surface, or "ball": only the mean point of
+            all nodes, weighted by their masses, is tied.
+        break_force: force at which a node, or the ball, breaks off [N].
+        close_gap: True: the nodes move to the surface.
+        bodies_touch: True: the two objects may collide while nodes are tied.
+        name: see Tie.name.
+        SceneError: the body is rigid, or a value is out of range.
+        BufferError: arrays of views() are in use."""
         name = optional_name(name)
         given = Arguments(
             of="tie",
@@ -340,10 +359,13 @@ class Building(CavityBuilding):
         """Adds a cable that runs straight from point to point and never pushes, and returns it.
 
         points: at least two points, at least one on a body. Exactly one of the next three is given, as a number or as
-        pairs (time, value). tension: tension of the first segment [N]. length: greatest length [m]. rate: rate of the
-        greatest length, which is the length now [m/s]. friction: friction coefficient mu at the points between the
-        first and the last; tensions differ there by at most exp(mu theta) for a bend by the angle theta. name: see
-        Cable.name."""
+            pairs (time, value).
+        tension: tension of the first segment [N].
+        length: greatest length [m].
+        rate: rate of the greatest length, which is the length now [m/s].
+        friction: friction coefficient mu at the points between the first and the last; tensions differ there by at most
+            exp(mu theta) for a bend by the angle theta.
+        name: see Cable.name."""
         name = optional_name(name)
         given = [core_anchor(self._self, point, f"points[{number}]") for number, point in enumerate(points)]
         drive = drive_tables(tension, length, rate)
@@ -363,10 +385,13 @@ class Building(CavityBuilding):
     ) -> Spring:
         """Adds a spring, a damper, or both in parallel, between two anchors, and returns the spring.
 
-        stiffness: [N/m]. damping: force per rate of the length [N s/m]. rest_length: a number, or pairs (time [s],
-        length); None: the present length [m]. only: "both", "tension" (acts only while longer than the rest length) or
-        "compression". strength: largest force [N]. name: see Spring.name. SceneError: no anchor is on a body, or a
-        value is out of range."""
+        stiffness: [N/m].
+        damping: force per rate of the length [N s/m].
+        rest_length: a number, or pairs (time [s], length); None: the present length [m].
+        only: "both", "tension" (acts only while longer than the rest length) or "compression".
+        strength: largest force [N].
+        name: see Spring.name.
+        SceneError: no anchor is on a body, or a value is out of range."""
         name = optional_name(name)
         given = Arguments(
             of="spring",

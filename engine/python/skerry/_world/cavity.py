@@ -55,7 +55,7 @@ class Cavity(NamedObject):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Present arguments of World.add_cavity(): pressure and volume of a filling are those of the present."""
+        """Present arguments of World.add_cavity(): pressure and volume of a filling have their present values."""
         values: dict[str, Any] = self._core.cavity_settings(self._handle)
         return {**values, "body": self._world._body(values["body"])}
 
@@ -153,10 +153,13 @@ class CavityBuilding:
         """Puts faces of a body under a pressure and returns the cavity. Give one of `pressure`, `gas` and `liquid`.
 
         faces: rows of Body.surface, shape (n, 3); None: the walls of all hollows inside of the body, or the whole
-        surface of a body without hollows. pressure: pressure above ambient, a number or pairs (time, value) [Pa]. gas,
-        liquid: filling of the cavity. volume: volume of the filling at the start, only for faces that do not enclose a
-        volume, as those of a piston [m^3]. name: see Cavity.name. SceneError: a face does not exist, or a value is out
-        of range."""
+            surface of a body without hollows.
+        pressure: pressure above ambient, a number or pairs (time, value) [Pa].
+        gas, liquid: filling of the cavity.
+        volume: volume of the filling at the start, only for faces that do not enclose a volume, as those of a piston
+            [m^3].
+        name: see Cavity.name.
+        SceneError: a face does not exist, or a value is out of range."""
         name = optional_name(name)
         given = [pressure, gas, liquid]
         if given.count(None) != 2:
@@ -182,8 +185,10 @@ class CavityBuilding:
     ) -> Pipe:
         """Connects two cavities with the same gas, or a cavity and a reservoir of this gas, and returns the pipe.
 
-        second: None: a reservoir. conductance: mass flow divided by the pressure difference, >= 0 [kg/(s Pa)].
-        pressure: pressure of the reservoir above ambient, a number or pairs (time, value) [Pa]. name: see Pipe.name.
+        second: None: a reservoir.
+        conductance: mass flow divided by the pressure difference, >= 0 [kg/(s Pa)].
+        pressure: pressure of the reservoir above ambient, a number or pairs (time, value) [Pa].
+        name: see Pipe.name.
         SceneError: a cavity has no gas or another one, or a value is out of range."""
         name = optional_name(name)
         handle = self._core.add_pipe(

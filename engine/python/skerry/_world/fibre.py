@@ -82,9 +82,13 @@ class WorldFibres:
     ) -> FibreFamily:
         """Adds a family of fibres with the energy W = k_1/(2 k_2) (exp(k_2 E^2) - 1), E = max(stretch^2 - 1, 0).
 
-        direction: direction in the mesh, (3,) for all tetrahedra or (n, 3). tetrahedra: numbers, (n,); None: all.
-        stiffness: k_1, >= 0 [Pa]. exponent: k_2, >= 0. tension: active tension, >= 0, as force along the fibres per
-        area at rest [Pa]: a number, or pairs (time [s], tension). name: see FibreFamily.name."""
+        direction: direction in the mesh, (3,) for all tetrahedra or (n, 3).
+        tetrahedra: numbers, (n,); None: all.
+        stiffness: k_1, >= 0 [Pa].
+        exponent: k_2, >= 0.
+        tension: active tension, >= 0, as force along the fibres per area at rest [Pa]: a number, or pairs (time [s],
+            tension).
+        name: see FibreFamily.name."""
         from .body import Body
 
         name = optional_name(name)

@@ -27,7 +27,7 @@ class LoadState:
         for a factor of the weight.
     rate: rate of a drag [1/s].
     scale: present scale.
-    force: sum of the present forces on all nodes [N]; for a factor of the weight, the difference to the whole weight.
+    force: sum of the present forces on all nodes [N]; for a factor of the weight, the difference from the full weight.
     """
 
     kind: LoadKind
@@ -162,8 +162,9 @@ class WorldLoads:
     ) -> Load:
         """Adds a drag on a body, or on all bodies: the force on a node of mass m and velocity v is m rate (wind - v).
 
-        rate: > 0 [1/s]; steps are not longer than 1/rate. wind: velocity of the wind (3,) [m/s]. scale: factor of
-        `wind`."""
+        rate: > 0 [1/s]; steps are not longer than 1/rate.
+        wind: velocity of the wind (3,) [m/s].
+        scale: factor of `wind`."""
         name = optional_name(name)
         load = self._new_load(
             self._core.add_drag(

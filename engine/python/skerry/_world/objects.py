@@ -205,8 +205,8 @@ class TouchingObject(PosedObject):
 
     @property
     def surface_values(self) -> Surface:
-        """Friction and restitution that were set. None means the value of the material of a body, and for a
-        collider for the value of the body that touches it."""
+        """Friction and restitution that were set. None means for a body the value of its material, and for a collider
+        the value of the body that touches it."""
         surface: Surface = self._core.surface_properties(self._handle)
         return surface
 

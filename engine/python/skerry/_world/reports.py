@@ -246,8 +246,8 @@ class SelfCrossing:
     self_contact: True if the body had self-contact when the crossing was last found.
     first_time: time of the first check that found a crossing [s].
     last_time: time of the last check that found a crossing [s].
-    last_places: number of places of the last check that found the surface crossing; 0 if a later check found none.
-    most_places: largest number of places in all checks.
+    last_places: number of places where an edge passes through a triangle, at the last check; 0 if it found none.
+    most_places: largest number of such places in any check.
     message: the crossing as a text.
     """
 

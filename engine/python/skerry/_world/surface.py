@@ -126,11 +126,13 @@ class SurfaceRules(Building):
     ) -> SurfaceSet:
         """Gives a part of the surface of a body its own friction and restitution, and returns the part.
 
-        nodes: numbers within the body (j,), or a truth value for each node (n,). faces: nodes (k, 3) of faces of the
-        surface. friction_across: friction coefficient of sliding contacts across the direction; the friction in
-        `surface` then applies along it. direction: direction (3,) in the frame of the mesh. name: see SurfaceSet.name.
-        Where sets overlap, the last one applies. SceneError: a face is not on the surface, or a value is out of
-        range."""
+        nodes: numbers within the body (j,), or a truth value for each node (n,).
+        faces: nodes (k, 3) of faces of the surface.
+        friction_across: friction coefficient of sliding contacts across the direction; the friction in `surface` then
+            applies along it.
+        direction: direction (3,) in the frame of the mesh.
+        name: see SurfaceSet.name. Where sets overlap, the last one applies.
+        SceneError: a face is not on the surface, or a value is out of range."""
         name = optional_name(name)
         given = dataclasses.replace(checked(surface or Surface(), "surface", Surface), **values)
         handle = self._core.add_surface_set(

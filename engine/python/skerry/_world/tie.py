@@ -29,10 +29,10 @@ class TieState:
     force: sum of the forces on the nodes [N].
     moment: moment of these forces about `point` [N m].
     largest_force: largest magnitude of `force` in a step since the tie was added [N].
-    error: largest distance of a tied node from the place that the tie demands [m].
+    error: largest distance of a tied node from the position that the tie prescribes [m].
     nodes: numbers of the nodes, shape (n,).
     node_forces: force on each node, shape (n, 3) [N].
-    node_errors: distance of each node from its place, shape (n,) [m].
+    node_errors: distance of each node from this position, shape (n,) [m].
     broken: time at which each node broke off, inf if it is tied, shape (n,) [s].
     """
 
@@ -67,7 +67,7 @@ class Tie(NamedObject):
         return self._with_objects(self._core.tie_settings(self._handle))
 
     def set_break_force(self, force: float) -> None:
-        """Sets the force at which a node breaks off [N]. Nodes that have broken off stay so."""
+        """Sets the force at which a node breaks off [N]. Nodes that have broken off are not tied again."""
         self._core.set_break_force(self._handle, real(force, "force"))
 
     def _with_objects(self, values: dict[str, Any]) -> dict[str, Any]:

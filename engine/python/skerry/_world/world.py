@@ -53,7 +53,7 @@ def _end_calls() -> None:
     latest = time.monotonic() + 10  # a callback may wait for ever
     while _core.end_calls() and time.monotonic() < latest:
         time.sleep(1e-3)
-    if threading.active_count() > 1:  # a thread that does not end keeps its objects
+    if threading.active_count() > 1:  # a thread that still runs keeps its objects, which are no leaks
         _core.hide_leaks()
 
 
@@ -158,13 +158,16 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
     ) -> PlacedRobot:
         """Adds a robot as rigid bodies and joints, all or none of them.
 
-        robot: the result of load_robot(), or a file for it. material: material of the surfaces. position, rotation:
-        pose of the robot (3,) [m, rad]. coordinates: coordinates of joints by name; default: RobotJoint.rest, or the
-        nearest value within the limits [rad or m]. fixed: True: the base does not move; False: it is free; None: as in
-        the file. motors: False: without motors. With True they hold the coordinates, or have the speed or the force 0.
+        robot: the result of load_robot(), or a file for it.
+        material: material of the surfaces.
+        position, rotation: pose of the robot (3,) [m, rad].
+        coordinates: coordinates of joints by name; default: RobotJoint.rest, or the nearest value within the limits
+            [rad or m].
+        fixed: True: the base does not move; False: it is free; None: as in the file.
+        motors: False: without motors. With True they hold the coordinates, or have the speed or the force 0.
         self_collision: False: links do not collide with each other. With True, only links that a joint joins, and pairs
-        that the file excludes, do not. name: names of bodies and joints are NAME/LINK and NAME/JOINT; default: the name
-        of the robot.
+            that the file excludes, do not.
+        name: names of bodies and joints are NAME/LINK and NAME/JOINT; default: the name of the robot.
 
         SceneError: an error in the file, or a value is out of range, or a body has one of the names."""
         given = robot if isinstance(robot, Robot) else load_robot(robot)
@@ -206,7 +209,7 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
             follower.require_ready()
         nested, self._advancing = self._advancing, True
         try:
-            values = self._core.advance(dt, self._told(check), self._watch, self._take, self._take_every)
+            values = self._core.advance(dt, self._with_report(check), self._watch, self._take, self._take_every)
         finally:
             self._advancing = nested
             for follower in followers:
@@ -226,8 +229,9 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
     ) -> None:
         """Advances by `seconds` in calls of advance(dt), of which the last may be shorter.
 
-        each: called with the world after each call; if it returns False, the run ends. progress: writes the time and
-        the share of the run to the standard error output. At the end, doubts about the results become warnings."""
+        each: called with the world after each call; if it returns False, the run ends.
+        progress: writes the time and the share of the run to the standard error output. At the end, doubts about the
+            results become warnings."""
         seconds = checked_seconds(seconds, "run", "seconds")
         dt = checked_seconds(dt, "run", "dt", zero=False)
         if seconds / dt > _MOST_CALLS:
@@ -249,8 +253,9 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
         because a body slides, the world does not change.
 
         tolerance: largest out-of-balance force of a body, relative to the sum of the forces that act on it.
-        max_steps: largest number of steps for each share of the loads. load_steps: if > 1, loads, pressures and
-        tensions grow from zero in this number of steps, which are halved where no equilibrium is found.
+        max_steps: largest number of steps for each share of the loads.
+        load_steps: if > 1, loads, pressures and tensions grow from zero in this number of steps, which are halved where
+            no equilibrium is found.
         BufferError: arrays of views() are in use."""
         values = self._core.relax(
             real(tolerance, "tolerance"), whole(max_steps, "max_steps"), whole(load_steps, "load_steps")
@@ -259,14 +264,14 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
             values["worst"] = self._body(values["worst"])
         return RelaxReport(**values)
 
-    def watch_steps(self, look: Callable[[StepReport], object] | None) -> None:
-        """From now on calls `look` after every completed step, with the report so far, on the thread that advances.
-        `look` may read the world, but must not change it. An exception ends advance() between two steps and comes out
-        of it. None ends the calls."""
+    def watch_steps(self, observe: Callable[[StepReport], object] | None) -> None:
+        """From now on calls `observe` after every completed step, with the report so far, on the thread that advances.
+        `observe` may read the world, but must not change it. If it raises an exception, advance() ends between two
+        steps and raises it again. None ends the calls."""
         self._core.require_between_steps()
-        if look is not None and not callable(look):
-            raise TypeError(f"look: found {look!r}, expected a function")
-        self._watch = self._told(look)
+        if observe is not None and not callable(observe):
+            raise TypeError(f"observe: found {observe!r}, expected a function")
+        self._watch = self._with_report(observe)
 
     @contextmanager
     def trace(self, path: str | os.PathLike[str]) -> Iterator[None]:
@@ -360,11 +365,11 @@ class World(SurfaceRules, WorldFibres, WorldLoads, WorldResults, WorldOutput):
             first, second = second, first
         return self._own(first, "one of two objects", Body), self._own(second, "second", Body, Collider)
 
-    def _told(self, look: Callable[[StepReport], object] | None) -> Callable[[dict[str, Any]], bool] | None:
-        """A function for the extension module that calls `look` with a report."""
-        if look is None:
+    def _with_report(self, observe: Callable[[StepReport], object] | None) -> Callable[[dict[str, Any]], bool] | None:
+        """A function for the extension module that calls `observe` with a report."""
+        if observe is None:
             return None
-        return lambda values: not is_false(look(step_report(self, values)))
+        return lambda values: not is_false(observe(step_report(self, values)))
 
     def _warn_of(self, report: StepReport) -> None:
         """Warns of doubts about the steps of a call."""

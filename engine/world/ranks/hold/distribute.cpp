@@ -39,7 +39,7 @@ void require_divisible(const WorldState& world) {
                         "export problems with one process");
 }
 
-/// Orders the entries as the undivided world does: by the check that found the crossing first, then by row.
+/// Sorts the self-crossings as in the undivided world: by the check that found the crossing first, then by row.
 void sort_self_crossings(WorldState& world) {
     std::ranges::stable_sort(world.record.self_crossings, {}, [&](const SelfCrossing& found) {
         return std::pair(found.first_time, world.model.body_map.row(found.body));
@@ -51,12 +51,12 @@ RankMessage message_of_first(Ranks& ranks, std::span<const std::byte> mine) {
     return std::move(ranks.gather_everywhere(mine).front());
 }
 
-/// Number of messages in which a rank sends its bodies to another rank. So only a part of the bodies is in memory
-/// twice.
+/// Number of messages in which a rank sends its bodies to another rank. With several messages, only a part of the
+/// bodies is in memory twice at a time.
 constexpr Index batches = 8;
 
-/// Number of messages in which a rank sends its bodies to another rank. With several messages, only a part of the
-/// bodies is in memory twice.
+/// Message with the rows of the marked bodies of one batch. `pairs_of`: rank whose pairs the first batch also contains.
+/// `with_records`: true if the message contains the records of the bodies.
 RankMessage message_of_batch(WorldState& world, std::span<const std::uint8_t> marked, Index batch, int pairs_of,
                              bool with_records) {
     const WholeWorld& whole = world.ranks.whole;
@@ -87,7 +87,7 @@ void join_ranks(RankState& mine, Ranks& ranks, const RankSettings& settings, std
     mine.whole.searched_step = step;
 }
 
-/// Completes the start of a world, and chooses the owners of its bodies.
+/// Completes all pending changes of a world, as before a step, and chooses the owners of its bodies.
 std::vector<BodyExtent> choose_parts(World& world, Ranks& ranks, const RankSettings& settings) {
     WorldState& state = WorldAccess::state_of(world);
     require_divisible(state);
@@ -195,7 +195,7 @@ std::vector<BodyExtent> receive_part(World& world, Ranks& ranks, const RankSetti
     for_each_fact(whole, extents, state.model, [&](auto& fact) { take_value(reader, fact); });
     state.model.for_each_joining(
         [&](const char*, auto&, auto&) { take_value(reader, whole.joining_place.emplace_back()); });
-    take_value(reader, whole.joining_place.emplace_back());  // of the attachments
+    take_value(reader, whole.joining_place.emplace_back());  // last list: attachments
     state.model.for_each_joining([&](const char*, auto&, auto& map) {
         for (auto count = reader.take<std::size_t>(); count > 0; --count) {
             const auto slot = reader.take<std::uint32_t>();

@@ -14,12 +14,11 @@ namespace skerry {
 
 namespace {
 
-/// Number of rank searches for which a rank holds a body that it has requested.
+/// Number of rank searches for which a rank keeps a body that it has requested to solve a region.
 constexpr int searches_of_requests = 8;
-/// Greatest number of steps between two rank searches.
+/// Greatest number of steps between two rank searches, so that bodies get new owners when costs have changed.
 constexpr std::uint64_t steps_between_searches = 1000;
-/// Least number of steps for which the margin of a body lasts. The edge length of explicit elements, which is a part of
-/// the margin, lasts longer, because waves cross it in one step.
+/// The margin of a body contains the path of this number of steps at its greatest speed and under gravity (margin_of).
 constexpr Real steps_of_margin = 20;
 /// Cost of a contact, in units of the cost of an explicit element. The solver visits a contact several times.
 constexpr Real contact_cost = 10;
@@ -72,9 +71,9 @@ struct SearchHeader {
 
 /// Facts about the bodies of all ranks.
 struct RankSearch {
-    std::vector<BodyExtent> extents;  // bodies in the order of their places
+    std::vector<BodyExtent> extents;  // bodies in the order of their rows in the undivided world
     std::vector<FetchedUnit> requests;
-    std::vector<Index> stale;  // places of bodies whose copies are outdated
+    std::vector<Index> stale;  // rows in the undivided world of bodies whose copies are outdated
     bool keeps_owners = false;
 };
 

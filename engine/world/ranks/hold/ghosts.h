@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Costs and boxes of marked bodies, in the order of their places. `marked`: by row of BodyTable.
+/// Costs and boxes of marked bodies, in the order of their rows in the undivided world. `marked`: by row of BodyTable.
 std::vector<BodyExtent> extents_of(const WorldState& world, std::span<const std::uint8_t> marked);
 
 /// Sets the columns of RankState that follow from the owners and holders of all bodies. `extents`: all bodies whose box
@@ -27,7 +27,7 @@ void list_ghost_paths(WorldState& world, TaskGraph& graph);
 /// requests, and moves bodies to them. If the costs of the ranks differ too much, bodies get new owners. Changes no
 /// state of any body.
 void update_ghosts(WorldState& world);
-/// Like update_ghosts, but with given owners. `owner`: by place.
+/// Like update_ghosts, but with given owners. `owner`: by row of the undivided world.
 void move_to_owners(WorldState& world, const Column<std::int32_t>& owner);
 
 }  // namespace skerry

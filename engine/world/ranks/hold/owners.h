@@ -20,15 +20,15 @@ struct BodyExtent {
 };
 
 /// Chooses an owner for each body, the same one for all bodies of a unit. `extents`: all bodies that can move, in the
-/// order of their places. Returns owners by place.
+/// order of their rows in the undivided world. Returns the owner for each row of the undivided world.
 Column<std::int32_t> choose_owners(const WholeWorld& whole, std::span<const BodyExtent> extents,
                                    const RankSettings& settings, int rank_count);
 
 /// Greatest cost of a rank divided by the mean cost.
 Real imbalance(std::span<const std::int32_t> owner, std::span<const BodyExtent> extents, int rank_count);
 
-/// For each place, the ranks that hold its body, ascending: the ranks that own a body of its unit, or a body whose box
-/// overlaps the box of a body of its unit. `owner`: by place.
+/// For each row of the undivided world, the ranks that hold its body, ascending: the ranks that own a body of its unit,
+/// or a body whose box overlaps the box of a body of its unit. `owner`: by row of the undivided world.
 std::vector<std::vector<int>> find_holders(const WholeWorld& whole, std::span<const std::int32_t> owner,
                                            std::span<const BodyExtent> extents, int rank_count);
 

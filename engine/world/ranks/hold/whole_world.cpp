@@ -7,7 +7,7 @@ namespace skerry {
 
 namespace {
 
-/// Row of each handle slot of a table.
+/// For each handle slot: row of the table, or no_index. `slot`: slot of each row.
 std::vector<Index> rows_by_slot(std::span<const std::uint32_t> slot) {
     std::vector<Index> rows;
     for (std::size_t row = 0; row < slot.size(); ++row) {

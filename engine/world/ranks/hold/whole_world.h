@@ -19,23 +19,24 @@ struct FetchedUnit {
     int searches;  // number of rank searches after which the rank no longer needs the unit
 };
 
-/// The *place* of a body is its row in the undivided world. The rows of a rank are in the order of their places.
+/// The *place* of a body is its row in the undivided world. Bodies of a rank are in the order of their places.
 struct WholeWorld {
-    static constexpr std::int32_t everywhere = -1;  // owner of a kinematic body, which each rank computes
+    // value of `owner` for a kinematic body, which every rank computes itself
+    static constexpr std::int32_t everywhere = -1;
 
-    // The next columns have one row per place.
+    // The next columns have one entry for each row of the undivided world.
     Column<std::int32_t> owner;  // rank
     Column<std::uint32_t> slot;  // BodyTable::slot
-    // First place of the unit of the body. A *unit* is a set of bodies that joints, ties, cables, springs and other
-    // rows connect. All bodies of a unit have the same owner and the same holders.
+    // First row of the unit of the body in the undivided world. A *unit* is a set of bodies that joints, ties, cables,
+    // springs and other rows connect. All bodies of a unit have the same owner and the same holders.
     Column<Index> unit;
     // records of bodies that this rank does not hold: complete on rank 0, else only names
     std::vector<BodyRecord> records;
-    std::vector<Index> place_of_slot;  // by handle slot: place of the body, or no_index
+    std::vector<Index> place_of_slot;  // by handle slot: row of the body in the undivided world, or no_index
     // Row in the undivided world of each row that connects bodies. Index: table, in the order of
     // Model::for_each_joining, then handle slot of the row. The last list is for attachments.
     std::vector<std::vector<Index>> joining_place;
-    // Ranks that hold the body at each place, ascending.
+    // For each row of the undivided world: ranks that hold the body, ascending.
     std::vector<std::vector<int>> holders;
     std::vector<FetchedUnit> fetched;
     std::uint64_t searched_step = 0;  // number of steps of the run at the last rank search
@@ -43,7 +44,8 @@ struct WholeWorld {
 
     std::size_t size() const { return owner.size(); }
     Index place(std::uint32_t slot_of_body) const { return place_of_slot[slot_of_body]; }
-    /// The rank that searches the pair with this key (ContactKey::pair), and stores its contacts. `owners`: by place.
+    /// The rank that searches the pair with this key (ContactKey::pair), and stores its contacts. `owners`: by row of
+    /// the undivided world.
     std::int32_t pair_owner(std::uint64_t key, std::span<const std::int32_t> owners) const {
         const PairSlots pair = slots_of_pair(key);
         const bool of_first = pair.is_collider || !PairOwners::belongs_to_second(pair.first, pair.second);

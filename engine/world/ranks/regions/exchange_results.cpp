@@ -11,15 +11,15 @@ namespace skerry {
 
 namespace {
 
-/// Velocities of a node after the solve. A record without a name ends a list.
+/// Velocities of a node after the solve. A record with the default name ends a list.
 struct MailedNode {
     NodeName name;
     Vec3 velocity = Vec3::Zero(), push = Vec3::Zero();  // NodeTable: velocity_next, push_out [m/s]
 };
 
-/// Impulses on the frame of a rigid or implicit body (RigidBodyTable). A record without a body ends a list.
+/// Impulses on the frame of a rigid or implicit body (RigidBodyTable). A record with body == no_index ends a list.
 struct MailedBody {
-    Index body = no_index;  // place of the body: its row in the undivided world
+    Index body = no_index;  // row of the body in the undivided world
     Index deforming = 0;    // number of records MailedDeformation that follow
     Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), push = Vec3::Zero(), push_spin = Vec3::Zero();
 };
@@ -30,9 +30,9 @@ struct MailedDeformation {
     Vec3 impulse = Vec3::Zero();
 };
 
-/// Impulse of a row that holds a node along a single direction. A record without a body ends a list.
+/// Impulse of a row that holds a node along a single direction. A record with body == no_index ends a list.
 struct MailedHold {
-    Index body = no_index;  // place of the body: its row in the undivided world
+    Index body = no_index;  // row of the body in the undivided world
     Index entry = 0;        // number of the held node among those of all attachments of the body
     Vec3 impulse = Vec3::Zero();
 };
@@ -166,7 +166,7 @@ private:
                 for (const Index other : rows_.clusters.nodes[static_cast<std::size_t>(cluster)]) list_node(other);
         }
     }
-    /// Returns false if the node is in the list already.
+    /// Adds a node to the list of moved nodes. Returns false if the node is already in the list.
     bool list_node(Index node) {
         if (regions_.sets.node[node].stamp == regions_.sets.now) return false;
         regions_.nodes.push_back(regions_.sets.root(node));

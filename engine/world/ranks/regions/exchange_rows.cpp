@@ -45,7 +45,7 @@ private:
         if (!regions_.open[root] || owner == bodies_.rank) return -1;
         return bodies_.peer_of(owner) == -1 ? no_peer(owner) : bodies_.peer_of(owner);
     }
-    /// Result of solver_of for a rank that shares no body with this rank. Such ranks have numbers below -1.
+    /// Result of solver_of for a rank that shares no body with this rank: a number below -1.
     static int no_peer(int owner) { return -2 - owner; }
 
     /// True if the peer holds the body. Otherwise the body is requested for it.

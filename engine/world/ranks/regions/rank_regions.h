@@ -16,9 +16,9 @@
 
 namespace skerry {
 
-/// Name of a node that all ranks understand.
+/// Identifies a node on all ranks, whose table rows differ.
 struct NodeName {
-    Index body = no_index;  // place of the body: its row in the undivided world
+    Index body = no_index;  // row of the body in the undivided world
     Index node = no_index;  // number of the node within the body
 
     auto operator<=>(const NodeName&) const = default;
@@ -31,8 +31,8 @@ struct RegionLabel {
 };
 
 /// A contact in a message, with its friction axis and the impulse with which the solver starts. Bodies are named by
-/// their places. A node of the stencil is encoded as twice its number within its body, plus 1 if it belongs to the
-/// second body.
+/// their rows in the undivided world. A node of the stencil is encoded as twice its number within its body, plus 1 if
+/// it belongs to the second body.
 struct MailedContact {
     ContactRow row;
     FrictionAxis friction_axis;
@@ -64,7 +64,7 @@ struct SharedBodies {
         const auto body = static_cast<std::size_t>(body_of(node));
         return {place[body], node - nodes[body].begin};
     }
-    /// Row of BodyTable of the body at a place; no_index if this rank does not hold the body.
+    /// Row of BodyTable of the body in a row of the undivided world; no_index if this rank does not hold the body.
     Index row_of(Index of_place) const { return row_of_place(place, of_place); }
     /// Row of NodeTable; no_index if this rank does not hold the body.
     Index node_of(const NodeName& name) const {

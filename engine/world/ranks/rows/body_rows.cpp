@@ -22,10 +22,10 @@ BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked,
                                       .marked = marked,
                                       .watched = model.watch.body,
                                       .kept = model.watch.kept,
-                                      .look = model.watch.look,
+                                      .evaluation = model.watch.evaluation,
                                       .gives_common = false}}};
     rows.place = compose_rows(source, world.ranks.whole, rows.model);
-    rows.watch.push_back({rows.model.watch.body, rows.model.watch.kept, rows.model.watch.look});
+    rows.watch.push_back({rows.model.watch.body, rows.model.watch.kept, rows.model.watch.evaluation});
     const Column<Real>& valid_until = world.cache.search.body_valid_until;
     for (std::size_t b = 0; b < world.ranks.place.size(); ++b)
         if (marked[b] != 0)
@@ -74,7 +74,7 @@ void move_tables(Model& from, Model& to) {
     to.springs = std::move(from.springs);
     to.watch.body = from.watch.body;
     to.watch.kept = from.watch.kept;
-    to.watch.look = from.watch.look;
+    to.watch.evaluation = from.watch.evaluation;
     to.watch.position = std::move(from.watch.position);
     to.watch.stiffness_sum = std::move(from.watch.stiffness_sum);
     to.watch.step = std::move(from.watch.step);
@@ -111,7 +111,8 @@ void forget_candidates(std::span<const std::uint8_t> marked, PairTable& pairs) {
             pairs.valid_until[p] = SearchState::forgotten;
 }
 
-/// Lets the handles of a table refer to its present rows. Handles of absent rows keep their slots. `slot`: by row.
+/// Lets the handles of a table refer to its present rows. Handles of absent rows keep their slots. `slot`: slot of each
+/// row.
 void find_rows_of_handles(auto& map, std::size_t count_before, std::span<const std::uint32_t> slot) {
     map.rows_moved(std::vector<Index>(count_before, no_index));
     for (std::size_t row = 0; row < slot.size(); ++row)
@@ -227,7 +228,7 @@ void enable_pairs(std::span<const std::uint64_t> keys, WorldState& world) {
     }
 }
 
-/// Takes over the entries of bodies that were added. Their sender has made the last checks of these bodies.
+/// Stores the self-crossings of bodies that were added. Their sender has made the last checks of these bodies.
 void take_self_crossings(std::span<const FoundSelfCrossing> added, WorldState& world) {
     std::vector<SelfCrossing>& crossings = world.record.self_crossings;
     for (const FoundSelfCrossing& found : added) {
@@ -251,7 +252,7 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                   const WantsPair& keeps_pair) {
     Model& model = world.model;
     RankState& ranks = world.ranks;
-    // The composition frees the tables of the world, except BodyTable.
+    // Copies of data that are needed below, because the composition frees all tables of the world except BodyTable.
     const Column<Index> place_before = ranks.place, body_of_node = model.nodes.body;
     std::vector<OfBodyTables<Range>> rows_before;
     for (std::size_t b = 0; b < place_before.size(); ++b) rows_before.push_back(rows_of_body(model, b));
@@ -260,7 +261,7 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                                     .marked = kept,
                                     .watched = model.watch.body,
                                     .kept = model.watch.kept,
-                                    .look = model.watch.look,
+                                    .evaluation = model.watch.evaluation,
                                     .gives_common = true,
                                     .is_used_up = true}};
     for (BodyRows& rows : added)
@@ -269,7 +270,7 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                            .marked = {},
                            .watched = rows.watch[0].body,
                            .kept = rows.watch[0].kept,
-                           .look = rows.watch[0].look,
+                           .evaluation = rows.watch[0].evaluation,
                            .gives_common = false,
                            .is_used_up = true});
     Model fresh;

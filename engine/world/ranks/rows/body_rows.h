@@ -13,7 +13,7 @@ namespace skerry {
 /// Progress of the checks of the stable steps, for the rows of BodyRows (StepWatch).
 struct WatchProgress {
     Index body = 0, kept = 0;
-    StepEvaluation look;
+    StepEvaluation evaluation;
 };
 
 /// Entry of WorldReport::self_crossings, without the name.
@@ -53,7 +53,7 @@ void copy_records(const Model& model, std::span<const std::uint8_t> marked, Body
 
 /// Removes all bodies of a settled world that are not marked, and adds bodies. Removes contact data of all pairs for
 /// which `keeps_pair` is false. Changes no other state and wakes no body. Afterwards the rows of all tables are in the
-/// order of the undivided world, and `added` is used up.
+/// order of the undivided world, and `added` is empty.
 void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::span<BodyRows> added,
                   const WantsPair& keeps_pair);
 

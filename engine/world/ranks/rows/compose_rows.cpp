@@ -13,7 +13,7 @@ namespace skerry {
 
 namespace {
 
-/// The rows of a range that a column has.
+/// Bytes of the rows in a range, without rows beyond the end of the column.
 std::span<const std::byte> bytes_of_rows(AnyColumn column, Range rows) {
     const auto begin = static_cast<std::size_t>(rows.begin), end = static_cast<std::size_t>(rows.end);
     const std::size_t has = std::min(end, column.size()), bytes = column.type().bytes;
@@ -69,7 +69,7 @@ void free_column(std::size_t table, std::size_t number, Model& model) {
             model.rigid_bodies, model.implicit_nodes);
 }
 
-/// A row of one of the sources, and its place in the order of the new rows.
+/// A row of one of the sources, and its position in the order of the new rows.
 struct Pick {
     Index order;
     std::size_t source, row;
@@ -134,7 +134,8 @@ private:
             renumber_rows_of_body(to_, row, now[row], down_of(picks_[row]));
     }
 
-    /// `rows`: rows of each picked body in the tables of its source.
+    /// Fills column `c` of a table with the rows of all picked bodies. `rows`: for each picked body, its rows in the
+    /// tables of its source.
     void append_column(std::size_t table, std::size_t c, std::span<const OfBodyTables<Range>> rows) {
         constexpr auto range_of = OfBodyTables<Range>::members();
         std::vector<std::span<const std::byte>> parts;
@@ -186,7 +187,7 @@ private:
         }
     }
 
-    /// Appends the progress of the checks of stable steps. The checks of all ranks have proceeded to the same place.
+    /// Appends the progress of the checks of stable steps. All ranks have done the checks up to the same piece.
     void append_watch() {
         StepWatch& watch = to_.watch;
         for (const Pick& pick : picks_) {
@@ -206,7 +207,7 @@ private:
         if (watch.body < static_cast<Index>(picks_.size()))
             if (const Pick& next = picks_[static_cast<std::size_t>(watch.body)];
                 static_cast<Index>(next.row) == sources_[next.source].watched)
-                watch.look = sources_[next.source].look;
+                watch.evaluation = sources_[next.source].evaluation;
         if (watch.step.size() == picks_.size() && watch.position.size() == to_.nodes.position.size()) return;
         watch = {};
     }

@@ -19,7 +19,7 @@ struct RowSource {
     std::span<const std::uint8_t>
         marked;           // by row of BodyTable: nonzero for a body that the new model gets; empty: all
     Index watched, kept;  // StepWatch::body and StepWatch::kept
-    StepEvaluation look;
+    StepEvaluation evaluation;
     bool gives_common;        // true: also gives the rows that join no body
     bool is_used_up = false;  // true: the columns of its bodies are freed as soon as they are copied
     RowMoves moves{};         // new numbers of the rows; the lists of removed rows are not set
@@ -29,7 +29,8 @@ struct RowSource {
 };
 
 /// Fills the tables of bodies, attachments and rows that join bodies of an empty model with the rows that the sources
-/// give, in the order of the undivided world. Sets RowSource::moves. Returns the place of each body.
+/// give, in the order of the undivided world. Sets RowSource::moves. Returns the row of each body in the undivided
+/// world.
 Column<Index> compose_rows(std::span<RowSource> sources, const WholeWorld& whole, Model& to);
 
 /// Appends a row to all columns that have one row per row of the table.

@@ -19,8 +19,8 @@ void copy_rows(AnyTable from, std::size_t count, auto&& wants, AnyTable to) {
         if (wants(row)) append_row(from, row, to);
 }
 
-/// Converts between the rows of a rank and places, which are the same on all ranks. Nodes are then numbered within
-/// their bodies; a node of the second body has the number ~n.
+/// Converts between the rows of a rank and the rows of the undivided world, which are the same on all ranks. Nodes are
+/// then numbered within their bodies; a node of the second body has the number ~n.
 class PlacesOfContacts {
 public:
     PlacesOfContacts(const Model& model, std::span<const Index> place) : model_(model), place_(place) {}

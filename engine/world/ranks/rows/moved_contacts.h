@@ -8,7 +8,8 @@
 
 namespace skerry {
 
-/// Copies the contact data of all pairs for which `wants` is true. The copies name bodies by their places.
+/// Copies the contact data of all pairs for which `wants` is true. The copies name bodies by their rows in the
+/// undivided world.
 void copy_contacts(WorldState& world, const WantsPair& wants, BodyRows& to);
 
 /// Removes the contact data of pairs for which `keeps` is false, and renumbers the others. `body_of_node`: body row of

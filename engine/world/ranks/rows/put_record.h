@@ -44,7 +44,7 @@ void take_value(MailReader& message, T& value) {
 void put_record(const BodyRecord& record, RankMessage& message);
 /// Reads a record that put_record has written.
 BodyRecord take_record(MailReader& message);
-/// Returns the record of a body that a rank does not hold.
+/// Returns the record of a body that this rank does not hold, and of which it stores only the name.
 BodyRecord record_of_name(std::string name);
 
 }  // namespace skerry

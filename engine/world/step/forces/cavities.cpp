@@ -23,8 +23,8 @@ void list_cavity_forces(WorldState& w, TaskGraph& g) {
             value(w.clock.time), value(p.lag), value(p.kick), outputs<CavityOutputs>(c, w.model.nodes), if_any);
 }
 
-/// Bounds of the squared frequencies of the nodes of a body by the pressure of one cavity. `p`: pressure [Pa].
-/// `stiffness`: stiffness of the filling [Pa/m^3].
+/// Upper bound of the contribution of one cavity's pressure to the squared frequencies of the nodes of a body [1/s^2].
+/// `p`: pressure [Pa]. `stiffness`: stiffness of the filling [Pa/m^3].
 Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Real p, Real stiffness,
                    bool is_implicit) {
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(cavities.body[c])];
@@ -51,7 +51,7 @@ Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Re
     return stiffness * of_filling + (is_implicit ? 0 : p * of_turning);
 }
 
-/// Bound of the squared frequency of a rigid body by the filling of one cavity.
+/// Upper bound of the contribution of one cavity's filling to the squared frequencies of a rigid body [1/s^2].
 Real rate_of_rigid(const Model& model, const CavityInputs& cavities, std::size_t c, Real stiffness) {
     const auto body = static_cast<std::size_t>(cavities.body[c]);
     if (model.is_held(body)) return 0;

@@ -2,7 +2,7 @@
 "use strict";
 
 const decode = (() => {
-  const last_code = 2047, lowest_exponent = -255;  // of a value scale
+  const last_code = 2047, lowest_exponent = -255;  // limits of a value scale
 
   function bytes(base64) {
     const text = atob(base64);
@@ -41,9 +41,9 @@ const decode = (() => {
       ended: () => at >= data.length };
   }
   const times = (number, take) => Array.from({ length: number }, take);
-  // Codes of an earlier scale as they are on a later one.
+  // Converts a code on an earlier scale to a code on a later one.
   const shifted = (code, exponent_prev, exponent) => code >> Math.min(exponent - exponent_prev, 31);
-  const no_lattice = { origin: [0, 0, 0], step: 1e-6, now: [] };  // of contacts without a body
+  const no_lattice = { origin: [0, 0, 0], step: 1e-6, now: [] };  // lattice of contacts without a body
   const value_of = (code, top) => Math.sign(code) * top * (code / last_code) * (code / last_code);
 
   function shape(take, name, fields) {
@@ -151,7 +151,7 @@ const decode = (() => {
     });
   }
 
-  const numbers = 7;  // of a contact: point, force, normal part
+  const numbers = 7;  // count of the numbers of a contact: point, force, normal part
 
   const contact_rows = (size) => ({
     size, prev: new Int32Array(size), next: new Int32Array(size), first: new Int32Array(size),

@@ -1,9 +1,10 @@
 // Size of the scene, from which follow the camera, and the sizes of arrows and dots.
 "use strict";
 
-// center, radius (m): around nearly all of where bodies go, with colliders that are not much larger; the few ends that
-// stick out may be bodies that fell off. course: by frame the box that the camera shows, the same in all frames if the
-// bodies stay about where they begin. spacing, size (m): of surface vertices, of bodies, usually.
+// center, radius (m): of a sphere around the bodies of all frames, without the outermost 2 %, which may be bodies that
+// fell off, and around colliders that are not much larger. course: by frame the box that the camera shows, the same in
+// all frames if the bodies stay about where they begin. spacing (m): median distance of neighbouring surface vertices.
+// size (m): half the edge of the median body.
 function measure_scene(run, bodies, frames) {
   const lower = [[], [], []], upper = [[], [], []], spacing = [], sizes = [];
   for (const frame of frames)
@@ -78,7 +79,7 @@ function box_of_others(box, colliders, frame) {
   return out;
 }
 
-// Around the bodies of a frame but those that have left the others far behind; null without bodies.
+// Box around the bodies of a frame, without those that are far from the others; null without bodies.
 function box_of_frame(frame) {
   const boxes = [...frame.bodies.values()].map(({ lower, extent }) =>
     new THREE.Box3(new THREE.Vector3(...lower), new THREE.Vector3(...lower).add(new THREE.Vector3(...extent))));

@@ -20,7 +20,7 @@ function make_link(receive, status) {
   const token = take_token(), shortest_pause = 0.5, longest_pause = 15;  // s
   let socket = null, pause = shortest_pause;
 
-  // A program that refuses the socket still serves the page. The browser reports both failures alike.
+  // The browser reports a refused socket like a lost program. A program that refuses the socket still serves the page.
   async function is_served() {
     try {
       return (await fetch("/", { cache: "no-store" })).ok;

@@ -6,7 +6,7 @@
 // until `patience` is over and a row has its value or `stale` more rows have come.
 function make_sliders(host, list, move) {
   const patience = 500;  // ms after the last movement
-  const stale = 3;       // rows that may come after a movement and not know it
+  const stale = 3;       // rows that may come after a movement with values from before it
   let newest = 0;        // number of the last row
   const rows = list.map(({ name, unit, low, high, value: initial }, number) => {
     const label = document.createElement("label"), input = document.createElement("input");

@@ -1,8 +1,8 @@
 // The keyboard, and the card that explains the keys.
 "use strict";
 
-// keys: rows of [keys, description, action(shift, key)]. The browser keeps a key whose action returns false. `?` shows
-// the rows; it and Escape hide them again.
+// keys: rows of [keys, description, action(shift, key)]. A key whose action returns false keeps its meaning in the
+// browser. `?` shows the rows; it and Escape hide them again.
 function listen_to_keys(find, keys) {
   const help = find("help"), list = help.querySelector("dl"), spoken = { " ": "Space", ArrowLeft: "\u2190",
     ArrowRight: "\u2192", ArrowUp: "\u2191", ArrowDown: "\u2193" };
@@ -28,7 +28,7 @@ function listen_to_keys(find, keys) {
   bound.set("?", () => show_help(help.hidden));
   bound.set("Escape", () => show_help(false));
 
-  // Keys that an element needs for itself; the timeline leaves its arrows to the page.
+  // Keys that an element needs for itself. The page handles the arrow keys of the timeline.
   const own = { range: /^(Arrow|Page|Home$|End$|Delete$)/, checkbox: /^ $/ };
   const needs = ({ id, type }, key) => id !== "scrub" && own[type] && own[type].test(key);
   window.addEventListener("keydown", (event) => {

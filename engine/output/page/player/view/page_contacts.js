@@ -2,8 +2,8 @@
 // stronger than what lies at rest.
 "use strict";
 
-// A force of scales.force.top gets an arrow about as long as half a body is thick, and no force an arrow of more than
-// three times this length. Dots leave room between vertices.
+// A force of scales.force.top gets an arrow about as long as half a body is thick; the longest arrows are three times
+// as long. Dots at neighbouring vertices do not touch.
 function make_contacts(scene, { size, spacing }, scales) {
   const dot_radius = 0.2 * spacing, arrow_length = 0.75 * size, arrow_width = Math.min(1.1 * spacing, 0.2 * size);
   const copies = make_instances(scene, new THREE.IcosahedronBufferGeometry(1, 1), arrow_geometry());
@@ -60,7 +60,7 @@ function make_contacts(scene, { size, spacing }, scales) {
     }
     copies.upload(count);
   }
-  // The contact at row i as it is shown.
+  // The contact that is shown at row i.
   function at(i) {
     const { list } = shown, strength = Math.hypot(...shown.force.subarray(3 * i, 3 * i + 3));
     const normal = shown.normal[i];

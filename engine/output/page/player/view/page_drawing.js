@@ -1,8 +1,8 @@
 // Drawn surfaces of bodies: the boundary of a body, or its visual surface.
 "use strict";
 
-// Nodes of a drawn surface give positions and values at its nodes from those at the vertices of the body, and the
-// vertices with weights on which the values at a node depend. Nodes of the boundary are the vertices themselves.
+// Functions for the nodes of a drawn surface: their positions and values, given those of the vertices of the body, and
+// the vertices, with weights, on which the values at a node depend. Nodes of the boundary are the vertices themselves.
 const plain_nodes = {
   positions: (points) => points, values: (values) => values, support: (node) => [{ vertex: node, weight: 1 }],
 };

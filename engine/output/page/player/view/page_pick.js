@@ -34,8 +34,8 @@ function box_of_body({ drawn }) {
   return drawn.box;
 }
 
-// The row of make_lines().shown whose segment is nearest to a place of the picture (pixels), within `reach` of it; -1
-// if there is none.
+// The row of make_lines().shown whose segment is nearest to a position in the picture (pixels), within `reach` of it;
+// -1 if there is none.
 function pick_line(shown, camera, { width, height }, { x, y }, reach) {
   const on_screen = (list, i) => {
     const point = new THREE.Vector3().fromArray(list, 3 * i).project(camera);
@@ -56,7 +56,7 @@ function pick_line(shown, camera, { width, height }, { x, y }, reach) {
   return best;
 }
 
-// The contact whose dot is nearest to a place of the picture (pixels), within `reach` of it; -1 if there is none.
+// The contact whose dot is nearest to a position in the picture (pixels), within `reach` of it; -1 if there is none.
 // Contacts behind bodies are included, because their dots show through the bodies.
 function pick_contact(shown, camera, { width, height }, { x, y }, reach) {
   const point = new THREE.Vector3();

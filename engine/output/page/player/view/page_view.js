@@ -56,7 +56,7 @@ function make_view(host, up, box, is_coarse) {
   const style = getComputedStyle(host);
   const pixel_ratio = () => Math.min(window.devicePixelRatio || 1, 2);
   const pace = make_pace(is_coarse, host.clientWidth * host.clientHeight * pixel_ratio() ** 2);
-  let share = 1;  // of the pixels of a row that are drawn
+  let share = 1;  // fraction of the pixels of a row that are drawn
   let free = { share: 1, middle: 0.5 };  // part between the cards: height and middle, as shares of the view
   let dirty = true, shown_place = 0, pick = null, on_change = () => {};
 

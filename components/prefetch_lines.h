@@ -9,7 +9,7 @@ namespace skerry {
 /// Prefetches the cache lines of `count` items and does not wait for the data. The compiler unrolls the loop completely
 /// if `count` is a small constant.
 template <class T>
-[[gnu::always_inline]] inline void ask_for_lines(const T* first, std::size_t count) {
+[[gnu::always_inline]] inline void prefetch_lines(const T* first, std::size_t count) {
     constexpr std::size_t line = 64;
     const char* const bytes = reinterpret_cast<const char*>(first);
 #pragma GCC unroll 16
@@ -19,9 +19,9 @@ template <class T>
 /// Prefetches the cache lines of `count` items that come `ahead` items after `current`. These may be past the end of
 /// the array: prefetching there does no harm.
 template <class T>
-[[gnu::always_inline]] inline void ask_for_lines_ahead(const T* current, std::size_t ahead, std::size_t count) {
+[[gnu::always_inline]] inline void prefetch_lines_ahead(const T* current, std::size_t ahead, std::size_t count) {
     // The sum of a pointer and an offset would be undefined past the end of the array.
-    ask_for_lines(reinterpret_cast<const T*>(reinterpret_cast<std::uintptr_t>(current) + ahead * sizeof(T)), count);
+    prefetch_lines(reinterpret_cast<const T*>(reinterpret_cast<std::uintptr_t>(current) + ahead * sizeof(T)), count);
 }
 
 }  // namespace skerry
