@@ -133,7 +133,7 @@ struct ElementBlockTable {
     }
 };
 
-/// Vector x, y, z padded with a zero, so that it fills a register.
+/// Vector x, y, z and a number without meaning, so that it fills a register.
 using PaddedVec3 = Lanes<Real, 4>;
 
 /// Number of reals per slot of a patch: the size of a PaddedVec3.

@@ -3,6 +3,10 @@
 // stress. Loops over components are unrolled, so that the components stay in registers.
 #pragma once
 
+#ifdef __AVX512VL__
+#include <immintrin.h>
+#endif
+
 #include <array>
 #include <cmath>
 
@@ -59,16 +63,17 @@ struct SixFloats {
     return product;
 }
 
-// The functions below sum in an order that does not depend on the register width.
+// The functions below sum in an order that does not depend on the register width. Halves of 512-bit registers are moved
+// with intrinsics, because gcc shuffles the whole register for __builtin_shufflevector.
 #ifdef __AVX512VL__
 [[gnu::always_inline]] inline KernelFloat together(const Float8& a, const Float8& b) {
-    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    return _mm512_insertf32x8(_mm512_castps256_ps512(a), b, 1);
 }
 [[gnu::always_inline]] inline Float8 first_of(const KernelFloat& pair) {
-    return __builtin_shufflevector(pair, pair, 0, 1, 2, 3, 4, 5, 6, 7);
+    return _mm512_castps512_ps256(pair);
 }
 [[gnu::always_inline]] inline Float8 second_of(const KernelFloat& pair) {
-    return __builtin_shufflevector(pair, pair, 8, 9, 10, 11, 12, 13, 14, 15);
+    return _mm512_extractf32x8_ps(pair, 1);
 }
 [[gnu::always_inline]] inline LaneSymmetric<Float8> components_of(const SixFloats& six) {
     return {first_of(six.of[0]),  second_of(six.of[0]), first_of(six.of[1]),
@@ -90,7 +95,7 @@ struct SixFloats {
     return __builtin_convertvector(reals[0], Float8);
 }
 [[gnu::always_inline]] inline Real8 part_of(const Float8& floats, std::size_t) {
-    return __builtin_convertvector(floats, Real8);
+    return _mm512_cvtps_pd(floats);
 }
 #else
 [[gnu::always_inline]] inline LaneSymmetric<Float8> components_of(const SixFloats& six) {

@@ -244,8 +244,8 @@ struct Run {
         }
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
             // The copies are needed because a variable whose address is taken is stored in memory, even if the call is
-            // not made.
-            if (rests_easy(law, block, F))
+            // not made, and so are results that rests_easy() could share with the stress.
+            if (rests_easy(law, block, copy_of_parts(F)))
                 note(block, false, false);
             else
                 Q = copy_of_parts(with_viscous_stress(*this, block, copy_of_parts(F), scale, copy_of_parts(Q)));
@@ -308,8 +308,7 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
     // load_position reads one number past the position. Only the last node, the highest, may be at the end of the
     // array.
     const std::size_t last = node.size() - 1;
-    for (std::size_t s = 0; s < last; ++s)
-        store_half(__builtin_shufflevector(load_position(&at(s)), Real4{}, 0, 1, 2, 4), to[s].lane);
+    for (std::size_t s = 0; s < last; ++s) store_half(load_position(&at(s)), to[s].lane);
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};
 }
 

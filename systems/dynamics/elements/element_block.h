@@ -3,6 +3,10 @@
 // constant.
 #pragma once
 
+#ifdef __AVX512VL__
+#include <immintrin.h>
+#endif
+
 #include <array>
 #include <cstdint>
 #include <span>
@@ -12,6 +16,16 @@
 #include "systems/material/lane_math.h"
 
 namespace skerry {
+
+/// Returns x, as a value that gcc regards as new. With 512-bit registers gcc then neither loads x from memory at each
+/// use, which would take more time than the arithmetic, nor stores intermediate results for later use.
+template <class T>
+[[gnu::always_inline]] inline T kept_apart(T x) {
+#ifdef __AVX512VL__
+    asm("" : "+v"(x));
+#endif
+    return x;
+}
 
 /// Loads a position and the number that follows it in memory.
 [[gnu::always_inline]] inline Real4 load_position(const Vec3* at) {
@@ -38,6 +52,8 @@ struct PatchRows {
 /// transposes below need. One full-width load per position and a few shuffles replace three gathers, each of which
 /// takes one load per lane.
 #ifdef __AVX512VL__
+// Halves of registers are moved with intrinsics. For __builtin_shufflevector gcc shuffles the whole register.
+
 /// Each entry holds (x, y, z, next node's x) of two lanes: 0 and 4, 1 and 5, 2 and 6, 3 and 7.
 struct Corner {
     Real8 pair[4];
@@ -46,8 +62,8 @@ struct Corner {
 template <class Positions>
 [[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t, Positions position) {
     const auto pair = [&](std::size_t l) {
-        return __builtin_shufflevector(load_position(position + node[l]), load_position(position + node[l + 4]), 0, 1,
-                                       2, 3, 4, 5, 6, 7);
+        return Real8(_mm512_insertf64x4(_mm512_castpd256_pd512(load_position(position + node[l])),
+                                        load_position(position + node[l + 4]), 1));
     };
     return {{pair(0), pair(1), pair(2), pair(3)}};
 }
@@ -162,7 +178,8 @@ inline LaneMat3<Real8> edges(const TetrahedronNodes& node, std::span<const Vec3>
 
 template <class T>
 [[gnu::always_inline]] inline LaneVec3<T> load_gradient(const ElementGradient& gradient, std::size_t part) {
-    return {load_part<T>(gradient[0], part), load_part<T>(gradient[1], part), load_part<T>(gradient[2], part)};
+    return {kept_apart(load_part<T>(gradient[0], part)), kept_apart(load_part<T>(gradient[1], part)),
+            kept_apart(load_part<T>(gradient[2], part))};
 }
 
 inline LaneVec3<Real8> load_gradient(const ElementGradient& gradient) {
@@ -216,14 +233,17 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
     return joined([&](std::size_t part) { return deformation_gradient(block, part, position); });
 }
 
-/// Copies matrices number by number. A rare call gets the copy, so that the original stays in registers.
+/// Copies matrices number by number for rare code, so that the original stays in registers and the copy shares no
+/// intermediate results with it.
 template <class T>
 [[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& of) {
     Parts<LaneMat3<T>> copy;
 #pragma GCC unroll 2
     for (std::size_t part = 0; part < kernel_parts; ++part) {
         const LaneMat3<T>& a = of[part];
-        copy[part] = {{a.c0.x, a.c0.y, a.c0.z}, {a.c1.x, a.c1.y, a.c1.z}, {a.c2.x, a.c2.y, a.c2.z}};
+        copy[part] = {{kept_apart(a.c0.x), kept_apart(a.c0.y), kept_apart(a.c0.z)},
+                      {kept_apart(a.c1.x), kept_apart(a.c1.y), kept_apart(a.c1.z)},
+                      {kept_apart(a.c2.x), kept_apart(a.c2.y), kept_apart(a.c2.z)}};
     }
     return copy;
 }
@@ -279,24 +299,24 @@ template <class Take>
 
 /// Adds the force f of lane l to force[slot[l]], one lane after the other, because two lanes may have the same node.
 [[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real4>& f, const Index* slot, PatchRows<Real> force) {
-    const Real4 zero{};
     // Contains x0 y0 x2 y2: letters are components of f, digits are lanes.
     const Real4 xy02 = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);
     const Real4 xy13 = __builtin_shufflevector(f.x, f.y, 1, 5, 3, 7);
-    // Contains z0 0 z2 0: letters are components of f, digits are lanes.
-    const Real4 z02 = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);
-    const Real4 z13 = __builtin_shufflevector(f.z, zero, 1, 5, 3, 7);
+    // The fourth number of a force has no meaning, so z0 may be followed by z1.
+    const Real4 z02 = f.z, z13 = __builtin_shufflevector(f.z, f.z, 1, 1, 3, 3);
     const auto add = [&](Index to, const Real4& lane) { force[to] = force[to] + lane; };
     add(slot[0], __builtin_shufflevector(xy02, z02, 0, 1, 4, 5));
     add(slot[1], __builtin_shufflevector(xy13, z13, 0, 1, 4, 5));
     add(slot[2], __builtin_shufflevector(xy02, z02, 2, 3, 6, 7));
     add(slot[3], __builtin_shufflevector(xy13, z13, 2, 3, 6, 7));
 }
+#ifdef __AVX512VL__
 [[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real8>& f, const Index* slot, PatchRows<Real> force) {
-    const auto low = [](const Real8& x) { return __builtin_shufflevector(x, x, 0, 1, 2, 3); };
-    const auto high = [](const Real8& x) { return __builtin_shufflevector(x, x, 4, 5, 6, 7); };
+    const auto low = [](const Real8& x) -> Real4 { return _mm512_castpd512_pd256(x); };
+    const auto high = [](const Real8& x) -> Real4 { return _mm512_extractf64x4_pd(x, 1); };
     add_lanes(LaneVec3<Real4>{low(f.x), low(f.y), low(f.z)}, slot, force);
     add_lanes(LaneVec3<Real4>{high(f.x), high(f.y), high(f.z)}, slot + 4, force);
 }
+#endif
 
 }  // namespace skerry
