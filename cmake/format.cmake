@@ -3,7 +3,7 @@
 #                               package (ruff)
 #     lint, lint_changed        clang-tidy on all sources, or on recently changed ones
 #     check_includes, check_includes_changed    each file compiles alone, so that a missing include is found
-#     check_profiling           syntax of the profiling programs
+#     check_profiling           each source of the profiling programs compiles alone
 #     check_kernels             machine code of hot kernels and peak loops: calls, accesses to the stack (GCC, x86-64)
 # The targets run this file as a script, which lists the sources each time. So a new source does not require a new
 # configuration of the build.
@@ -58,7 +58,7 @@ endif()
 set(run python3 ${checks}/check_syntax.py ${PROJECT_BINARY_DIR})
 add_custom_target(check_includes COMMAND ${run} --all VERBATIM)
 add_custom_target(check_includes_changed COMMAND ${run} VERBATIM)
-add_custom_target(check_profiling COMMAND ${run} --precompiled profiling VERBATIM)
+add_custom_target(check_profiling COMMAND ${run} profiling VERBATIM)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
     add_custom_target(check_kernels COMMAND python3 ${checks}/check_kernels.py ${PROJECT_BINARY_DIR} VERBATIM)
     add_dependencies(check_kernels skerry_parts)

@@ -10,6 +10,7 @@ LIBRARY = ("components", "jobs", "systems", "engine")
 # All text of a source; the group holds the text that is neither comment nor space.
 CODE = re.compile(r"""//[^\n]*|/\*.*?\*/|\s+|("(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|.)""", re.DOTALL)
 INCLUDE = re.compile(r'^#include "(.*)"', re.MULTILINE)
+PACKAGE_INCLUDE = re.compile(r"^#include <(.*)>", re.MULTILINE)
 # Sources that need packages, definitions or templates of their own, or belong to another project.
 SPECIAL = re.compile(
     r"jobs/backend_.*\.cpp|engine/absent/.*|engine/fill/netgen/.*|profiling/siconos\.cpp|profiling/.*/bullet_peer\.cpp"
@@ -24,9 +25,9 @@ def git(*arguments):
     return result.stdout if result.returncode == 0 else None
 
 
-def in_folders(folders):
+def in_folders(folders, pattern="*.cpp"):
     """Paths from the root of all sources in the folders, sorted."""
-    names = (path.relative_to(ROOT).as_posix() for folder in folders for path in (ROOT / folder).rglob("*.cpp"))
+    names = (path.relative_to(ROOT).as_posix() for folder in folders for path in (ROOT / folder).rglob(pattern))
     return sorted(name for name in names if not SPECIAL.fullmatch(name))
 
 
@@ -69,6 +70,13 @@ def of_library(everything):
             chosen.add(name)
             missing -= included[name]
     return sorted(chosen)
+
+
+def headers_of_library(everything):
+    """Headers of the library and the program: all, or those that changed."""
+    names = in_folders(LIBRARY, "*.h")
+    changed = changed_files()
+    return [name for name in names if everything or changed is None or name in changed]
 
 
 def commands(build):

@@ -30,7 +30,7 @@ World pile(Backend backend, int threads, MaterialModel model = MaterialModel::st
 
 std::uint64_t hash_after(Backend backend, int threads, MaterialModel model = MaterialModel::stable_neo_hookean) {
     World world = pile(backend, threads, model);
-    const StepReport report = world.advance(0.12);
+    const StepReport report = world.advance(0.07);
     REQUIRE(report.ok());
     REQUIRE(world.report().max_contacts > 40);
     REQUIRE(world.report().inline_steps == 0);

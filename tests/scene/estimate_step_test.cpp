@@ -255,7 +255,7 @@ std::vector<Case> cases() {
 
 }  // namespace
 
-TEST_CASE("the estimated error of the steps is near the true error", "[scene]") {
+TEST_CASE("the estimated error of the steps is near the true error", "[scene][long]") {
     for (const Case& of : cases()) {
         CAPTURE(of.name);
         const Run coarse = run(of, 1);
@@ -331,7 +331,8 @@ struct Stack {
 
 }  // namespace
 
-TEST_CASE("the estimated error of contacts is within a factor of 4 of the error of the force in a step", "[scene]") {
+TEST_CASE("the estimated error of contacts is within a factor of 4 of the error of the force in a step",
+          "[scene][long]") {
     for (const auto& [tolerance, iterations] : {std::pair{1e-3, 200}, {1e-2, 200}, {1e-6, 2}}) {
         CAPTURE(tolerance, iterations);
         Stack stack(tolerance, iterations);

@@ -114,7 +114,7 @@ TEST_CASE("the step in the frame of a body is below the limit and within an eigh
                 }
 }
 
-TEST_CASE("masses in a frame hold for every shape and in every frame", "[unit]") {
+TEST_CASE("masses in a frame hold for every shape and in every frame", "[unit][long]") {
     for (const ElementKind kind : test::element_kinds)
         for (const MaterialModel model : test::material_models)
             for (const Vec3& stretch :

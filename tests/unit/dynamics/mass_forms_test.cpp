@@ -85,7 +85,7 @@ TEST_CASE("the step by mass forms is below the limit and near it", "[unit][long]
                 }
 }
 
-TEST_CASE("mass forms hold for every shape", "[unit]") {
+TEST_CASE("mass forms hold for every shape", "[unit][long]") {
     for (const ElementKind kind : test::element_kinds)
         for (const MaterialModel model : test::material_models)
             for (const Vec3& stretch :

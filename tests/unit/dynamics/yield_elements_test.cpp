@@ -48,7 +48,7 @@ Mat3 stretched_along(const Vec3& axis, Real by) {
 
 }  // namespace
 
-TEST_CASE("plastic flow keeps the rest volume to rounding over 1e5 returns", "[unit]") {
+TEST_CASE("plastic flow keeps the rest volume to rounding over 1e5 returns", "[unit][long]") {
     MaterialConstants perfect = clay();
     perfect.hardening = 0;
     Sample sample(perfect);

@@ -11,6 +11,7 @@
 #include "skerry/cavity.h"
 #include "skerry/joint.h"
 #include "skerry/load.h"
+#include "tests/support/draws.h"
 #include "tests/support/lively_scene.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
@@ -119,7 +120,7 @@ TEST_CASE("a saved world with any bytes in its header is refused, or is the same
     std::memcpy(&length, bytes.data(), sizeof length);
     SplitMix random(4);
     int taken = 0;
-    constexpr int tries = 5000;
+    const int tries = draws(10000);
     for (int i = 0; i < tries; ++i) {
         Bytes changed = bytes;
         for (std::uint64_t left = 1 + random.next() % 3; left > 0; --left) {
