@@ -1,4 +1,4 @@
-"""Adding, finding and removing the objects of a world."""
+"""Adding and removing the objects of a world."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, Unpack, cast
+from typing import TYPE_CHECKING, Any, Unpack
 
 from numpy.typing import ArrayLike
 
@@ -49,23 +49,23 @@ from .._settings import (
     TieKind,
 )
 from .._visual import VisualLike, visual_of
-from .anchor import Anchor, anchor_label, core_anchor
+from .anchor import Anchor, core_anchor
 from .body import Attachment, Body, Indices
 from .cable import Cable, drive_tables
 from .cavity import Cavity, CavityBuilding, Pipe
 from .changes import MaterialChanges
 from .collider import Collider
 from .fibre import FibreFamily
-from .joint import Joint, joint_label
+from .finding import Finding
+from .joint import Joint
 from .load import Load
 from .material import MaterialHandle
-from .objects import NamedObject, ObjectList, Objects, PosedObject
+from .objects import NamedObject, Objects, PosedObject
 from .spring import Spring
 from .tie import Tie
 
 if TYPE_CHECKING:
     from .._recorder import Follower
-    from .world import World
 
 
 _SHAPES = (Plane, Sphere, Box, Capsule, Cylinder, Bucket, SurfaceMesh)
@@ -75,8 +75,8 @@ class Arguments(SimpleNamespace):
     """Arguments of a call for the extension module. Its messages name the object by the attribute `of`."""
 
 
-class Building(CavityBuilding):
-    """The part of World that adds, finds and removes objects."""
+class Building(Finding, CavityBuilding):
+    """The part of World that adds and removes objects."""
 
     __slots__ = (
         "__weakref__",
@@ -90,11 +90,6 @@ class Building(CavityBuilding):
         "_take_every",
         "_watch",
     )
-
-    @property
-    def _self(self) -> World:
-        """The world, which is the only subclass."""
-        return cast("World", self)
 
     def _hold(self, core: Any) -> None:
         self._core: Any = core
@@ -412,77 +407,6 @@ class Building(CavityBuilding):
         handle = self._own(removed, "removed", *kinds)
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)
-
-    @property
-    def bodies(self) -> Objects[Body]:
-        """The bodies by name or number, in the order added."""
-        return Objects(self._core, "bodies", self._body)
-
-    @property
-    def colliders(self) -> Objects[Collider]:
-        """The colliders by name or number, in the order added."""
-        return Objects(self._core, "colliders", self._collider)
-
-    @property
-    def joints(self) -> ObjectList[Joint]:
-        """The joints in the order added."""
-        return ObjectList(self._joint(handle) for handle in self._core.joints())
-
-    @property
-    def ties(self) -> ObjectList[Tie]:
-        """The ties in the order added."""
-        return ObjectList(self._tie(handle) for handle in self._core.ties())
-
-    @property
-    def cables(self) -> ObjectList[Cable]:
-        """The cables in the order added."""
-        return ObjectList(self._cable(handle) for handle in self._core.cables())
-
-    @property
-    def springs(self) -> ObjectList[Spring]:
-        """The springs in the order added."""
-        return ObjectList(self._spring(handle) for handle in self._core.springs())
-
-    @property
-    def attachments(self) -> list[Attachment]:
-        """The attachments in the order added. They have no names."""
-        return [self._attachment(handle) for handle in self._core.attachments()]
-
-    @property
-    def materials(self) -> list[MaterialHandle]:
-        """The materials in the order added. They have no names."""
-        return [MaterialHandle(self._self, handle) for handle in self._core.materials()]
-
-    def _attachment(self, handle: Any) -> Attachment:
-        body = self._body(self._core.body_of(handle))
-        return Attachment(self._self, handle, body, len(self._core.nodes_of(handle)))
-
-    def _body(self, handle: Any, name: str | None = None) -> Body:
-        return Body(self._self, handle, self._core.name(handle) if name is None else name)
-
-    def _collider(self, handle: Any, name: str | None = None) -> Collider:
-        return Collider(self._self, handle, self._core.name(handle) if name is None else name)
-
-    def _cable(self, handle: Any) -> Cable:
-        points = self._core.cable_state(handle)["points"]
-        objects = list(dict.fromkeys(anchor_label(self._self, point) for point in points))
-        return Cable(self._self, handle, f"cable of {', '.join(objects[:-1])} and {objects[-1]}")
-
-    def _joint(self, handle: Any) -> Joint:
-        state = self._core.joint_state(handle)
-        second = state["second"]
-        label = joint_label(
-            state["kind"], self._core.name(state["first"]), None if second is None else self._core.name(second)
-        )
-        return Joint(self._self, handle, label)
-
-    def _tie(self, handle: Any) -> Tie:
-        return Tie(self._self, handle, f"tie of body '{self._core.name(self._core.tie_state(handle)['body'])}'")
-
-    def _spring(self, handle: Any) -> Spring:
-        state = self._core.spring_state(handle)
-        first, second = (anchor_label(self._self, state[name]) for name in ("first", "second"))
-        return Spring(self._self, handle, f"spring of {first} and {second}")
 
     def _mesh_of(self, body: Any) -> tuple[Indices, Indices]:
         """Surface and tetrahedra of a body, which never change."""
