@@ -12,8 +12,8 @@ namespace skerry {
 struct ImplicitNodeTable {
     Column<Vec3> displacement;  // displacement u by the deformation, in the frame of the mesh [m]
     Column<Vec3> velocity;      // deformation velocity w; for a held body the complete velocity of the node [m/s]
-    // Change of the velocity w by contacts in the last long step, times the length of that step [m]. The column is zero
-    // outside a long step. carry_long_steps writes it.
+    // Change of the velocity w by contacts in the previous long step, times the length of that step [m]. The contacts
+    // are assumed to continue in the present long step. Zero for a body in no long step. carry_long_steps writes it.
     Column<Vec3> left;
     // kick_implicit_bodies writes the next three columns in this step.
     Column<Vec3> elastic_force;

@@ -165,7 +165,8 @@ private:
     void fill_within_tolerance(bool clean) {
         if (settings_.tolerance == 0)
             refuse(clean ? netgen_failure_ : "a surface with holes, crossings or other faults, and a tolerance of 0",
-                   clean ? "tetrahedra from Netgen" : "a clean surface, or a tolerance above 0",
+                   clean ? "tetrahedra from Netgen, or a tolerance above 0, with which fTetWild fills the surface"
+                         : "a clean surface, or a tolerance above 0",
                    netgen_missing_ ? install_netgen : "");
         const Real diagonal = box_diagonal(surface());
         const Real edge = settings_.edge.value_or(clean ? mean_edge(surface()) : default_edge * diagonal);

@@ -12,7 +12,7 @@
 namespace skerry::mesh {
 
 struct MesherCall {
-    std::vector<std::string> command;  // the program, with a path or to be found in PATH, and its arguments
+    std::vector<std::string> command;  // path of the program, or its name if it is in PATH, and the arguments
     FillLimits limits{};
     // Called about 50 times a second while the mesher runs. An exception ends the mesher.
     std::function<void()> wait{};

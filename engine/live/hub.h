@@ -67,7 +67,7 @@ public:
     void set_state(const LiveState& state);
     /// Sends the text of a problem to a browser.
     void report(std::uint64_t client, const std::string& problem);
-    /// Sends the reason why the run has failed to all browsers, and to those that come while it is paused.
+    /// Sends all browsers the reason why the run has failed. Browsers that join before the run continues get it too.
     void report_failure(const std::string& reason);
     /// Notes that the world may differ from the last snapshot.
     void mark_changed();

@@ -211,7 +211,7 @@ std::size_t agreed_count(std::span<const World* const> worlds, const std::string
         if (w == 0) count = in_world;
         if (in_world != count)
             refuse(title, "world " + std::to_string(w), std::to_string(in_world),
-                   std::to_string(count) + " as in world 0, of which all worlds must be copies");
+                   std::to_string(count) + " as in world 0; all worlds must be copies of it");
     }
     return count;
 }

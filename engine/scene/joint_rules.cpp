@@ -77,7 +77,8 @@ const Rule<JointEntry>& rule_of<JointEntry>() {
             .key("axis", &Entry::axis,
                  {.meaning = "axis of a hinge or slider in the world, of any nonzero length; default: z"})
             .key("coordinate", &Entry::coordinate,
-                 {.meaning = "rotation or translation of the first body in the poses at the start", .unit = "rad or m"})
+                 {.meaning = "value of the rotation or translation in the poses at the start; default: 0",
+                  .unit = "rad or m"})
             .key("lower", &Entry::lower,
                  {.meaning = "lower limit of the rotation or translation; default: none", .unit = "rad or m"})
             .key("upper", &Entry::upper,

@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Settings for filling surfaces. `progress`: gets the activity. `python`: see mesh::FillSettings.
+/// Settings for filling surfaces. `progress`: is called with a text on the activity. `python`: see mesh::FillSettings.
 struct SurfaceFilling {
     const mesh::FillProgress& progress;
     const std::string& python;

@@ -182,7 +182,7 @@ struct ScenePlan {
 };
 
 /// Reads a scene, its meshes and the files that it includes, fills surfaces with tetrahedra, and resolves all names.
-/// `progress`: gets the activity while surfaces are filled. Throws SceneError.
+/// `progress`: is called with a text about the activity while surfaces are filled. Throws SceneError.
 ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {},
                      const mesh::FillProgress& progress = {});
 /// Plans a scene that was read with the assignments of `overrides`. Messages name `file`.

@@ -137,8 +137,8 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
 template <>
 const Rule<VisualEntry>& rule_of<VisualEntry>() {
     static const auto rule =
-        Rule<VisualEntry>(
-            "visual", "A triangle surface in the frame of the mesh that is drawn in place of a body and follows it.")
+        Rule<VisualEntry>("visual",
+                          "A triangle surface, in the frame of the body's mesh, which is drawn in place of the body.")
             .key("file", &VisualEntry::file,
                  {.meaning = "path of a surface file, for example .obj or .stl, relative to the folder of the scene",
                   .required = true})

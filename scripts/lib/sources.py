@@ -37,7 +37,8 @@ def code_of(text):
 
 
 def changed_files():
-    """Names of files whose code differs from the last commit or from that before LATELY; None without git."""
+    """Names of files touched since the last commit that is older than LATELY. Sources and headers are left out if their
+    code is as in that commit. None without git."""
     newest = git("log", "-1", "--format=%ct")
     if not newest:
         return None

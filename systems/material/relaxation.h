@@ -88,9 +88,9 @@ struct MaxwellSprings {
     }
 };
 
-/// Spring stiffnesses of the Maxwell elements [Pa]. `mu` and `lambda`: Lame constants of each of the maxwell_count
-/// equal springs, which are those of the material times the ratio relaxing_share. `bulk` acts on the change of volume
-/// alone.
+/// Stiffnesses of the springs of the Maxwell elements [Pa]. `mu` and `lambda`: Lame constants of the material times the
+/// ratio relaxing_share. Each of the maxwell_count equal springs has these constants. `bulk`: stiffness of the spring
+/// of the bulk viscosity, which resists only changes of volume.
 struct ViscousModuli {
     Real mu, lambda, bulk;
 };

@@ -68,7 +68,7 @@ Real predicted_cost(Index contacts, Real average, bool lanes, const SolverSettin
 /// counting sort places small regions of equal size next to each other.
 void sort_regions(std::span<const Index> contacts, const Column<Real>& cost, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
-    // For each size class, largest regions first: start of the class in the order.
+    // For each size class, from large to small: start of its regions in the order. Class 0: too large for lanes.
     std::array<Index, largest_lane_region + 2> begin{};
     const auto place = [&](Index r) { return std::max<Index>(0, largest_lane_region + 1 - contacts[r]); };
     for (Index r = 0; r < count; ++r) ++begin[static_cast<std::size_t>(place(r)) + 1];

@@ -60,8 +60,8 @@ public:
     ErrorEstimator(ErrorEstimator&&) noexcept;
     ErrorEstimator& operator=(ErrorEstimator&&) noexcept;
 
-    /// Call this after every call of advance(). Takes a sample if there were enough steps since the last one; samples
-    /// take less than 2 % of the computing time of the steps.
+    /// Call this after every call of advance(). Takes a sample when motion starts, and then after every fixed number of
+    /// steps with motion. Samples take less than 2 % of the computing time of the steps.
     void sample(const World& world);
     /// Takes the last sample. Call this once, at the end of a run. After less than 8000 explicit steps it samples the
     /// mesh errors of only a few bodies, at least one: those with the most elastic energy. This limits the computing

@@ -48,8 +48,8 @@ struct Deformation {
     bool any() const { return !displacement.empty(); }
 };
 
-/// Must be called after the node displacements of a body were overwritten. Finds out whether the body has large strain.
-/// If such a body is free, its frame is fitted to the deformed shape.
+/// Must be called after the node displacements or the mass of a body were changed. Finds out whether the body has large
+/// strain. Fits the frame of a free body to the deformed shape at large strain, and to the rest shape when it ends.
 void note_strain(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);

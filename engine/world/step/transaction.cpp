@@ -256,8 +256,8 @@ AttemptLimits limits_of_next_attempt(const StepScratch& scratch, const StepPlan&
                        .limit = attempt.limit,
                        .body = attempt.body};
     if (fastest.body == no_index && scratch.parameters.longest < plan.stable && attempt.slow_enough < attempt.longest) {
-        // The check found no deformation that is too fast for a step of length `longest`. Longer steps were not
-        // checked.
+        // The check found no deformation that is too fast for a step of length StepParameters::longest. Longer steps
+        // were not checked, so the length grows only by fast_growth.
         next.slow_enough = fast_growth * plan.h;
         next.fastest = attempt.fastest;
     }

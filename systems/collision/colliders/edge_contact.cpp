@@ -58,7 +58,7 @@ public:
     }
 
     /// Calls visit(s) for the parameters s at which the edge crosses the planes of the sides of a box. Between two such
-    /// parameters, the nearest feature of the box stays the same.
+    /// parameters, the nearest feature of the box stays the same, except inside the box.
     void for_each_kink(auto&& visit) const {
         if (geometry_.shape != ColliderShape::box) return;
         for (int i = 0; i < 3; ++i)

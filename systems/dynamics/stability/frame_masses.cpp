@@ -303,7 +303,7 @@ void find_frame_masses(const ElementInputs& elements, Range blocks, std::span<co
     if (blocks.size() == 0) return;
     const RestStiffness stiffness(elements, blocks, position, mass);
     if (!(stiffness.products() <= most_products)) return;
-    constexpr Real above = 1.005;  // safety factor: the Lanczos vectors may have missed the highest mode
+    constexpr Real above = 1.005;  // ratio of the first limit to the Lanczos value, which may be slightly too low
     BandDecomposition decomposition;
     Real limit = above * stiffness.highest();
     for (Real growth = above; std::isfinite(limit) && limit > 0 && !stiffness.is_below(limit, decomposition);

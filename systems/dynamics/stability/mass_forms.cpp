@@ -141,7 +141,7 @@ public:
         std::vector<ElementGroup> groups;
         cut(blocks_, groups);
         share(groups);
-        constexpr Real above = 1.005;  // safety factor: the iterated vectors may have missed the highest mode
+        constexpr Real above = 1.005;  // ratio of the first bound to the iterated value, which may be slightly too low
         Real bound = 0;
         for (const ElementGroup& group : groups) bound = std::max(bound, above * group.highest);
         for (const ElementGroup& group : groups) {

@@ -148,7 +148,7 @@ Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const La
     }
     return frequency_squared_bound(material, F, viscous, load(elements.volume[block]), form_of(elements, block), q,
                                    enough, Sharpness::stepped) +
-           0.0 * inner_product(F, F);  // this bound is NaN if F is not finite
+           0.0 * inner_product(F, F);  // this term makes the bound NaN if F is not finite
 }
 
 Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,

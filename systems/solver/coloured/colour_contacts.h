@@ -48,7 +48,7 @@ inline constexpr Index smallest_colour = 64;
 
 /// Colours the contacts greedily in ascending order, with at most 64 colours. Contacts without a free colour go to the
 /// tail. The result depends only on the arguments. Nodes are numbered 0 .. node_count - 1. Contacts of a colour are
-/// sorted by node, so that equal shares of different colours use the same nodes.
+/// sorted by node: a worker that gets an equal share of each colour then reuses the nodes in its cache.
 void colour_contacts(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory,
                      ColouredOrder& order);
 
