@@ -190,7 +190,7 @@ class MpirunTest(ProgramCase):
     def test_a_signal_to_one_rank_ends_all_before_the_start(self):
         """The signal arrives while the ranks move the bodies to a static equilibrium."""
         fine = dict(BLOCK, name="block_0", position=[0, 0, 0.11],
-                    mesh={"box": {"size": [0.2, 0.2, 0.2], "cells": [8, 8, 8]}})
+                    mesh={"box": {"size": [0.2, 0.2, 0.2], "cells": [14, 14, 14]}})
         soft = self.write("soft.json", SCENE_OF_FOUR | {"bodies": [fine]})
         job = subprocess.Popen(self.command(2, "run", soft, "--quiet", "--from-rest"), stderr=subprocess.PIPE,
                                text=True)
@@ -201,7 +201,7 @@ class MpirunTest(ProgramCase):
             os.kill(self.process_of(job, 1), signal.SIGTERM)
             errors = job.communicate(timeout=60)[1]
         self.assertEqual(job.returncode, 143, errors)
-        self.assertEqual(errors.count("stopped by a signal before the start"), 1)
+        self.assertEqual(errors.count("stopped by a signal before the start"), 1, errors)
 
 
 def without_regions(content):
