@@ -4,7 +4,7 @@
 #     lint, lint_changed        clang-tidy on all sources, or on recently changed ones
 #     check_includes, check_includes_changed    each file compiles alone, so that a missing include is found
 #     check_profiling           each source of the profiling programs compiles alone
-#     check_kernels             machine code of hot kernels and peak loops: calls, accesses to the stack (GCC, x86-64)
+#     check_kernels             machine code of kernels and peak loops: calls, stack accesses, fused instructions (GCC)
 # The targets run this file as a script, which lists the sources each time. So a new source does not require a new
 # configuration of the build.
 set(code_folders components jobs systems engine examples profiling tests)

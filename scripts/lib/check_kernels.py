@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Checks the machine code of hot kernels: calls, and accesses to the stack.
+"""Checks the machine code of kernels: calls and accesses to the stack in hot kernels, and fused multiply-adds.
 
 check_kernels.py BUILD_FOLDER disassembles the kernels of a finished build, and the peak loops of profiling/roofline
 compiled with the options of each instruction set. Ends with an error if a function is above a limit of LIMITS, if no
-function has the given word in its name, or if a peak loop has other instructions than it should.
+function has the given word in its name, if a function has a fused multiply-add, whose rounding differs from that of
+other instruction sets, or if a peak loop has other instructions than it should.
 """
 import pathlib
 import re
@@ -33,6 +34,7 @@ STRING_INSTRUCTION = re.compile(r"(movs|stos)[bwlq]\b")
 # Calls of functions that end the program, or that are in a part of a function that is rarely reached.
 COLD = re.compile(r"\.cold\b|fail|terminate|throw|_Unwind_Resume|__cxa_")
 VECTOR = re.compile(r"%[xyz]mm\d+")
+FUSED = re.compile(r"vfn?m(add|sub)\w*")
 SCALAR_COMPARISON = re.compile(r"v?u?comis[sd]|v?cmp\w*s[sd]|set\w+")
 
 # Instructions of the peak loops: a pattern and its count in one round. `chains` is the number of independent chains,
@@ -81,7 +83,8 @@ def instruction_set_of(command):
 
 
 def check_limits(build, commands):
-    """Compares all functions of LIMITS with their limits. Returns the number of errors."""
+    """Compares all functions of LIMITS with their limits, and rejects fused multiply-adds. Returns the number of
+    errors."""
     objects = {}
     for command in commands:
         if "-o" in command and command[command.index("-o") + 1].startswith("systems/"):
@@ -93,12 +96,15 @@ def check_limits(build, commands):
     for instruction_set, paths in sorted(objects.items()):
         found = {word: [] for word in LIMITS}
         for path in paths:
-            names = run("nm", "-C", path)
-            if any(word in names for word in LIMITS):
-                for name, instructions in functions_of(path).items():
-                    for word in LIMITS:
-                        if word in name and not COLD.search(name):
-                            found[word].append((counts_of(instructions), name))
+            for name, instructions in functions_of(path).items():
+                for word in LIMITS:
+                    if word in name and not COLD.search(name):
+                        found[word].append((counts_of(instructions), name))
+                fused = sorted({one for _, one, _ in instructions if FUSED.fullmatch(one)})
+                if fused:
+                    print(f"FAILED: {instruction_set}: {name}: found {', '.join(fused)}, expected no fused "
+                          "multiply-add, because results must not depend on the instruction set")
+                    errors += 1
         for word, functions in found.items():
             limits = LIMITS[word].get(instruction_set)
             if not functions:

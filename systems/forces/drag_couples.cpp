@@ -1,6 +1,6 @@
 #include "systems/forces/drag_couples.h"
 
-#include <Eigen/Eigenvalues>
+#include "systems/geometry/symmetric_eigen.h"
 
 namespace skerry {
 
@@ -9,11 +9,11 @@ namespace {
 /// Solves J x = y for a symmetric J whose eigenvalues are not negative, without the directions in which J vanishes.
 Vec3 solve_where_possible(const Mat3& J, const Vec3& y) {
     constexpr Real negligible = 1e-9;
-    const Eigen::SelfAdjointEigenSolver<Mat3> parts(J);
+    const SymmetricEigen parts = symmetric_eigen(J);
     Vec3 x = Vec3::Zero();
     for (Index i = 0; i < 3; ++i)
-        if (const Real value = parts.eigenvalues()[i]; value > negligible * parts.eigenvalues()[2])
-            x += parts.eigenvectors().col(i).dot(y) / value * parts.eigenvectors().col(i);
+        if (const Real value = parts.values[i]; value > negligible * parts.values[2])
+            x += parts.vectors.col(i).dot(y) / value * parts.vectors.col(i);
     return x;
 }
 

@@ -1,12 +1,12 @@
 #include "systems/material/orthotropic.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "systems/geometry/symmetric_eigen.h"
 #include "systems/material/lane_power.h"
 #include "systems/material/relaxation.h"
 
@@ -164,10 +164,8 @@ Tangent Orthotropic::tangent(const MaterialConstants& material, const Mat3& F) {
     Tangent tangent{Mat3::Identity(), Mat3::Identity(), Mat3::Zero(), Vec3::Zero(), Vec3::Zero()};
     tangent.is_anisotropic = true;
     tangent.dyads = dyads(material, F);
-    const Eigen::SelfAdjointEigenSolver<Mat3> axes(
-        matrix_of(second_stress(material, twice_green_strain(from_matrix(F)))));
-    tangent.second_stress =
-        axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).asDiagonal() * axes.eigenvectors().transpose();
+    const SymmetricEigen axes = symmetric_eigen(matrix_of(second_stress(material, twice_green_strain(from_matrix(F)))));
+    tangent.second_stress = axes.vectors * axes.values.cwiseMax(0).asDiagonal() * axes.vectors.transpose();
     return tangent;
 }
 
@@ -185,7 +183,7 @@ void set_orthotropic(const OrthotropicModuli& moduli, MaterialConstants& materia
     constexpr Real isotropic_share = 0.9;
     const Mat3 normal = normal_stiffness(moduli);
     const Vec3& G = moduli.shear_modulus;
-    const Real least = std::min(Eigen::SelfAdjointEigenSolver<Mat3>(normal).eigenvalues()[0], 2 * G.minCoeff());
+    const Real least = std::min(symmetric_eigenvalues(normal)[0], 2 * G.minCoeff());
     const Real twice_shear = isotropic_share * least;
     const Vec3 ones = Vec3::Ones();
     const Vec3 even = (normal - twice_shear * Mat3::Identity()).ldlt().solve(ones);
@@ -196,13 +194,13 @@ void set_orthotropic(const OrthotropicModuli& moduli, MaterialConstants& materia
     axes.col(0) = moduli.first_axis.normalized();
     axes.col(2) = axes.col(0).cross(moduli.second_axis).normalized();
     axes.col(1) = axes.col(2).cross(axes.col(0));
-    const Eigen::SelfAdjointEigenSolver<Mat3> modes(normal - material.lame_lambda * Mat3::Ones());
+    const SymmetricEigen modes = symmetric_eigen(normal - material.lame_lambda * Mat3::Ones());
     const auto set = [&](std::size_t k, Real modulus, const Mat3& unit) {
         set_mode(material, k, std::sqrt(modulus / material.shear_modulus) * axes * unit * axes.transpose());
     };
     for (Index k = 0; k < 3; ++k) {
         const auto number = static_cast<std::size_t>(k);
-        set(number, modes.eigenvalues()[k], modes.eigenvectors().col(k).asDiagonal());
+        set(number, modes.values[k], modes.vectors.col(k).asDiagonal());
         const Index i = k == 2 ? 0 : k, j = k == 0 ? 1 : 2;  // axes 12, 23, 13, as in shear_modulus
         Mat3 shear = Mat3::Zero();
         shear(i, j) = shear(j, i) = std::sqrt(0.5);

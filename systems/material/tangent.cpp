@@ -1,9 +1,10 @@
 #include "systems/material/tangent.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+
+#include "systems/geometry/symmetric_eigen.h"
 
 namespace skerry {
 
@@ -11,10 +12,10 @@ Stretches::Stretches(const Mat3& F) {
     // Uses the eigenvalues of F^T F, which takes a third of the time of a singular value decomposition (SVD). The SVD
     // is needed if a stretch is so small that its square is lost in rounding.
     constexpr Real flat = 1e-4;  // least squared stretch, relative to the largest squared stretch, for the fast way
-    const Eigen::SelfAdjointEigenSolver<Mat3> squares(F.transpose() * F);
-    const Vec3& squared = squares.eigenvalues();
+    const SymmetricEigen squares = symmetric_eigen(F.transpose() * F);
+    const Vec3& squared = squares.values;
     if (squared[0] > flat * squared[2]) {
-        right = squares.eigenvectors();
+        right = squares.vectors;
         if (right.determinant() < 0) right.col(0) *= -1;
         stretch = squared.cwiseSqrt();
         if (F.determinant() < 0) stretch[0] *= -1;
@@ -38,9 +39,8 @@ Stretches::Stretches(const Mat3& F) {
 Tangent without_softening(const Stretches& frames, const Mat3& normal, const Vec3& flip, const Vec3& twist) {
     Tangent tangent{frames.left, frames.right, normal, flip.cwiseMax(0), twist.cwiseMax(0)};
     if (Eigen::LLT<Mat3>(normal).info() == Eigen::Success) return tangent;
-    const Eigen::SelfAdjointEigenSolver<Mat3> modes(normal);
-    tangent.normal =
-        modes.eigenvectors() * modes.eigenvalues().cwiseMax(0).asDiagonal() * modes.eigenvectors().transpose();
+    const SymmetricEigen modes = symmetric_eigen(normal);
+    tangent.normal = modes.vectors * modes.values.cwiseMax(0).asDiagonal() * modes.vectors.transpose();
     return tangent;
 }
 

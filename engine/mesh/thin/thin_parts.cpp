@@ -1,6 +1,5 @@
 #include "engine/mesh/thin/thin_parts.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "engine/mesh/tetrahedron.h"
 #include "engine/mesh/thin/bending.h"
 #include "engine/mesh/thin/column.h"
+#include "systems/geometry/symmetric_eigen.h"
 
 namespace skerry::mesh {
 
@@ -79,7 +79,7 @@ ThinPart measure(const Mesh& mesh, std::span<const ThinColumn* const> columns, V
         const Vec3 d = column->start - part.place;
         spread += column->area * d * d.transpose();
     }
-    axis = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(2);
+    axis = symmetric_eigen(spread).vectors.col(2);
     Real low = infinity, high = -infinity;
     for (const ThinColumn* column : columns)
         for (const Index n : column->first) {

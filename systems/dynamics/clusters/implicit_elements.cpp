@@ -1,16 +1,16 @@
 #include "systems/dynamics/clusters/implicit_elements.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/dynamics/stability/stiffness_share.h"
+#include "systems/geometry/symmetric_eigen.h"
 
 namespace skerry {
 
 Real least_moment_of(const Mat3& spread) {
-    const Vec3 along = Eigen::SelfAdjointEigenSolver<Mat3>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+    const Vec3 along = symmetric_eigenvalues(spread);
     return along[0] + along[1];
 }
 

@@ -1,6 +1,5 @@
 #include "systems/dynamics/elements/element_energy.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "components/check.h"
 #include "systems/dynamics/elements/element_block.h"
+#include "systems/geometry/symmetric_eigen.h"
 #include "systems/material/extract_rotation.h"
 #include "systems/material/relaxation.h"
 #include "systems/material/with_law.h"
@@ -172,9 +172,7 @@ Real von_mises(const Mat3& cauchy) {
 }
 
 Vec3 principal_stresses(const Mat3& cauchy) {
-    return Eigen::SelfAdjointEigenSolver<Mat3>((cauchy + cauchy.transpose()) / 2, Eigen::EigenvaluesOnly)
-        .eigenvalues()
-        .reverse();
+    return symmetric_eigenvalues((cauchy + cauchy.transpose()) / 2).reverse();
 }
 
 }  // namespace skerry

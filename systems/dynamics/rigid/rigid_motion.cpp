@@ -1,15 +1,14 @@
 #include "systems/dynamics/rigid/rigid_motion.h"
 
-#include <Eigen/Eigenvalues>
-
 #include "systems/geometry/rotation.h"
+#include "systems/geometry/symmetric_eigen.h"
 
 namespace skerry {
 
 PrincipalInertia::PrincipalInertia(const Mat3& inertia) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> principal(inertia);
-    moments = principal.eigenvalues();
-    axes = principal.eigenvectors();
+    const SymmetricEigen principal = symmetric_eigen(inertia);
+    moments = principal.values;
+    axes = principal.vectors;
     if (axes.determinant() < 0) axes.col(2) *= -1;
 }
 

@@ -1,10 +1,10 @@
 #include "systems/dynamics/stability/find_relaxation.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "systems/dynamics/stability/stiffness_share.h"
+#include "systems/geometry/symmetric_eigen.h"
 #include "systems/material/relaxation.h"
 
 namespace skerry {
@@ -21,7 +21,7 @@ Real lowest_frequency_estimate(std::span<const Vec3> position, std::span<const R
     Mat3 moment = Mat3::Zero();
     for (std::size_t n = 0; n < position.size(); ++n)
         moment += mass[n] * (position[n] - center) * (position[n] - center).transpose();
-    const Vec3 squares = Eigen::SelfAdjointEigenSolver<Mat3>(moment / total, Eigen::EigenvaluesOnly).eigenvalues();
+    const Vec3 squares = symmetric_eigenvalues(moment / total);
     // A box of length L has the radius of gyration L / sqrt(12) along its length.
     const Real length = std::sqrt(12 * squares[2]), thickness = std::sqrt(12 * std::max(squares[0], Real{0}));
     // Lowest angular frequencies: 22.4 / L^2 sqrt(E I / (rho A)) of a free beam of length L, and about 3 c / L of a
