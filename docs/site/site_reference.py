@@ -148,7 +148,7 @@ def lay_out_docstring(app: Sphinx, what: str, name: str, obj: Any, options: Any,
                 item = item and not after_blank
                 if line.startswith("- ") and re.match(r" *[^- ]", result[-1] if result else ""):
                     result.append("")  # between a paragraph and a list
-                line = f"  {line}" if item else line
+                line = f"  {line.lstrip()}" if item else line
         result.append(line)
     lines[:] = result
 
