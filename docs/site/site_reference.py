@@ -15,7 +15,7 @@ from sphinx.util.docutils import SphinxDirective
 
 # Meaning, default and unit of a key, as in "density; default: 1000 [kg/m^3]".
 DESCRIPTION = re.compile(r"(?P<meaning>.*?)(?:; default: (?P<default>.*?))?(?: \[(?P<unit>[^\[\]]+)\])?", re.DOTALL)
-ITEM = re.compile(r"(\w+): (.*)")
+ITEM = re.compile(r"((?:\w+, )*\w+): (.*)")
 SPECIAL = re.compile(r"`[^`]*`|\|")
 
 Schema = dict[str, Any]
@@ -148,7 +148,7 @@ def lay_out_docstring(app: Sphinx, what: str, name: str, obj: Any, options: Any,
                 item = item and not after_blank
                 if line.startswith("- ") and re.match(r" *[^- ]", result[-1] if result else ""):
                     result.append("")  # between a paragraph and a list
-                line = f"  {line.lstrip()}" if item else line
+                line = f"  {line.removeprefix('    ')}" if item else line
         result.append(line)
     lines[:] = result
 
