@@ -128,8 +128,8 @@ def write_header_pages(app: Sphinx) -> None:
 
 
 def lay_out_docstring(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
-    """Makes reStructuredText of a docstring: items such as `rate: decay rate [1/s].` and `- rate` become lists, and
-    indented lines become code."""
+    """Makes reStructuredText of a docstring: items such as `rate: decay rate [1/s].`, `lower, upper: limits.` and
+    `- rate` become lists, and indented lines after a blank line become code."""
     result: list[str] = []
     item = code = False  # inside an item `name: text`, inside code
     for line in lines:

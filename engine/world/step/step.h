@@ -32,8 +32,8 @@ struct NamedBody {
     BodyHandle body{};  // a stale handle for a mesh collider
     std::string name;
 };
-/// Returns the handle and name of the body in a row of the undivided world, which this rank may not hold. Without ranks
-/// the place is the row in BodyTable.
+/// Returns the handle and name of the body in a row of the undivided world, which this rank may not hold. `place`: this
+/// row; without ranks, the row in BodyTable.
 NamedBody name_body(const WorldState& world, Index place);
 /// Row in the undivided world of the body with the shortest stable step. `row`: result of stable_step.
 Index place_of_stiffest(const WorldState& world, Index row);
