@@ -133,7 +133,9 @@ def status_of(answer: bytes) -> int:
 
 
 def advance(client: Client, dt: float = 0.01) -> None:
-    """Advances by dt and waits until the client has the frame."""
+    """Advances by dt and waits until the client has a frame of the new state. One of the state before may still come."""
     world, count = client.view.world, len(client.frames)
     world.advance(dt)
-    client.wait(lambda: len(client.frames) > count)
+    client.wait(
+        lambda: count < len(client.frames) == len(client.rows) and abs(client.rows[-1]["time"] - world.time) < 1e-9
+    )
