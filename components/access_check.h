@@ -14,7 +14,8 @@ inline constexpr bool access_is_checked = false;
 #endif
 
 /// Observer of column accesses. While an AccessScope exists on a thread, every access of the thread to a column calls
-/// touched() of the scope's AccessWatch. touched() throws if the access is not allowed.
+/// touched() of the scope's AccessWatch. touched() throws if the access is not allowed. `column`: address of the Column
+/// or of its member CopyCheck; `bytes`: size of this object.
 class AccessWatch {
 public:
     virtual void touched(const void* column, std::size_t bytes, bool writes) const = 0;
@@ -53,8 +54,8 @@ private:
     const AccessWatch* before_;
 };
 
-/// Member that makes copies and moves of the enclosing class count as accesses: each copy or move is reported to the
-/// AccessWatch of the thread. A forbidden move terminates the program with a message, because a move must not throw.
+/// Member of Column. It reports each copy and each move of the enclosing column as an access to the AccessWatch of the
+/// thread. A forbidden move terminates the program with a message, because a move must not throw.
 class CopyCheck {
 public:
     CopyCheck() = default;

@@ -13,7 +13,7 @@ namespace skerry {
 
 /// A point in the coordinates of the object to which it is fixed.
 struct AnchorRow {
-    // On a body: four nodes, numbered as in the mesh of the body, and their weights, whose sum is 1.
+    // On a body: the point is the weighted mean of four nodes. The weights sum to 1. Nodes are numbered as in the mesh.
     std::array<Index, 4> node{};
     std::array<Real, 4> weight{};
     // On a collider: position in the frame of the collider. Without body and collider: position in the world [m].
@@ -26,7 +26,8 @@ struct MembersOf<AnchorRow> {
     static std::span<const Member> list();
 };
 
-/// Columns of anchors, in a table whose rows join bodies. An anchor without body and collider is fixed to the world.
+/// Columns of a table in which each row has an anchor, for example a table of the points of cables. An anchor without
+/// body and collider is fixed to the world.
 struct AnchorColumns {
     Column<Index> body;      // row of BodyTable, or no_index
     Column<Index> collider;  // row of ColliderTable, or no_index; always no_index if there is a body

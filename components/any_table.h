@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// Reference to a column of any type, with the semantics of a pointer.
+/// Refers to a column of any type, like a pointer: a const AnyColumn can change the rows of its column.
 class AnyColumn {
 public:
     template <class T>
@@ -43,7 +43,7 @@ private:
     const RowType* type_;
 };
 
-/// Name, role, position and row type of a column of a table.
+/// Name, role, offset and row type of a column of a table.
 struct ColumnInfo {
     const char* name;
     ColumnRole role;

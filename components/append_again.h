@@ -10,9 +10,9 @@
 
 namespace skerry {
 
-/// Offsets from the rows of a body to the rows of a copy of the body with the same mesh.
+/// Rows of a body minus the corresponding rows of an earlier body with the same mesh.
 struct RowsBehind {
-    Index nodes, elements;  // `nodes`: offset in rows of NodeTable; `elements`: offset in tetrahedra
+    Index nodes, elements;  // difference of rows of NodeTable, and of numbers of tetrahedra
     Index triangles = 0, edges = 0, vertices = 0;
 };
 

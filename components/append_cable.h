@@ -5,8 +5,8 @@
 
 namespace skerry {
 
-/// Appends a point without segment, friction and impulse to the columns by point. `velocity`: velocity of the collider
-/// [m/s]
+/// Appends a point to the columns with one row per point. Direction, length, friction and impulse get neutral values,
+/// which the caller may overwrite. `velocity`: see CableBlockTable::velocity [m/s]
 inline void append_point(const Stencil& stencil, const Vec3& velocity, CableBlockTable& blocks) {
     blocks.stencil.push_back(stencil);
     blocks.velocity.push_back(velocity);
@@ -16,7 +16,7 @@ inline void append_point(const Stencil& stencil, const Vec3& velocity, CableBloc
     blocks.impulse.push_back(0);
 }
 
-/// Removes the points from row `count` on, which must not belong to a block yet.
+/// Removes all points from row `count` on. No block may contain these points.
 inline void truncate_points(Index count, CableBlockTable& blocks) {
     const auto rows = static_cast<std::size_t>(count);
     blocks.stencil.resize(rows);
@@ -27,7 +27,8 @@ inline void truncate_points(Index count, CableBlockTable& blocks) {
     blocks.impulse.resize(rows);
 }
 
-/// Appends a block whose points are in the table.
+/// Appends a block. Its points must already be in the table. For a solved block, `mobilities` grows by the number of
+/// entries of its mobility matrix, which has a row and a column per impulse.
 inline void append_block(const CableBlock& block, CableBlockTable& blocks) {
     if (block.solved) blocks.mobilities += block.impulses() * block.impulses();
     blocks.block.push_back(block);

@@ -20,12 +20,12 @@ struct AttachmentTable {
     Column<std::uint32_t> slot;
     Column<Index> body;   // row of BodyTable
     Column<Range> nodes;  // range of rows in the columns `node` and `anchor`
-    // pose and motion of the attachment in this step; a held node is at position + rotation * anchor
+    // pose and motion of the attachment in this step; at its start a held node is at position + rotation * anchor
     Column<RigidMotion> motion;
     Column<RigidMotion> initial;  // pose and motion of the attachment at the start of the script
     Column<MotionScript> script;
-    // Columns of the matrix: orthonormal directions along which the nodes are held. A zero column holds no direction.
-    // The identity matrix marks nodes that are held completely; only such nodes have the inverse mass 0.
+    // Columns of the matrix: orthonormal directions along which the nodes are held. A zero column stands for no
+    // direction. The identity matrix marks nodes that are held completely; only such nodes have the inverse mass 0.
     Column<Mat3> held;
     Column<Index> node;         // held nodes of all attachments: rows of NodeTable
     Column<Vec3> anchor;        // position of `node` in the frame of the attachment [m]

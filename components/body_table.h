@@ -75,8 +75,8 @@ struct BodyTable {
     Column<Real> mean_edge;     // mean edge length of the surface in the rest shape [m]
     Column<Real> min_altitude;  // smallest altitude of the elements in the rest shape [m]
     Column<Real> rest_step;     // longest stable step of the body in its rest shape [s]
-    Column<Real> stable_step;   // longest stable step of the body according to the last check [s]
-    // Longest step at which the implicit elements of the body are stable; 0: the body has no implicit elements [s].
+    Column<Real> stable_step;   // longest stable step of the body in its shape at the last check [s]
+    // Longest step at which the implicit elements (elements of clusters) of the body are stable; 0: it has none [s].
     Column<Real> cluster_step;
     // 1: the body is asleep. Steps do not compute a sleeping body until another object touches it.
     Column<std::uint8_t> asleep;
@@ -89,22 +89,24 @@ struct BodyTable {
     // Time for which the body has been still (update_sleep.h) [s].
     Column<Real> still_time;
     // Measurements of stillness (stillness.h), used if SleepSettings::own_limits is set. The sleep time is divided into
-    // two halves. |drift| is the largest distance of a node from its still_position in the current half [m]. `drift` is
-    // negative if a later measurement in the half found a smaller distance. `drift_before` is the largest distance in
-    // the previous half [m].
+    // two halves. |drift| is the largest distance, measured in the current half, of a node from its position at the
+    // start of the half (NodeTable::still_position) [m]. `drift` is negative if the distance has decreased between two
+    // measurements, so that the body does not move steadily. `drift_before` is |drift| at the end of the previous half
+    // [m].
     Column<Real> drift, drift_before;
     // `shape_drift`: largest distance, measured in the current half of the sleep time, between the shape of the body
-    // and its shape at the start of the half (stillness.h: shape_distance) [m]. `creep_before`: largest distance in the
-    // previous half if that distance was reached at the end of the half, else 0 [m].
+    // and its shape at the start of the half (stillness.h: shape_distance) [m]. `creep_before`: shape_drift at the end
+    // of the previous half; 0 if this was not the last distance measured there, because a creeping shape changes in one
+    // direction [m].
     Column<Real> shape_drift, creep_before;
     Column<Real> max_speed;  // greatest speed of a node in this step [m/s]
     Column<MovingFrame> frame;
     // The next columns are measured in the moving frame of the body.
     Column<Real> frame_speed;  // greatest speed of a node relative to the frame in this step [m/s]
-    // Greatest distance of a node from its displacement_origin, a point that moves with the frame [m].
+    // Greatest |position - displacement_origin - frame.offset| of the nodes [m].
     Column<Real> displacement;
-    // Bound on the motion of the nodes relative to the frame [m]: the sum of all changes of `displacement`. Since an
-    // earlier time t no node has moved further than travel - travel(t) + 2 displacement(t).
+    // Sum of the changes of `displacement`, except its resets to zero [m]. Since an earlier time t no node has moved
+    // relative to the frame by more than travel - travel(t) + 2 displacement(t) (docs/methods/collision.md 2.1).
     Column<Real> travel;
     // no tetrahedron of the body changes the sign of its volume while `travel` is below this value [m]
     Column<Real> uninverted_until;

@@ -7,9 +7,9 @@
 namespace skerry {
 
 /// Exponent of the smallest power of two above the longest edge of the box. The rounding error of the edge length never
-/// makes the exponent too small.
+/// makes the exponent too small: a length of at least 2^n is never rounded to less, because 2^n is representable.
 BoxGrid::Level BoxGrid::level_of(const Aabb& box) {
-    // Limits of the edge length [m]. They ensure that the cells have a finite edge.
+    // Limits of the edge length [m]. They ensure that the edges of cells are finite and above zero.
     constexpr Real least = std::numeric_limits<Real>::min(), most = 0x1p1000;
     int level = 0;
     std::frexp(std::clamp((box.upper - box.lower).maxCoeff(), least, most), &level);

@@ -14,18 +14,19 @@
 namespace skerry {
 
 /// Hashed grids, one for each cell width that occurs; all cell widths are powers of two. A box is stored in the grid
-/// whose cells are just wider than the longest edge of the box, in the cell that contains its lower corner. Any box
-/// that overlaps the stored box reaches into this cell or comes closer to the cell than one cell width. Cells are found
-/// by hashing their integer coordinates (Teschner, Heidelberger, Müller, Pomeranets, Gross 2003; grids of several
-/// sizes: Mirtich 1996). The next call of `build` reuses the memory.
+/// whose cells are wider than the longest edge of the box by at most a factor of two, in the cell that contains its
+/// lower corner. Any box that overlaps the stored box reaches into this cell or comes closer to the cell than one cell
+/// width. Cells are found by hashing their integer coordinates (Teschner, Heidelberger, Müller, Pomeranets, Gross 2003;
+/// grids of several sizes: Mirtich 1996). The next call of `build` reuses the memory.
 class BoxGrid {
 public:
     /// Builds the grid from the boxes box[r] for all r in `rows`. These boxes must be finite. `box` must stay unchanged
     /// while the grid is queried.
     void build(std::span<const Aabb> box, std::span<const Index> rows);
 
-    /// Calls visit(other) once for each inserted row whose box may overlap the box of `row`. If for_each_near is called
-    /// for all rows, every pair of boxes that share a point is visited exactly once.
+    /// Calls visit(other) for inserted rows whose boxes may overlap the box of `row`, each once. Only rows in coarser
+    /// grids than `row`, and rows with greater indices in the grid of `row`, are visited. Calling for_each_near for all
+    /// inserted rows therefore visits every pair of boxes that share a point exactly once.
     template <class Visit>
     void for_each_near(Index row, Visit&& visit) const {
         const Aabb& box = box_[static_cast<std::size_t>(row)];

@@ -30,8 +30,8 @@ inline constexpr int leaf_lanes = 8;
 /// Triangles of a leaf: rows of TriangleTable; unused lanes are no_index.
 using LeafTriangles = std::array<Index, leaf_lanes>;
 
-/// Mesh nodes of the triangles of a leaf. This copy lets the code that computes the box of a leaf or gathers its
-/// triangles avoid reading TriangleTable.
+/// Mesh nodes of the triangles of a leaf, copied from TriangleTable. Computing the box of a leaf and gathering its
+/// triangles then need not read TriangleTable.
 struct LeafNodes {
     static constexpr std::size_t most = 3 * leaf_lanes;
     // Mesh nodes of the three corners of each triangle, by lane; lanes without a triangle repeat the first triangle.
@@ -40,7 +40,8 @@ struct LeafNodes {
     std::array<Index, most> node{};  // the mesh nodes of all triangles of the leaf, ascending, each listed once
 };
 
-/// Edges and vertices that the triangles of a leaf own. This copy lets a search avoid reading TriangleTable.
+/// Edges and vertices that the triangles of a leaf own; each edge or vertex has one owner (TriangleTable). A search
+/// reads this copy instead of TriangleTable.
 struct LeafFeatures {
     static constexpr std::size_t most = 3 * leaf_lanes;
     struct Edge {
@@ -58,7 +59,7 @@ struct LeafFeatures {
 
 /// Boxes and topology of the tree nodes. Model::rebuild_outlines derives BvhTable and BvhLeafTable.
 struct BvhTable {
-    Column<Aabb> box;      // box of the tree node, recomputed when a pair of its body is searched again [m]
+    Column<Aabb> box;      // box of the tree node; out of date until a search uses the tree of the body again [m]
     Column<BvhNode> node;  // topology of the tree, which is built once from the rest shape
 
     void for_each_column(auto&& visit) {

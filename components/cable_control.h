@@ -9,7 +9,7 @@ namespace skerry {
 
 using CableHandle = Handle<struct CableTag>;  // refers to a cable of a world
 
-/// Quantity of a cable that its keys prescribe.
+/// Quantity of a cable that the user prescribes over time.
 enum class CableControl : std::uint8_t {
     tension,  // tension of the first segment [N]
     length,   // greatest length; a shorter cable is slack [m]

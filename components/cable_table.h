@@ -1,4 +1,5 @@
-// Cables: one row per cable, the points through which they run, and the cables of a step (docs/methods/cables.md).
+// Cables: one row per cable, the points through which the cables run, and the equations of cables in a step
+// (docs/methods/cables.md).
 #pragma once
 
 #include <cstdint>
@@ -23,23 +24,23 @@ inline constexpr std::uint64_t value_count<CableControl> = 3;
 struct CableTable {
     Column<std::uint32_t> slot;
     Column<CableControl> control;
-    Column<Real> friction;    // friction coefficient at the points between the first and the last
-    Column<Real> released;    // greatest length at the end of the last step [m]; used by the control `rate`
-    Column<Real> step;        // time for which the tensions acted in the last step; 0 before the first step [s]
-    Column<Real> work;        // work of the control on the cable before the last step [J]
-    Column<Real> dissipated;  // energy that friction at the points dissipated before the last step [J]
-    Column<Range> points;     // rows of the columns by point
+    Column<Real> friction;  // friction coefficient at the points between the first and the last
+    Column<Real> released;  // greatest length at the end of the last step [m]; the control `rate` changes it from there
+    Column<Real> step;      // time for which the tensions acted in the last step; 0 before the first step [s]
+    Column<Real> work;      // work of the control on the cable up to the start of the last step [J]
+    Column<Real> dissipated;  // energy that friction at the points dissipated up to the start of the last step [J]
+    Column<Range> points;     // rows of the columns that have one row per point
     Column<Range> keys;       // rows of `key`
     // The following columns have one row per point. For the last point of a cable, `tension` and `length` are 0.
     AnchorColumns anchor;
-    Column<Real> tension;  // impulse of the tension of the segment from this point in the last step [N s]
-    Column<Real> length;   // length of the segment from this point at the start of the last step [m]
+    Column<Real> tension;  // impulse of the tension, in the last step, in the segment that begins at this point [N s]
+    Column<Real> length;   // length, at the start of the last step, of the segment that begins at this point [m]
     Column<TimeKey> key;   // prescribed values of all cables
 
     std::size_t size() const { return slot.size(); }
 
     std::span<const TimeKey> keys_of(std::size_t cable) const { return rows_of(key.span(), keys[cable]); }
-    /// Rows of the cable in the columns by point.
+    /// Rows of the cable in the columns with one row per point.
     Range list_of(std::size_t cable) const { return points[cable]; }
     /// Erases the keys and the points of a cable.
     void erase_keys_of(std::size_t cable) {
@@ -78,44 +79,52 @@ struct CableTable {
     }
 };
 
-/// A cable in a step, or a tie of the kind `ball`: both have equations that many points share. All points of a tie get
-/// the same impulse, and their velocities sum to zero.
+/// Equations of a cable in a step, or of a tie of the kind `ball` (TieKind). They differ from those of a contact in
+/// that many points take part. For a tie: all points get the same impulse, and the sum of their velocities is zero.
 struct CableBlock {
-    Index cable;   // row of CableTable or TieTable
-    Range points;  // rows of the columns by point of CableBlockTable
-    // True if the rows of the cable are solved with the contacts of a region. False if the cable acts by known forces.
+    Index cable;   // row of CableTable; for a tie, row of TieTable
+    Range points;  // rows of those columns of CableBlockTable that have one row per point
+    // True: the impulses are unknowns and are solved with the contacts of a region. False: the forces of the cable are
+    // known before the step.
     bool solved;
     bool by_length;  // true: the greatest length is prescribed; false: the tension of the first segment
-    Real wanted;     // greatest rate of the length [m/s], or impulse of the tension of the first segment [N s]
-    Real released;   // greatest length at the end of the step [m]
-    Index mobility;  // row of the first entry of the cable in the mobility matrices of the region solver
+    // If by_length: greatest rate of the length [m/s]. Otherwise: impulse of the tension of the first segment [N s].
+    Real wanted;
+    Real released;  // greatest length at the end of the step [m]
+    // index of the first entry of the block's mobility matrix in the array of all these matrices in the region solver
+    Index mobility;
     bool is_tie = false;
-    // For a tie: position at which its impulse acts on the other object, to which the last point belongs [m].
+    // For a tie: position at which its impulse acts on the object that the nodes are tied to [m]. The last point of the
+    // block belongs to this object.
     Vec3 acts_at = Vec3::Zero();
 
     /// Number of impulses of the block: one per segment of a cable, or the three components of the impulse of a tie.
-    /// They are the first rows of CableBlockTable::impulse.
+    /// Row points.begin + i of CableBlockTable::impulse stores impulse i.
     Index impulses() const { return is_tie ? 3 : points.size() - 1; }
-    /// Position at which the impulse of point `p` acts on rigid and implicit bodies. nullptr: the nodes of the point.
+    /// Position at which the impulse of point `p` acts on rigid and implicit bodies. Returns nullptr if the impulse
+    /// acts at the nodes of the point.
     const Vec3* acting_point(Index p) const { return is_tie && p + 1 == points.end ? &acts_at : nullptr; }
 };
 
-/// The cables that act in a step, then the ties of the kind `ball`. Those whose bodies all sleep, or that cannot move
-/// anything, are left out.
+/// Blocks of a step: first cables with known forces, then solved cables, then ties of the kind `ball`. A cable or tie
+/// is left out if all its bodies sleep, or if its impulses cannot move any node.
 struct CableBlockTable {
     Column<CableBlock> block;
-    // The following columns have one row per point.
+    // The following columns have one row per point, except those marked `by block`.
     Column<Stencil> stencil;  // nodes and weights; all weights are 0 for points of colliders and of the world
-    Column<Vec3> velocity;    // velocity of points of colliders; 0 for other points [m/s]
-    Column<Vec3> direction;   // unit vector to the next point; 0 at the last point
-    Column<Real> length;      // distance to the next point; 0 at the last point [m]
-    Column<Real> most_ratio;  // greatest ratio of the tensions on both sides of the point, exp(friction angle)
-    Column<Real> impulse;  // tension of the segment from the point, as an impulse; before the solve: warm start [N s]
-    Column<Real> work;     // by block: work of a solved cable on the bodies [J]
+    // velocity that is added to the velocity of the nodes: the velocity of a point of a collider, or minus the velocity
+    // that a tie demands (at its last point); else 0 [m/s]
+    Column<Vec3> velocity;
+    Column<Vec3> direction;  // unit vector to the next point; 0 at the last point
+    Column<Real> length;     // distance to the next point; 0 at the last point [m]
+    // greatest ratio of the tensions on both sides of the point: exp(friction coefficient times bend [rad])
+    Column<Real> most_ratio;
+    Column<Real> impulse;      // impulses of the block (CableBlock::impulses); before the solve: the warm start [N s]
+    Column<Real> work;         // by block: work of a solved cable on the bodies [J]
     Column<Real> dissipated;   // by block: energy that friction at the points of a solved cable dissipates [J]
     Column<Vec3> sum_impulse;  // by block: total impulse of a solved cable on the moving nodes [N s]
     Index mobilities = 0;      // number of entries of all mobility matrices
-    Index first_solved = 0;    // the blocks from here on have `solved` set
+    Index first_solved = 0;    // row of the first block with `solved` set; all later blocks have it set, too
 
     std::span<const CableBlock> solved() const { return block.span().subspan(static_cast<std::size_t>(first_solved)); }
     void for_each_column(auto&& visit) {

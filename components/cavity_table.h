@@ -16,7 +16,8 @@
 
 namespace skerry {
 
-/// Constants of the filling of a cavity. A liquid uses `ambient` and `bulk_modulus`, a gas all others.
+/// Constants of the filling of a cavity. A gas uses `ambient`, `density` and `exponent`, a liquid `ambient` and
+/// `bulk_modulus`.
 struct CavityFluid {
     Real ambient = 0;       // absolute pressure outside of the body [Pa]
     Real density = 0;       // density of the gas at ambient pressure [kg/m^3]
@@ -35,21 +36,22 @@ struct CavityTable {
     Column<CavityLaw> law;
     Column<std::uint8_t> closed;  // 1: every edge of the faces belongs to two of them
     Column<Range> faces;          // rows of `face`
-    // Rows of `key`, at least one: the pressure [Pa], the flow of gas into the cavity [kg/s], or the volume that the
-    // liquid has at ambient pressure [m^3].
+    // Rows of `key`, at least one. Law `pressure`: pressure above ambient [Pa]. Law `gas`: flow of gas into the cavity
+    // [kg/s]. Law `liquid`: volume that the liquid has at ambient pressure [m^3].
     Column<Range> keys;
     Column<CavityFluid> fluid;
     Column<Real> mass;  // mass of the gas [kg]
-    // Volume of an open cavity when its faces were at `corners`. Unused for closed faces [m^3].
+    // Volume of a cavity that is not closed, with its faces at `corners` [m^3]. A step adds the volume that the faces
+    // sweep from there. Unused if `closed` is 1.
     Column<Real> volume;
     Column<Real> pressure_now;  // pressure above ambient in the last step [Pa]
     Column<Real> volume_now;    // volume at the start of this step [m^3]
     // The next columns have one row per face.
     Column<std::array<Index, 3>> face;  // node numbers in the mesh of the body
-    // Columns: positions of the three nodes at the end of the last step. Unused for closed faces [m].
+    // Columns of the matrix: positions of the three nodes at the end of the last step [m]. Unused if `closed` is 1.
     Column<Mat3> corners;
     Column<Vec3> area;         // area times the normal that points from the body into the cavity, in this step [m^2]
-    Column<Real> swept_parts;  // working memory of add_cavity_forces
+    Column<Real> swept_parts;  // working memory of add_cavity_forces: volumes by group of faces [m^3]
     Column<TimeKey> key;       // keys of all cavities
 
     std::size_t size() const { return slot.size(); }
@@ -57,7 +59,7 @@ struct CavityTable {
     std::span<const std::array<Index, 3>> faces_of(std::size_t row) const { return rows_of(face.span(), faces[row]); }
     std::span<const Mat3> corners_of(std::size_t row) const { return rows_of(corners.span(), faces[row]); }
     std::span<const TimeKey> keys_of(std::size_t row) const { return rows_of(key.span(), keys[row]); }
-    /// Erases the keys and the faces of one row.
+    /// Erases the keys and the faces of one cavity.
     void erase_keys_of(std::size_t row) {
         erase_keys(keys, key, row);
         const Range gone = faces[row];
@@ -93,7 +95,8 @@ struct CavityTable {
     }
 };
 
-/// One row per pipe. A pipe connects two cavities with gas, or one such cavity and a reservoir.
+/// One row per pipe. A pipe connects two cavities that contain gas, or a cavity that contains gas and a reservoir of
+/// prescribed pressure.
 struct PipeTable {
     Column<std::uint32_t> slot;
     Column<Index> first_body, second_body;  // bodies of the cavities, rows of BodyTable; no_index for a reservoir

@@ -17,13 +17,13 @@ enum class ColliderShape : std::uint8_t { plane, sphere, box, capsule, cylinder,
 template <>
 inline constexpr std::uint64_t value_count<ColliderShape> = 7;
 
-/// A collider shape in its own frame. The shape is centred at the origin, and its axis is the z axis.
+/// A collider shape in its own frame. Its axis is the z axis. All shapes but bucket and mesh are centred at the origin.
 struct ColliderGeometry {
     ColliderShape shape;
     // Dimensions of the shape [m]. plane: unused, the normal is +z. sphere: (radius, -, -). box: half extents. capsule:
     // (radius, half length of the segment, -). cylinder: (radius, half height, -). bucket: (inner radius, inner height,
-    // wall thickness); the floor is at z = 0, the top is open, and the wall thickness also applies to the floor. mesh:
-    // unused, see BodyTable::collider.
+    // wall thickness); the inner side of the floor is at z = 0, the top is open, and the wall thickness also applies to
+    // the floor. mesh: unused, see BodyTable::collider.
     Vec3 size;
 };
 template <>
@@ -31,7 +31,7 @@ struct MembersOf<ColliderGeometry> {
     static std::span<const Member> list();
 };
 
-/// Pose of a rigid shape and its motion during this step.
+/// Pose of a rigid shape at the start of this step, and its mean motion during the step.
 struct RigidMotion {
     Vec3 position;          // [m]
     Mat3 rotation;          // maps the shape frame to the world
@@ -44,7 +44,7 @@ template <>
 struct NumbersOf<RigidMotion> : Reals<18> {};
 
 /// Keyframe of a script. Between two keyframes the position is interpolated linearly, and the shape rotates about a
-/// fixed axis.
+/// fixed axis at constant speed.
 struct Keyframe {
     Real time;      // [s]
     Vec3 position;  // [m]
@@ -79,7 +79,7 @@ struct ColliderTable {
     Column<Index> material;          // row of MaterialTable: material of the surface, or no_index
     Column<CollisionFilter> filter;  // groups that the collider belongs to, and groups that it collides with
     Column<Index> body;              // row of BodyTable: kinematic body of a mesh collider, else no_index
-    // Bound on the motion of those points of the collider that are near a body, similar to BodyTable::travel [m].
+    // Counter whose increase bounds the distance that the points of the collider near a body move meanwhile [m].
     Column<Real> travel;
 
     /// Visits the columns with one row per collider. The column `keyframe` is visited by for_each_column only.

@@ -78,7 +78,7 @@ public:
         }
         memory.set_size(memory.size() + 1);
     }
-    /// Removes `count` rows, beginning with row `first`. Later rows move down in order.
+    /// Removes `count` rows, beginning with row `first`. Later rows move to lower indices and keep their order.
     void erase(std::size_t first, std::size_t count) { changed().erase(first, count, sizeof(T)); }
     /// Removes ranges of rows in ascending order, in one pass. Parts of a range beyond the last row are ignored.
     void erase(std::span<const Range> gone) { changed().erase(gone, sizeof(T)); }

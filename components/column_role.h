@@ -9,11 +9,11 @@ namespace skerry {
 /// the role `memory` are saved but not hashed. `derived` and `scratch` columns are neither hashed nor saved.
 enum class ColumnRole : std::uint8_t {
     state,  // the next step depends on the column, and the column cannot be derived from other columns
-    // state whose meaning is hashed instead of its value, for example a row index of another table
+    // state that is not hashed as stored: state_hash.cpp hashes, for example, a handle slot instead of a row index
     link,
-    body,      // link to a row of BodyTable, or no_index; only in tables of Model::for_each_joining
-    collider,  // link to a row of ColliderTable, or no_index; only in tables of Model::for_each_joining
-    memory,    // bounds and their reference values; they decide when a check is repeated, but do not change any result
+    body,      // `link` to a row of BodyTable, or no_index; only in tables that Model::for_each_joining visits
+    collider,  // `link` to a row of ColliderTable, or no_index; only in tables that Model::for_each_joining visits
+    memory,    // no result depends on the column; most such columns are bounds that decide when a check is repeated
     derived,   // computed from the state by the function that the comment of the table names
     scratch,   // values that each step writes before reading them, or that affect no result
 };

@@ -12,7 +12,7 @@
 namespace skerry {
 
 /// Kinds of contacts. In a point_collider, edge_collider or face_collider contact a node, an edge or a face of a body
-/// touches an analytic collider.
+/// touches an analytic collider (one that is given by a formula, not by a mesh).
 enum class ContactKind : std::uint8_t { point_triangle, edge_edge, point_collider, edge_collider, face_collider };
 template <>
 inline constexpr std::uint64_t value_count<ContactKind> = 5;
@@ -22,9 +22,10 @@ inline constexpr std::uint64_t value_count<ContactState> = 3;
 
 /// Identifies the two touching features across steps. Bits 63..62 of `pair` are the kind of the pair (0: two bodies, 1:
 /// body and collider); then follow the two handle slots (31 bits each). Bit 63 of `feature` is set for an edge-edge
-/// contact. Bit 62 shows which of the two bodies owns the point or first edge. Then follow the feature numbers local to
-/// the two bodies (31 bits each). For a contact with an analytic collider, bit 63 marks an edge and bit 62 a face of
-/// the body (contact_key.h). Keys are unique in a world and stay valid when other bodies are removed.
+/// contact. Bit 62 is set if the point of a point-triangle contact belongs to the second body. Then follow the numbers
+/// of the point and triangle, or of the two edges, within their bodies (31 bits each). For a contact with an analytic
+/// collider, bit 63 marks an edge and bit 62 a face of the body (contact_key.h). Keys are unique in a world and stay
+/// valid when other bodies are removed.
 struct ContactKey {
     std::uint64_t pair;
     std::uint64_t feature;
@@ -61,7 +62,7 @@ struct ContactRow {
     Stencil stencil;
     Vec3 point;     // contact point on the second partner [m]
     Vec3 normal;    // unit vector from the second to the first partner; the first partner owns the point or first edge
-    Real gap;       // distance of the two surfaces minus the contact distance; positive if they are apart [m]
+    Real gap;       // `distance` minus the contact distance [m]
     Real distance;  // signed distance of the two surfaces; negative if they overlap [m]
     // Velocity of an analytic collider at the contact point; 0 for two bodies, whose motion is in the node velocities
     // [m/s].
@@ -129,7 +130,8 @@ struct WarmStartTable {
     Column<Vec3> impulse;  // [N s]
     Column<Vec3> normal;
     Column<Vec3> point;  // contact point [m]; empty if no body is rigid or implicit
-    // time for which forces acted in the step of these impulses; no row if that step had no contacts [s]
+    // One row: time for which forces acted in the step that computed `impulse` [s]. No row if that step had no
+    // contacts.
     Column<Real> step;
 
     void for_each_column(auto&& visit) {

@@ -29,10 +29,10 @@ using FrameMass = std::array<ElementLane, 2>;
 inline constexpr std::size_t maxwell_count = 3;
 // Relaxation rates of the Maxwell elements of a body, the highest first [1/s]
 using RelaxationRates = std::array<Real, maxwell_count>;
-// All strains in the last step that the losses of an element depend on, twice, in single precision. Entries 0 to 5:
-// components xx, yy, zz, xy, yz, zx of Green's strain. Entries 6 to 23: strains of the springs of the Maxwell elements,
-// six components each. Entry 24: volume strain of the spring of the bulk viscosity. Entry 25 is unused; with it a block
-// fills whole cache lines.
+// Strains of the last step on which the losses of an element depend, in single precision. All strains are stored
+// doubled, because twice Green's strain is F^T F - I. Entries 0 to 5: components xx, yy, zz, xy, yz, zx of Green's
+// strain. Entries 6 to 23: strains of the springs of the Maxwell elements, six components each. Entry 24: volume strain
+// of the spring of the bulk viscosity. Entry 25 is unused; with it a block fills whole cache lines.
 using SpringStrain = std::array<Lanes<float, element_lanes>, 8 + 6 * maxwell_count>;
 inline constexpr std::size_t bulk_entry = 6 + 6 * maxwell_count;  // entry of the spring of the bulk viscosity
 
@@ -62,10 +62,10 @@ struct TetrahedronBlockTable {
 
 /// Elements that exert forces. An element has at least four nodes, one stress, and one deformation gradient F = sum_k
 /// x_k (x) g_k, where x_k is the position and g_k the shape function gradient of node k (docs/methods/elasticity.md 1,
-/// 7). A block has as many rows of ElementNodeTable as its element with the most nodes. Elements with fewer nodes
-/// repeat some of their nodes with zero gradient. Unused lanes have no effect: their volume and gradients are zero,
-/// and they have nodes of the first element of the block. Element e of the table is lane e % element_lanes of block e
-/// / element_lanes.
+/// 7). The number of rows of ElementNodeTable that a block has is the greatest node count of its elements. Elements
+/// with fewer nodes repeat some of their nodes with zero gradient. Unused lanes have no effect: their volume and
+/// gradients are zero, and they have nodes of the first element of the block. Element e of the table is lane e %
+/// element_lanes of block e / element_lanes.
 struct ElementBlockTable {
     Column<Index> first;         // first row of the block in ElementNodeTable
     Column<Index> count;         // number of rows of the block in ElementNodeTable
@@ -94,10 +94,11 @@ struct ElementBlockTable {
     Column<SpringStrain> spring_strain_next;
     Column<ElementLane> plastic_strain;       // equivalent plastic strain; 0 if the material does not yield
     Column<RelaxationRates> relaxation_rate;  // equal for all blocks of a body
-    Column<ElementLane> own_frequency;        // upper bound of the highest frequency of the element at rest [1/s]
-    // ratio of the stiffness of the spring of each Maxwell element to the stiffness of the material law
+    Column<ElementLane> own_frequency;        // upper bound of the circular frequencies of the element at rest [1/s]
+    // stiffness of the spring of each Maxwell element, as a fraction of the stiffness of the material law
     Column<Real> relaxing_share;
-    // Rotation from the mesh to the rest shape that the gradients describe; turns the axes of anisotropic materials
+    // Rotation from the mesh to the coordinates of the gradients (turn_elements changes both). It turns the axes of
+    // anisotropic materials.
     Column<Mat3> orientation;
     Column<Index> body;      // row of BodyTable
     Column<Index> material;  // row of MaterialTable
@@ -133,18 +134,19 @@ struct ElementBlockTable {
     }
 };
 
-/// Vector x, y, z and a number without meaning, so that it fills a register.
+/// Vector x, y, z. The fourth number is unused, so that the vector fills a register of 256 bits.
 using PaddedVec3 = Lanes<Real, 4>;
 
-/// Number of reals per slot of a patch: the size of a PaddedVec3.
+/// Number of reals in a slot, the place of a node in a patch (ElementPatches): the size of a PaddedVec3.
 inline constexpr Index slot_width = sizeof(PaddedVec3) / sizeof(Real);
 
 /// Nodes of the elements of a block. Row k of a block holds the k-th node of each element, counted from 0. The gradient
 /// of node 0 is minus the sum of the gradients of all other nodes.
 struct ElementNodeTable {
     Column<NodeLane> node;
-    Column<NodeLane> slot;             // slot of the node in its patch, times slot_width [reals]
-    Column<ElementGradient> gradient;  // shape function gradient of the node at rest, after plastic flow [1/m]
+    Column<NodeLane> slot;  // number of the node's slot in the patch of the block, times slot_width
+    // shape function gradient of the node in the rest shape, which plastic flow changes [1/m]
+    Column<ElementGradient> gradient;
 
     /// Visits all columns. This is the only list of the columns; resizing, erasing, hashing and saving use it.
     /// build_patches derives `slot`.
@@ -160,8 +162,8 @@ struct ElementNodeTable {
 using ElementViscousImpulse = std::array<ElementLane, 9>;
 
 /// Patches: groups of neighbouring blocks of one body. Element forces are first summed within each patch, in cache;
-/// then each node adds the sums of its few patches. build_patches makes the patches from the element blocks, body after
-/// body, and appends them to these columns. No other table refers to their rows.
+/// then the force on a node is the sum over the few patches that contain it. build_patches makes the patches from the
+/// element blocks, body after body, and appends them to these columns. No other table refers to their rows.
 struct ElementPatches {
     Column<Range> blocks;  // by patch: rows of ElementBlockTable
     // by patch: its slots (rows of the columns below that are listed by slot), one for each node of the patch
@@ -177,8 +179,8 @@ struct ElementPatches {
     Column<ElementViscousImpulse> viscous_impulse;
     // by block: 1 if the block is viscous in this step; empty if no block can be viscous; scratch
     Column<std::uint8_t> viscous;
-    // Flag by block: 1 if the stiffness of an implicit element has nearly reached its implicit_modulus. The column is
-    // empty if no block can be viscous. Scratch.
+    // Flag by block: 1 if the stiffness of an implicit element has nearly reached its implicit_modulus, so that
+    // stiffen_clusters must compute it exactly. The column is empty if no block can be viscous. Scratch.
     Column<std::uint8_t> stiffening;
 
     /// Resizes viscous_impulse, viscous and stiffening to `count` blocks.
@@ -189,8 +191,8 @@ struct ElementPatches {
     }
 };
 
-/// Rows of ElementNodeTable that belong to one block of elements. `node`: index of each node in an array of positions,
-/// which is passed beside this struct.
+/// Rows of ElementNodeTable that belong to one block of elements. `node`: indices in the array of node positions that
+/// functions take in addition to this struct.
 struct BlockNodes {
     const NodeLane* node;
     const ElementGradient* gradient;

@@ -6,8 +6,8 @@
 namespace skerry {
 
 struct ExternalWork {
-    Vec3 impulse = Vec3::Zero();  // N s
-    Real work = 0;                // J
+    Vec3 impulse = Vec3::Zero();  // [N s]
+    Real work = 0;                // [J]
 };
 
 }  // namespace skerry

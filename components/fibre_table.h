@@ -18,8 +18,8 @@ namespace skerry {
 /// Stress vectors of the fibres of a tetrahedron in a step: first Piola-Kirchhoff stress times the direction of the
 /// fibres in the rest shape [Pa].
 struct FibrePull {
-    Vec3 passive = Vec3::Zero();  // part that depends on the stretch
-    Vec3 whole = Vec3::Zero();    // stress with the active tension
+    Vec3 passive = Vec3::Zero();  // stress due to the stretch of the fibres
+    Vec3 whole = Vec3::Zero();    // `passive` plus the stress due to the active tension
 };
 
 /// One row per family of fibres.
@@ -33,10 +33,10 @@ struct FibreTable {
     // The following columns have one row per tetrahedron.
     Column<Index> tetrahedron;          // number in the mesh of the body
     Column<std::array<Index, 4>> node;  // numbers in the mesh of the body
-    Column<std::array<Real, 4>> slope;  // shape gradients of the nodes along the fibres [1/m]
+    Column<std::array<Real, 4>> slope;  // derivatives of the nodes' shape functions along the fibres [1/m]
     Column<Real> volume;                // at rest [m^3]
     Column<Vec3> passive;               // FibrePull::passive of the last step; only the energy balance uses it [Pa]
-    Column<Real> mobility;   // bound of the squared frequency per modulus; written by weigh_fibres [1/(Pa s^2)]
+    Column<Real> mobility;  // bound of omega^2/E for a modulus E along the fibres; written by weigh_fibres [1/(Pa s^2)]
     Column<FibrePull> next;  // written by add_fibre_forces
     Column<TimeKey> key;     // active tensions of all families [Pa]
 

@@ -1,4 +1,4 @@
-// Handles with generations. The user refers to a body, a collider, a material or an attachment by its handle.
+// Handles with generations. The user refers to a body, collider, material, joint and the like by its handle.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,8 @@ using ColliderHandle = Handle<struct ColliderTag>;      // refers to a collider,
 using AttachmentHandle = Handle<struct AttachmentTag>;  // refers to nodes with a prescribed motion
 using FibreHandle = Handle<struct FibreTag>;            // refers to a family of fibres in a body
 
-/// Maps handles to rows of a table. Rows may move down when earlier rows are erased.
+/// Maps handles to rows of a table. When rows are erased, later rows get lower indices, but their handles stay valid
+/// (rows_moved).
 template <class HandleType>
 class HandleMap {
 public:
@@ -38,8 +39,8 @@ public:
     /// Sets the number of the world.
     void set_world(std::uint32_t number) { world_ = number; }
 
-    /// Returns a handle for `row`, the new last row. The lowest free slot is used, so that the same sequence of calls
-    /// returns the same handles.
+    /// Makes a handle for the new row `row`. The lowest free slot is used, so that the same sequence of calls returns
+    /// the same handles.
     HandleType insert(Index row) {
         std::uint32_t slot = lowest_free_;
         while (slot < row_.size() && row_[slot] != no_index) ++slot;
@@ -80,8 +81,8 @@ public:
     /// Least generation of the handles that will be issued. It is saved with the columns.
     std::uint32_t& least_generation() { return least_generation_; }
 
-    /// Updates all handles after rows without a handle were removed. `row_now`: new index of each old row, no_index for
-    /// removed rows.
+    /// Updates all live handles after rows of the table were removed. The handles of these rows must have been released
+    /// by forget before. `row_now`: new index of each old row, no_index for removed rows.
     void rows_moved(std::span<const Index> row_now) {
         for (Index& row : row_)
             if (row != no_index) row = row_now[static_cast<std::size_t>(row)];

@@ -19,7 +19,8 @@ struct ImplicitCoupling {
     Column<std::span<const Real>> response;
     // Matrices by row of RigidBodyTable. `turn` rotates velocities from the frame of the mesh to the world frame.
     // `impulse_turn` rotates impulses from the world frame to the frame of the mesh, and multiplies them by the
-    // parameter theta of the time integration and by the weight of a long step (if the body is in one).
+    // parameter theta of the time integration. If the body is in a long step, it also multiplies by the factor t/h
+    // (docs/methods/implicit_bodies.md 9).
     Column<Mat3> turn, impulse_turn;
     Column<Index> place;  // by row of ImplicitNodeTable: index of the node in `nodes` of its body, or no_index
 

@@ -11,9 +11,10 @@ namespace skerry {
 
 struct ImplicitNodeTable {
     Column<Vec3> displacement;  // displacement u by the deformation, in the frame of the mesh [m]
-    Column<Vec3> velocity;      // deformation velocity w; for a held body the complete velocity of the node [m/s]
-    // Change of the velocity w by contacts in the previous long step, times the length of that step [m]. The contacts
-    // are assumed to continue in the present long step. Zero for a body in no long step. carry_long_steps writes it.
+    Column<Vec3> velocity;  // deformation velocity w; for a held body the world velocity in the axes of the frame [m/s]
+    // Change of the velocity w by contacts in the previous long step, times the length of that step [m]. The present
+    // long step first assumes that these contacts act again, and gradually replaces them by its own contacts
+    // (docs/methods/implicit_bodies.md 9). Zero for a body in no long step. carry_long_steps writes it.
     Column<Vec3> left;
     // kick_implicit_bodies writes the next three columns in this step.
     Column<Vec3> elastic_force;

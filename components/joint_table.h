@@ -53,7 +53,8 @@ struct MimicRow {
 template <>
 struct NumbersOf<MimicRow> : Reals<2> {};
 
-/// Parts of the impulse along the axis that the motor, and the spring, damper and friction, exert [N s or N m s].
+/// Impulses along the joint axis, of the motor (`motor`), and of spring, damper and friction together (`passive`) [N s
+/// or N m s].
 struct AxisImpulses {
     Real motor = 0, passive = 0;
 };
@@ -83,15 +84,16 @@ struct JointTable {
     Column<Range> motor_keys;  // range of rows in the column `key`; empty: the target of the motor is constant
     Column<Index> leader;      // row of the joint that this joint mimics; no_index if it mimics none
     Column<MimicRow> mimic;
-    Column<Real> mimic_impulse;  // impulse of the mimic row along the axis in the last step [N s or N m s]
+    Column<Real> mimic_impulse;  // impulse of the mimic equation (MimicShare) in the last step [N s or N m s]
     // Joint coordinate at the start of the last step. The angle of a hinge includes complete revolutions.
     Column<Real> coordinate;
     Column<Real> first_coordinate;  // joint coordinate when the joint was added [rad or m]
     // Impulse and angular impulse of the joint on the first body in the last step, in the joint frame of the second
     // body [N s, N m s].
     Column<Vec3> impulse, moment;
-    Column<Mat3> impulse_axes;          // axes of this frame at the start of the last step, in the world
-    Column<AxisImpulses> axis_impulse;  // parts of the impulse along the axis in the last step
+    // axes of the joint frame of the second body at the start of the last step, in the world
+    Column<Mat3> impulse_axes;
+    Column<AxisImpulses> axis_impulse;  // impulses along the joint axis in the last step
     Column<Real> step;    // time for which the impulses acted in the last step; 0 before the first step [s]
     Column<TimeKey> key;  // keys of all motors: target speeds [rad/s or m/s] or positions [rad or m]
 
@@ -144,54 +146,61 @@ struct AxisLaw {
     Real coordinate = 0;
     Real lower = -infinity, upper = infinity;
     JointDrive drive = JointDrive::none;
-    JointMotorRow motor{};  // motor of this step; a moving target position is given at the start of the step
+    JointMotorRow motor{};  // motor in this step; for a moving target, the target position at the start of the step
     Real target_rate = 0;   // speed of the target position [rad/s or m/s]
     JointPassiveRow passive{};
     Real kick = 0;  // time for which forces act in this step [s]
 };
 
-/// Share of a block in a mimic row. A mimic row is one equation for the axes of two joints, c u + c_leader u_leader =
-/// 0. It has two adjacent blocks, first that of the joint that mimics, then that of its leader. Only their third
-/// equations are used.
+/// Share of a block in a mimic equation, which couples the velocities u along the axes of two joints: c u + c_leader
+/// u_leader = the rate that corrects the error of the coordinates (docs/methods/joints.md 5). The equation has two
+/// adjacent blocks, first that of the joint that mimics, then that of its leader. Only the third rows of these blocks
+/// are used.
 struct MimicShare {
-    Real coefficient = 0;         // c of the block; 0: the block belongs to no mimic row
-    bool leads = false;           // true for the block of the leader
-    Index other_node = no_index;  // a node that impulses of the other block can move; no_index if there is none
+    Real coefficient = 0;  // c of the block; 0: the block belongs to no mimic equation
+    bool leads = false;    // true for the block of the leader
+    // own_node() of the other of the two blocks; needed to put both blocks into one contact region
+    Index other_node = no_index;
 };
 
 /// Three constraint equations of one joint in this step. They constrain either the relative velocity at the joint point
 /// or the relative angular velocity of the two bodies. Impulses in the equations act on the first body.
 struct JointBlock {
-    Index joint;                    // row of JointTable
-    bool turning;                   // true: the equations constrain angular velocities
-    Index first, second;            // rows of RigidBodyTable; no_index for the world
-    Index first_node, second_node;  // first node of each body; no_index if impulses cannot move the body
-    Vec3 point;                     // point of the equations in the world frame [m]
-    Mat3 frame;                     // columns: directions of the three equations
-    Vec3 error;                     // position error of the joint along the locked directions [m or rad]
+    Index joint;          // row of JointTable
+    bool turning;         // true: the equations constrain angular velocities
+    Index first, second;  // rows of RigidBodyTable; no_index for the world
+    // First node of each body. It represents the body in the search for contact regions. no_index if impulses cannot
+    // move the body.
+    Index first_node, second_node;
+    Vec3 point;  // point of the equations in the world frame [m]
+    Mat3 frame;  // columns: directions of the three equations
+    Vec3 error;  // position error of the joint along the locked directions [m or rad]
     AxisLaw axis;
     MimicShare mimic{};
-    Vec3 shift = Vec3::Zero();  // vector from the joint point to `point`, along the columns of `frame` [m]
+    Vec3 shift = Vec3::Zero();  // vector from the joint's point to `point`, in the axes of the first joint frame [m]
 
     /// A node of a body of the block that impulses can move; no_index if there is none.
     Index own_node() const { return first_node == no_index ? second_node : first_node; }
-    /// A node that impulses of the block, or of the other block of its mimic row, can move.
+    /// A node that impulses of the block, or of the other block of its mimic equation, can move.
     Index moving_node() const { return own_node() == no_index ? mimic.other_node : own_node(); }
-    /// Joins the nodes whose impulses the block couples. `join(a, b)` joins two nodes.
+    /// Calls join(a, b) for nodes a, b of bodies that the block couples. `join` must put both nodes into the same
+    /// contact region.
     void join_nodes(auto&& join) const {
         if (first_node != no_index && second_node != no_index) join(first_node, second_node);
         if (own_node() != no_index && mimic.other_node != no_index) join(own_node(), mimic.other_node);
     }
 };
 
-/// Blocks of all joints, in joint order, then the blocks of mimic rows. The blocks of one joint are adjacent.
+/// Blocks of all joints, in joint order, then the blocks of mimic equations. In the first part, the blocks of one joint
+/// are adjacent.
 struct JointBlockTable {
     Column<JointBlock> block;
     // Impulses of the three equations of each block; before the solve: the warm start [N s or N m s].
     Column<Vec3> impulse;
-    Column<AxisImpulses> axis_impulse;  // by block: parts of the impulse along the axis
+    Column<AxisImpulses> axis_impulse;  // by block: impulses along the joint axis
     Column<Real> coordinate;            // by row of JointTable: joint coordinate at the start of the step
-    // by row of JointTable: 1 if the bodies are asleep; the joint then stores its last impulse unchanged
+    // For each row of JointTable: 1 if some body is asleep and neither body of the joint can move (asleep, held, or the
+    // world). The joint then has no block and keeps its last impulse.
     Column<std::uint8_t> resting;
 
     std::size_t size() const { return block.size(); }

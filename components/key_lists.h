@@ -15,7 +15,8 @@ namespace skerry {
 template <>
 struct NumbersOf<TimeKey> : Reals<2> {};
 
-/// Value of a list of keys at the time `t`. `keys`: at least one key, with ascending times.
+/// Value of a list of keys at the time `t`: linear between keys, constant before the first key and after the last.
+/// `keys`: at least one key, with ascending times.
 Real value_at(std::span<const TimeKey> keys, Real t);
 /// Exact mean of the value over the time from `t` to `t + h`, with h > 0.
 Real mean_value(std::span<const TimeKey> keys, Real t, Real h);
@@ -35,11 +36,11 @@ void erase_lists(Column<Range>& range, std::size_t row, Column<T>&... lists) {
         if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
 }
 
-/// Erases the list of one row.
+/// Erases the list of keys of row `row`. `range`: range in `key` of the list of each row.
 inline void erase_keys(Column<Range>& range, Column<TimeKey>& key, std::size_t row) {
     erase_lists(range, row, key);
 }
-/// Replaces the list of one row.
+/// Replaces the list of keys of row `row`. `range`: range in `key` of the list of each row.
 void set_keys(Column<Range>& range, Column<TimeKey>& key, std::size_t row, std::span<const TimeKey> keys);
 
 }  // namespace skerry

@@ -28,7 +28,7 @@ typedef Real Real8 __attribute__((vector_size(sizeof(Real) * element_lanes)));
 /// Half of the lanes of a Real8.
 typedef Real Real4 __attribute__((vector_size(sizeof(Real) * element_lanes / 2)));
 
-// Vectors of single precision: one number for each lane of a block, and for half of the lanes.
+// Vectors of single precision: Float8 has a number for each lane of a block, Float4 for half of the lanes.
 typedef float Float8 __attribute__((vector_size(sizeof(float) * element_lanes)));
 typedef float Float4 __attribute__((vector_size(sizeof(float) * element_lanes / 2)));
 

@@ -15,8 +15,8 @@ enum class LoadKind : std::uint8_t {
     force,         // total force on some nodes (ForceLoad)
     traction,      // force per area of some faces (TractionLoad)
     acceleration,  // uniform acceleration (AccelerationField)
-    gravity,       // factor of the weight (GravityScale)
-    drag,          // force towards the velocity of a wind (DragField)
+    gravity,       // weight of the body times a factor (GravityScale)
+    drag,          // force that draws velocities towards that of a wind (DragField)
 };
 template <>
 struct EnumNames<LoadKind> {

@@ -13,23 +13,25 @@
 
 namespace skerry {
 
-/// One row per load. The force of a load is the product of `vector`, a weight and a scale that may change over time.
+/// One row per load. Forces and tractions on a node are the product of `vector`, a weight and the scale (`scale_keys`),
+/// which may change over time. For the fields see docs/methods/loads.md 1.
 struct LoadTable {
     Column<std::uint32_t> slot;
     Column<LoadKind> kind;
-    Column<Index> body;        // row of BodyTable; no_index for a field that acts on all bodies
-    Column<Vec3> vector;       // force [N], traction [Pa], acceleration [m/s^2] or velocity of the wind [m/s]
-    Column<Real> rate;         // rate of a drag [1/s]
-    Column<LoadArea> area;     // area on which a traction acts
-    Column<Range> nodes;       // range of rows in the columns `node` and `weight`; empty for fields
-    Column<Range> faces;       // range of rows in the column `face`; empty except for tractions
+    Column<Index> body;     // row of BodyTable; no_index for a field that acts on all bodies
+    Column<Vec3> vector;    // force [N], traction [Pa], acceleration [m/s^2] or wind velocity [m/s]; unused for gravity
+    Column<Real> rate;      // rate of a drag [1/s]
+    Column<LoadArea> area;  // area on which a traction acts
+    Column<Range> nodes;    // range of rows in the columns `node` and `weight`; empty for fields
+    Column<Range> faces;    // range of rows in the column `face`; empty except for tractions
     Column<Range> scale_keys;  // range of rows in the column `key`; never empty
-    // Nodes of all forces and tractions, as numbers in the meshes of their bodies, and their weights: fractions of a
-    // force, or areas of a traction [1 or m^2]. A traction on the present area lists the three nodes of each face, and
-    // as weight the number of its faces that have the node.
+    // Nodes of all forces and tractions, as numbers in the meshes of their bodies, and weights of these nodes. Force:
+    // fraction of the force that acts on the node. Traction on the rest area: area that belongs to the node [m^2]. A
+    // traction on the present area lists the three nodes of each face in turn; the weight is the number of loaded faces
+    // at the node and serves only to bound the stable step.
     Column<Index> node;
     Column<Real> weight;
-    Column<std::array<Index, 3>> face;  // faces of all tractions, by the nodes of their meshes
+    Column<std::array<Index, 3>> face;  // faces of all tractions: node numbers in the meshes of their bodies
     Column<TimeKey> key;                // scales of all loads over time
 
     std::size_t size() const { return slot.size(); }

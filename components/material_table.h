@@ -22,11 +22,12 @@ struct MaterialConstants {
     // loss factor of the material, nearly independent of the frequency (systems/material/relaxation.h)
     Real loss_factor = 0;
     Real bulk_viscosity = 0;  // damping ratio of volume changes, at the highest frequency of an element
-    // Terms of the law of Ogden: shares of the shear modulus, 0 if not used, and exponents of the stretches.
+    // Terms of the law of Ogden. `share`: fraction of the shear modulus that the term contributes; 0: the term is
+    // unused. `exponent`: exponent of the stretches.
     std::array<Real, 3> share{1, 0, 0}, exponent{2, 2, 2};
-    // Law `orthotropic`: six matrices of strain, each with the entries xx, yy, zz, xy, yz, zx. They are the
-    // eigenvectors of the stiffness without its part lame_lambda, times the root of their eigenvalues over the shear
-    // modulus. The initial values are those of an isotropic material.
+    // Law `orthotropic`: six symmetric matrices M_k, each with the entries xx, yy, zz, xy, yz, zx. The stiffness is C =
+    // mu sum_k M_k (x) M_k + lambda I (x) I, with mu = shear_modulus and lambda = lame_lambda
+    // (systems/material/orthotropic.h). The initial values are those of an isotropic material.
     std::array<Real, 36> strain_modes = [] {
         constexpr Real root_two = 1.4142135623730951;
         std::array<Real, 36> modes{};
@@ -46,9 +47,9 @@ struct MembersOf<MaterialConstants> {
     static std::span<const Member> list();
 };
 
-/// Part of the stress that an element exerts. whole: the complete stress. shear, volume: the part of the stress due to
-/// one Lame constant. guard: the inversion barrier, which keeps a tetrahedron from inverting. Only tetrahedra have an
-/// inversion barrier.
+/// Part of the stress that an element exerts. whole: the complete stress. shear, volume: the part due to the Lame
+/// constant mu or lambda (part_of). guard: the stress of the inversion barrier, which keeps a tetrahedron from
+/// inverting. Only tetrahedra have an inversion barrier.
 enum class ElementPart : std::uint8_t { whole, shear, volume, guard };
 template <>
 inline constexpr std::uint64_t value_count<ElementPart> = 4;
@@ -56,10 +57,10 @@ inline constexpr std::uint64_t value_count<ElementPart> = 4;
 /// Ratio of the modulus of the inversion barrier to the modulus lambda + 2 mu of the material.
 inline constexpr Real guard_modulus = 5;
 
-/// Material constants for one part of the stress. For the part due to one Lame constant, the other constant is zero.
-/// If the material yields, the part `shear` resists no volume change: plastic flow would lock otherwise.
-/// The constants of an inversion barrier include no damping; only inversion barriers that belong to a cluster are
-/// viscous.
+/// Material constants for one part of the stress. For the part due to one Lame constant, the other constant is zero. If
+/// the material yields, the part `shear` has lambda = -2/3 mu. Its bulk modulus lambda + 2/3 mu is then zero, without
+/// which plastic flow would lock. The constants of an inversion barrier include no damping; only inversion barriers
+/// that belong to a cluster are viscous.
 inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     if (part == ElementPart::guard)
         return {.model = MaterialModel::guard,

@@ -10,10 +10,11 @@
 
 namespace skerry {
 
-// Number of nodes of a round body that take part in a step. These are the core nodes, which contacts use, and the nodes
+// Number of nodes of a sphere that take part in a step. These are the core nodes, which contacts use, and the nodes
 // from which the angular velocity of the body is measured. All other nodes serve only to display the body.
 inline constexpr Index sphere_step_nodes = 13;  // the centre and the 12 corners of an icosahedron
-// Number of such nodes of a capsule: both ends of the axis, and one pole and four rim points at each end.
+// Number of nodes of a capsule that take part in a step: both ends of the axis, and one pole and four rim points at
+// each end.
 inline constexpr Index capsule_step_nodes = 12;
 // Number of core nodes of a cylinder. All nodes of a cylinder take part in a step, because the nodes on its rims show
 // its rotation.
@@ -30,14 +31,17 @@ inline Range step_nodes_of(Range all, Index core_nodes) {
 inline constexpr Index nodes_per_block = 256;
 
 /// Sums over the nodes of one block that can move. Positions x and velocities v are relative to the first node of the
-/// body. Adding the sums in block order yields the sums over the body; damp_velocity stores them in the first block.
+/// body. damp_velocity adds the sums in block order and overwrites those of the first block with the totals of the
+/// body. In the totals, `momentum` is in the world frame, and `angular_momentum` and `second_moment` are about the
+/// centre of mass.
 struct NodeBlockSums {
     Real mass;              // total mass [kg]
     Vec3 momentum;          // sum of m v, with node masses m [kg m/s]
     Vec3 first_moment;      // sum of m x [kg m]
     Vec3 angular_momentum;  // sum of m x cross v [kg m^2/s]
-    Mat3 second_moment;     // sum of m y x^T, with the position y at the time of v (damp_velocity.cpp) [kg m^2]
-    Real dissipated;        // kinetic energy of deformation that damping removes from the nodes of the block [J]
+    // sum of m y x^T, with the position y = x - lag v at the time of v (damp_velocity.cpp) [kg m^2]
+    Mat3 second_moment;
+    Real dissipated;  // kinetic energy of deformation that damping removes from the nodes of the block [J]
 };
 
 /// Blocks of at most nodes_per_block nodes of one body. A round body has a single block, which contains the nodes that

@@ -33,7 +33,8 @@ struct NodeClusters {
     }
     /// The cluster of a node, or no_index.
     Index cluster(Index node) const { return cluster_of.empty() ? no_index : cluster_of[node]; }
-    /// The first node of the cluster of `node`, or `node` itself if it belongs to no cluster.
+    /// A node that represents all nodes coupled with `node`: the first node of its cluster, or `node` itself if it
+    /// belongs to no cluster.
     Index leader(Index node) const {
         const Index of = cluster(node);
         return of == no_index ? node : nodes.item[nodes.offset[of]];

@@ -16,8 +16,8 @@ struct NodeTable {
     // Velocity that separates overlapping surfaces: it moves the position in this step, but does not become part of
     // `velocity` [m/s]. It is zero unless a contact with overlap acts on the node.
     Column<Vec3> push_out;
-    // Elastic and external force on a node without degrees of freedom; not computed for other nodes. predict_velocity
-    // writes it [N].
+    // Elastic and external force on a node without degrees of freedom, from which reactions are measured; not computed
+    // for other nodes. predict_velocity writes it [N].
     Column<Vec3> force;
     Column<Vec3> load;  // external force set by the user, which acts until the user changes it [N]
     // Sum of the forces of all force elements in this step, including `load`; unused if the world has no force element

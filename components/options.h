@@ -41,10 +41,10 @@ enum class SolverMethod {
     automatic,  // ags; for rigid and implicit bodies also Newton steps where they are cheaper
     ags,        // accelerated block Gauss-Seidel sweeps
     pgs,        // block Gauss-Seidel sweeps without acceleration
-    pcg_pgs,    // Algorithm 2 of Lazarevych et al. (2010): projected conjugate gradients, then sweeps
+    pcg_pgs,    // Algorithm 2 of Lazarevych et al. (2010): first projected conjugate gradients, then sweeps
     newton,     // semismooth Newton's method with a dense matrix
-    pcg_fr,     // first phase of pcg_pgs with the formula of Fletcher and Reeves
-    pcg_pr,     // first phase of pcg_pgs with the formula of Polak and Ribiere
+    pcg_fr,     // only the conjugate gradients of pcg_pgs, with the formula of Fletcher and Reeves
+    pcg_pr,     // only the conjugate gradients of pcg_pgs, with the formula of Polak and Ribiere
 };
 /// Libraries that run the tasks of a step on several threads.
 enum class Backend {
@@ -59,8 +59,8 @@ enum class WarmStart {
     off,  // zero
     on,   // the impulses of the last step
 };
-/// Treatment of new bodies that overlap other bodies or colliders, before the next step
-/// (docs/decisions/0017-start-overlaps.md).
+/// Treatment of new bodies that overlap other bodies or colliders. The next call of World::advance applies it before
+/// its first step (docs/decisions/0017-start-overlaps.md).
 enum class StartOverlaps {
     resolve,  // moves the bodies apart without adding energy; refuses them if no short displacement suffices
     refuse,   // refuses the bodies
@@ -77,8 +77,8 @@ enum class OverlapKind {
 /// which velocities change positions.
 enum class Integrator {
     symplectic_euler,  // first order in the step length when started from given velocities, with bounded energy
-    // Second order in smooth motion: the positions also drift forward by half a step before the first step of a call,
-    // and back by half a step after the last step of the call.
+    // Second order in smooth motion: the positions also drift forward by half a step before the first step of a call of
+    // World::advance, and back by half a step after its last step.
     leapfrog,
 };
 

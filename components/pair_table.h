@@ -1,5 +1,5 @@
-// Pairs of close objects: two bodies, a body and a collider, or a body and itself. Each pair lists the features that
-// could touch soon.
+// Pairs of close objects: two bodies, a body and a collider, or a body and itself. Each pair lists the features
+// (points, edges, triangles) that could touch soon.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ namespace skerry {
 /// TriangleTable, EdgeTable or ColliderTable, depending on the kind of the pair and of the features.
 struct Candidate {
     std::uint64_t feature;  // ContactKey::feature
-    Index first;            // row of the vertex; for two edges the row of the edge of the first body
-    Index second;           // row of the triangle, the second edge or the collider
+    Index first;   // row of the vertex, of an edge (of the first body), or of a triangle near a point of a collider
+    Index second;  // row of the triangle, of the edge of the second body, or of the collider
 };
 template <>
 struct MembersOf<Candidate> {
@@ -31,7 +31,8 @@ enum class PairKind : std::uint8_t { bodies, collider, self };
 template <>
 inline constexpr std::uint64_t value_count<PairKind> = 3;
 
-/// State of the surfaces of a pair. `unknown`: no search has tested yet whether they intersect.
+/// Tells whether the surfaces of a pair intersect (`overlapping`) or not (`apart`). `unknown`: no search has tested it
+/// yet.
 enum class PairState : std::uint8_t { unknown, apart, overlapping };
 template <>
 inline constexpr std::uint64_t value_count<PairState> = 3;
@@ -49,8 +50,8 @@ struct NearCandidate {
     Real distance;    // distance of the features at the start of the step [m]
 };
 
-/// Two leaves in the tree of one body, or a leaf paired with itself. `first` and `second` are rows of BvhTable, counted
-/// from the root of the tree.
+/// Two leaves in the tree of one body, or a leaf paired with itself. `first` and `second` are rows of BvhTable minus
+/// the row of the root of this tree.
 struct LeafPair {
     Index first;
     Index second;
@@ -68,7 +69,7 @@ struct LeafPairTable {
     // The first row is the pair of the root with itself. It represents all pairs of leaves that are not listed. The
     // other rows are sorted by `first` and `second`. The column is saved with the role `memory`.
     Column<LeafPair> listed;
-    Column<LeafPair> before;    // working memory: the earlier list
+    Column<LeafPair> before;    // working memory: the list `listed` before it is made anew
     Column<LeafPair> searched;  // pairs whose features were compared in the last search; spare: margin of the search
 };
 
@@ -77,8 +78,8 @@ struct LeafPairTable {
 struct SelfSearch {
     // For each node: position at the last update of LeafPair::spare [m]. The column is saved with the role `memory`.
     Column<Vec3> origin;
-    // For each node: displacement since `origin`, or from `origin` to the end of the step, without the common rotation
-    // of the body [m].
+    // For each node: displacement from `origin` to the present position, without the common rotation of the body [m].
+    // The check at the end of a step uses the position there instead.
     Column<Vec3> moved;
     // Boxes of `moved` [m] and of the velocities of the nodes [m/s], by row of BvhTable.
     Column<Aabb> moved_box, speed_box;
@@ -98,8 +99,9 @@ struct PairTable {
     // 1: neither partner moves in this step. No contacts are searched for the pair, and its last contacts remain valid.
     Column<std::uint8_t> idle;
     Column<Index> looked_at;   // number of candidates to test; 0 for an idle pair
-    Column<Vec3> frame_apart;  // position of the first body's frame minus position of the second body's frame [m]
-    Column<Real> frame_path;   // length of the path of one body's frame relative to the frame of the other body [m]
+    Column<Vec3> frame_apart;  // MovingFrame::position of the first body minus that of the second body [m]
+    // path length of one body's frame relative to the other body's frame since the pair was found [m]
+    Column<Real> frame_path;
     // Bound on the relative motion of the partners so far, computed in every step [m]. Two bodies: BodyTable::travel of
     // both bodies plus frame_path. Body and collider: `travel` of the body and of the collider, plus the path length of
     // the body's frame.
@@ -110,22 +112,25 @@ struct PairTable {
     // depend on them.
     Column<Real> closing;
     // Relative motion of the partners for which an earlier attempt at this step requested a longer candidate list [m].
-    // It is made negative when the list has been rebuilt for this motion.
+    // When the list has been rebuilt for this motion, the sign is made negative, so that a list is not requested twice
+    // for the same motion.
     Column<Real> longer_motion;
     Column<Real> valid_until;  // the candidate list is complete while travel_bound is below this value [m]
-    // 1: the candidate list was made at the positions at the start of this step. Earlier motion of the frames then does
-    // not shorten its validity.
+    // 1: the candidate list was made at the positions at the start of this step. Displacements of the bodies in their
+    // frames before the step then do not shorten its validity (is_beyond_list).
     Column<std::uint8_t> fresh;
     // State of the surfaces at the last search. Surfaces that are apart stay apart, because find_crossings prevents
     // them from crossing.
     Column<PairState> state;
     std::vector<Column<Candidate>> candidates;  // by pair: candidate list, sorted by `feature`
-    // Value of travel_bound below which the candidate cannot touch, by pair and candidate [m].
+    // Value of travel_bound below which the features of a candidate cannot touch, by pair and candidate [m].
     std::vector<Column<Real>> asleep_until;
     std::vector<LeafPairTable> leaf_pairs;  // by pair; empty for two bodies, and for a body and a collider
-    // Cost of testing the candidates of a group of pairs, by group; later the sum of the costs of all earlier groups.
+    // For each group of consecutive pairs: cost of testing their candidates. cut_blocks then replaces it by the sum of
+    // the costs of all groups before this one.
     Column<std::int64_t> work;
-    // Position at which each block of find_contacts starts, and the end position of the last block.
+    // Start of each block, and the end of the last one. A block is a part of the concatenated candidate lists that one
+    // task of find_contacts tests.
     Column<CandidatePlace> block;
     Column<std::size_t> block_first;  // by block: row of ContactTable for its first contact
     // For each block of find_contacts: contacts found in this step, in candidate order.
@@ -229,23 +234,26 @@ struct SearchMemory {
     // Boxes of all bodies, followed by the boxes of all colliders. Each box is enlarged by the motion that is allowed
     // until the next broad search [m].
     Column<Aabb> box;
-    // Bounding sphere of each body at the last broad search or refit. A sphere encloses round bodies more tightly than
-    // a box.
+    // Bounding sphere of each body at the last broad search, or at the last update of the boxes of its tree. A sphere
+    // encloses round bodies more tightly than a box.
     Column<BoundingSphere> sphere;
     BoxGrid grid;                                // grid of the boxes in `box`
     Column<std::uint8_t> has_box;                // by row of `box`: 1 if the box is in the grid
     Column<Index> entry;                         // rows of `box` that are in the grid
-    Column<Index> planes;                        // rows of ColliderTable
+    Column<Index> planes;                        // rows of planes in ColliderTable; planes have no box in the grid
     std::vector<Column<FoundPair>> found_pairs;  // by block of the broad search: found pairs in no particular order
     Column<FoundPair> pairs;                     // all found pairs, in key order
-    Column<Index> group_begin, group_end;        // ranges of `pairs`, one for each kind and slot of the first body
+    // Ranges of `pairs` with equal kind and equal slot of the first body. They serve to sort `pairs`.
+    Column<Index> group_begin, group_end;
     // For each pair: row of the pair in the previous PairTable. It is no_index for a new pair, and for a pair of an
     // object that the user has moved.
     Column<Index> old_row;
-    Column<Index> old_list;  // by candidate list: previous index of the list
-    // For each previous candidate list: 1 if a pair that is still listed has taken the list over.
+    Column<Index> old_list;  // by index of a candidate list: previous index of its memory
+    // For each previous candidate list: 1 if its pair still exists and keeps the list; 0 if a new pair may reuse its
+    // memory.
     Column<std::uint8_t> given_away;
-    std::vector<Column<Candidate>> candidates;  // temporary storage used while the candidate lists are reordered
+    // The next three columns are temporary storage used while the lists of PairTable are reordered.
+    std::vector<Column<Candidate>> candidates;
     std::vector<Column<Real>> asleep_until;
     std::vector<LeafPairTable> leaf_pairs;
     Column<Index> expired;    // rows of PairTable whose candidate list is no longer valid
@@ -265,7 +273,8 @@ struct SearchMemory {
 struct SearchState {
     static constexpr Real forgotten = -infinity;
 
-    // For each body: the set of pairs is complete while body_travel_bound of every body is below this value [m].
+    // For each body: limit of body_travel_bound [m]. The set of pairs is complete while every body is below its limit,
+    // and every collider below its collider_valid_until.
     Column<Real> body_valid_until;
     // For each collider: limit of collider_travel_bound. It has the same purpose as body_valid_until for bodies [m].
     Column<Real> collider_valid_until;
@@ -278,7 +287,8 @@ struct SearchState {
         if (row < body_valid_until.size()) body_valid_until[row] = forgotten;
     }
     /// Ends an attempt at a step. If the step was committed (`taken`), the speeds of all bodies are known. Otherwise
-    /// the bodies that were marked as forgotten at the start of the step are marked again.
+    /// the speeds of bodies that were forgotten at the start of the step are still unknown, so these bodies are marked
+    /// as forgotten again.
     void end_step(bool taken) {
         if (!memory.any_unmeasured) return;
         for (std::size_t row = 0; row < memory.body_unmeasured.size(); ++row)

@@ -20,7 +20,7 @@ template <class T>
 /// the array: prefetching there does no harm.
 template <class T>
 [[gnu::always_inline]] inline void prefetch_lines_ahead(const T* current, std::size_t ahead, std::size_t count) {
-    // The sum of a pointer and an offset would be undefined past the end of the array.
+    // The address is computed as an integer, because pointer arithmetic past the end of the array is undefined.
     prefetch_lines(reinterpret_cast<const T*>(reinterpret_cast<std::uintptr_t>(current) + ahead * sizeof(T)), count);
 }
 

@@ -11,6 +11,8 @@
 
 namespace skerry {
 
+/// Result of the solver for a region. `certified`: zero impulses or the warm start are the solution, so there were no
+/// sweeps.
 enum class RegionStatus : std::uint8_t { converged, certified, iteration_limit, not_finite };
 
 /// Shortcuts that the solver used for a region; several shortcuts are combined with bitwise or.
@@ -25,18 +27,20 @@ enum RegionShortcut : std::uint8_t {
 
 /// One row per region. Regions are sorted by the row of their first contact.
 struct RegionTable {
-    Ragged<Index> contacts;    // rows of ContactTable, ascending
-    Ragged<Index> joints;      // rows of JointBlockTable, ascending; `joints` has no rows if there are no joints
-    Ragged<Index> cables;      // numbers of solved cables, ascending; `cables` has no rows if there are none
-    Column<ContactKey> id;     // key of the region's first contact, which identifies the region across steps
-    Column<Index> iterations;  // number of solver sweeps; 0 if the warm start is the solution
+    Ragged<Index> contacts;  // rows of ContactTable, ascending
+    Ragged<Index> joints;    // rows of JointBlockTable, ascending; `joints` has no rows if there are no joints
+    Ragged<Index> cables;    // indices in CableBlockTable::solved(), ascending; no rows if there are no such cables
+    // Key that identifies the region across steps: the key of its first contact, or one made by recall_regions if it
+    // has no contact.
+    Column<ContactKey> id;
+    Column<Index> iterations;  // number of solver sweeps; 0 if a shortcut made sweeps unnecessary
     Column<Real> error;        // relative error e_nat of the solution (docs/methods/errors.md 2)
     Column<RegionStatus> status;
     Column<RegionShortcut> shortcut;
     Column<Real> dissipated;  // energy dissipated by the contacts of the region in this step [J]
     Column<Real> push_work;   // energy added by the velocities push_out, which move positions only [J]
-    // Order in which the solver starts the regions: first large regions by predicted cost, then small regions by size,
-    // and single contacts last.
+    // Rows of the regions in the order in which the solver starts them: first large regions by descending predicted
+    // cost, so that no long task starts late, then small regions by descending size (single contacts last).
     Column<Index> order;
     bool pushed = false;  // true: some region has written NodeTable::push_out
 

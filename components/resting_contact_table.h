@@ -1,12 +1,13 @@
-// Contacts between bodies that are asleep. Steps do not search for them.
+// Contacts of sleeping bodies with objects that do not move. Steps do not search for them.
 #pragma once
 
 #include "components/contact_table.h"
 
 namespace skerry {
 
-/// The last contacts found for the pairs of sleeping bodies, in key order. When a body wakes, the stored impulses are
-/// the warm start of these contacts. The columns other than key, normal and impulse are stored only for display.
+/// The last contacts found for pairs of a sleeping body and another sleeping body or a collider at rest, in key order.
+/// When a body wakes, the stored impulses are the warm start of these contacts. All columns of `contact` other than
+/// key, normal and impulse are stored only for display.
 struct RestingContactTable {
     ContactTable contact;  // the column `region` is no_index
     Column<Real> step;     // time for which forces acted in the step that computed `impulse` [s]

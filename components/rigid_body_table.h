@@ -43,7 +43,8 @@ struct RigidBodyTable {
     // solve_regions adds to the next columns, which are zero at the start. Impulse of contacts, and its angular impulse
     // about the centre of mass [N s, N m s].
     Column<Vec3> contact_impulse, contact_moment;
-    // Velocity and angular velocity that change the pose in this step only [m/s, rad/s].
+    // Velocity and angular velocity of the push-out: they change the pose in this step, but not the momentum [m/s,
+    // rad/s].
     Column<Vec3> push_velocity, push_spin;
     // turn_rigid_bodies writes the next two columns.
     Column<Vec3> center_next;

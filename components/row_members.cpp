@@ -1,4 +1,5 @@
-// Members of table structs that contain numbers of several types. The strings are the member names in saved worlds.
+// Lists of the members of those table structs that contain numbers of several types. Saved worlds contain the member
+// names, so the strings must not change.
 #include <array>
 #include <cstring>
 #include <stdexcept>

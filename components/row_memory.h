@@ -13,13 +13,13 @@ namespace skerry {
 inline constexpr std::size_t row_alignment = 64;
 
 /// Allocates `bytes` bytes (0 is allowed) with operator new. On Linux, memory that covers complete pages of 2 MiB is
-/// requested as such pages. With pages of 4 kB, address translation takes 4 % of a step of 360,000 tetrahedra
-/// (docs/scaling.md), because a step reads the columns of a large world only once. Throws std::bad_alloc.
+/// requested as such pages. With pages of 4 kB, address translation takes 4 % of a step of 360,000 tetrahedra, because
+/// the columns are larger than the memory that the translation cache of a core covers. Throws std::bad_alloc.
 void* allocate_rows(std::size_t bytes);
 void free_rows(void* memory) noexcept;
 
-/// Rows of plain data whose type only the caller knows. `row_bytes` is the size of a row [bytes] and must be equal in
-/// every call. Rows are copied bytewise and need no destructor. The memory never shrinks.
+/// Rows of one column, of a trivially copyable type that only the caller knows. `row_bytes` is the size of a row
+/// [bytes] and must be equal in every call. Rows are copied bytewise and need no destructor. The memory never shrinks.
 class RowMemory {
 public:
     RowMemory() = default;
@@ -33,16 +33,16 @@ public:
 
     /// Reserves memory for exactly `count` rows if the present memory is smaller.
     void reserve(std::size_t count, std::size_t row_bytes);
-    /// Reserves memory for `more` rows after the last row. If new memory is needed, it is at least twice as large, so
-    /// that appending rows one by one copies each row only a few times.
+    /// Reserves memory for `more` rows after the last row. New memory has room for at least twice the present number of
+    /// rows, so that appending rows one by one copies each row only a few times.
     void make_room(std::size_t more, std::size_t row_bytes);
     /// Sets the number of rows to `count`. The caller must have reserved memory for `count` rows and must write the new
     /// rows.
     void set_size(std::size_t count) { size_ = count; }
     void copy(const RowMemory& other, std::size_t row_bytes);
     void swap(RowMemory& other) noexcept;
-    /// Removes ascending ranges of rows. Parts of a range beyond the last row are ignored. Later rows move down in
-    /// order; each row is moved once.
+    /// Removes ascending ranges of rows. Parts of a range beyond the last row are ignored. Later rows close the gaps
+    /// and keep their order; each row is moved at most once.
     void erase(std::span<const Range> gone, std::size_t row_bytes);
     void erase(std::size_t first, std::size_t count, std::size_t row_bytes);
 

@@ -30,10 +30,10 @@ struct Member;
 struct RowType {
     std::size_t bytes;                            // size of a row [bytes]
     void (*make)(void* rows, std::size_t count);  // value-initialises `count` rows; vectors and matrices become zero
-    // Count of the numbers in a row, without padding; 0: the row is described by `members`.
+    // Number of numbers in a row that consists of numbers of one type, without padding; 0 for all other rows.
     std::size_t width = 0;
     NumberType number = NumberType::uint8;  // type of the numbers in a row
-    std::uint64_t values = 0;               // number of values of the type if it is an enum, else 0
+    std::uint64_t values = 0;               // value_count of the type; 0: any number is valid
     // Returns the members of the row type; null: the type has no members.
     std::span<const Member> (*members)() = nullptr;
 
@@ -82,15 +82,16 @@ struct NumbersOf<Lanes<T, n>> : SameNumbers<NumbersOf<T>::number, std::size_t{n}
 template <>
 struct NumbersOf<Range> : SameNumbers<NumberType::int32, 2> {};
 
-/// Describes a struct that contains numbers of several types: list() returns an array of Member.
+/// Describes a struct that contains numbers of several types: list() returns an array or a span of Member, one entry
+/// per member.
 template <class S>
 struct MembersOf;
 
 template <class Enum>
 struct EnumNames;
 
-/// Number of values of an enum whose values are 0, 1, 2, ... The number is 0 for other types and for enums whose values
-/// are not checked.
+/// Number n of values of a bool, or of an enum with the values 0 to n - 1; a loaded value must be below n. 0 for other
+/// types and for enums whose values are not checked.
 template <class T>
 inline constexpr std::uint64_t value_count = 0;
 template <class E>

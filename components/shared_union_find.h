@@ -13,15 +13,17 @@ namespace skerry {
 
 /// Lock-free variant of UnionFind (Anderson, Woll 1991, Wait-free parallel algorithms for the union-find problem). A
 /// join attaches the greater of two roots to the smaller one by one compare-and-exchange. If another thread has changed
-/// the root meanwhile, the join is repeated from the new root. The root of a set is therefore its smallest index,
-/// whatever the number of threads and the order of the joins. Parent and stamp are in the same word and protect no
-/// other data, so relaxed memory order suffices. Threads must synchronise before they read the final sets.
+/// the root meanwhile, the join is repeated from the new root. Parents are thus always smaller than their children, so
+/// the root of a set is its smallest index, whatever the number of threads and the order of the joins. Parent and stamp
+/// share one word, and no other data depend on when a word is written, so relaxed memory order suffices. Threads must
+/// synchronise before they read the final sets.
 struct SharedUnionFind {
-    /// The upper half of each word is the stamp: the number of calls of start() when the word was written. Words with
-    /// an earlier stamp count as empty.
+    /// Each word has two halves of 32 bits. The upper half is the stamp: the value of `now` when the word was written.
+    /// A word with an earlier stamp counts as empty. The lower half is the value that the member describes.
     struct Node {
         std::uint64_t parent;
-        // At the root: bitwise complement of the smallest item of the set, so that the largest word wins.
+        // At the root: bitwise complement of the smallest item passed to begin_with(). A smaller item thus gives a
+        // larger word, and an empty word is the smallest.
         std::uint64_t first;
     };
 
@@ -67,7 +69,8 @@ struct SharedUnionFind {
         }
     }
 
-    /// Lowers the first item of the set with this root to `item` if `item` is smaller. Call it only after all joins.
+    /// Records `item` for the set with the root `root`; first_item() returns the smallest recorded item. Call it only
+    /// after all joins.
     void begin_with(Index root, Index item) {
         const std::uint64_t mine = stamped(static_cast<Index>(~static_cast<std::uint32_t>(item)));
         std::uint64_t word = load(node[root].first);

@@ -13,12 +13,14 @@
 
 namespace skerry {
 
-/// Response of an anchor to forces: the change of its velocity per unit impulse.
+/// Inverse mass of an anchor: the change of its velocity per unit impulse on it. Node n has the mass m_n, the weight
+/// w_n in the anchor, and d_n dampers that act on it.
 struct AnchorMass {
-    Real inverse = 0;  // response of the nodes of deformable bodies, as lumped masses [1/kg]
-    // This response if every node divides its mass among the dampers that act on it [1/kg].
+    Real inverse = 0;  // sum of w_n^2 / m_n; 0 if the anchor is not on a deformable body [1/kg]
+    // Sum of d_n w_n^2 / m_n: `inverse` if each node divides its mass equally among its dampers [1/kg].
     Real divided = 0;
-    // Number of dampers that act on the frame of the rigid or implicit body; 0 for other anchors.
+    // Number of dampers that act on the body of the anchor, if it is rigid or implicit; else 0. The mass of the body is
+    // divided among them.
     Index dampers = 0;
 };
 
@@ -28,7 +30,7 @@ struct SpringForce {
     Vec3 damping = Vec3::Zero();  // part of `force` that the damper exerts [N]
     Real tension = 0;             // force that pulls the anchors together; negative if it pushes them apart [N]
     Real elastic = 0;             // part of `tension` that the spring exerts [N]
-    Real rest_rate = 0;           // rate of the rest length [m/s]
+    Real rest_rate = 0;           // rate of change of the rest length [m/s]
 };
 
 struct SpringTable {
@@ -37,17 +39,20 @@ struct SpringTable {
     AnchorColumns first, second;
     Column<Real> stiffness;     // [N/m]
     Column<Real> damping;       // [N s/m]
-    Column<Real> strength;      // largest force [N]
+    Column<Real> strength;      // limit of the force, which is clipped at this value [N]
     Column<Range> rest_length;  // range of rows in the column `key`
-    // The next four columns describe the last step. They affect reports and the energy balance, but no later step.
+    // The four columns `force` to `rest_rate` describe the last step. They affect reports and the energy balance, but
+    // no later step.
     Column<Vec3> force;  // force on the first anchor [N]
-    // tension of spring and damper together, and the part of the spring [N]
+    // force that pulls the anchors together; `tension`: spring and damper together, `elastic`: the spring alone [N]
     Column<Real> tension, elastic;
-    Column<Real> rest_rate;                        // rate of the rest length [m/s]
-    Column<AnchorMass> first_mass, second_mass;    // written by weigh_springs
-    Column<Mat3> first_response, second_response;  // written by respond_at_anchors [1/kg]
-    Column<SpringForce> next;                      // written by add_spring_forces
-    Column<TimeKey> key;                           // rest lengths of all springs [m]
+    Column<Real> rest_rate;                      // rate of change of the rest length [m/s]
+    Column<AnchorMass> first_mass, second_mass;  // inverse masses of both anchors, derived by weigh_springs
+    // For an anchor on an implicit body: change of its velocity per unit impulse on it, due to the deformation of the
+    // body in this step [1/kg]. Zero for other anchors. Written by respond_at_anchors.
+    Column<Mat3> first_response, second_response;
+    Column<SpringForce> next;  // forces in the present step, written by add_spring_forces
+    Column<TimeKey> key;       // rest lengths of all springs [m]
 
     std::size_t size() const { return slot.size(); }
 

@@ -14,11 +14,13 @@ namespace skerry {
 
 /// Progress of the stable-step check of one body, and the results so far.
 struct StepEvaluation {
-    std::uint64_t piece = 0;   // number of the next piece of the check
+    std::uint64_t piece = 0;   // number of pieces done (pieces_of_check)
     Index broken = no_index;   // first element whose frequency bound is not finite
     Real highest = 0;          // greatest bound of the squared frequency omega^2 of an element so far [1/s^2]
     Index element = no_index;  // element with the bound `highest`; valid if `highest` is above zero
-    // Value of `highest` at the start of the current group of blocks, which are checked in parallel [1/s^2].
+    // Value of `highest` (for bounds with frame masses: of `in_frame`) when the check of the current group of blocks
+    // began [1/s^2]. The blocks of a group are checked in parallel and compared with this value only, so the result
+    // does not depend on the order of the threads.
     Real known = 0;
     // For a body with frame masses (frame_masses.h): `deformation` is the sum of V F over its elements with volume V
     // and deformation gradient F, column by column [m^3]. `in_frame` is the bound of omega^2 that follows from the
@@ -31,24 +33,24 @@ struct StepEvaluation {
 /// Checks all bodies one after the other, in endless rounds. The progress is part of the state, but only `steps` is
 /// hashed: rejected attempts at a step advance the other members, which changes no result.
 struct StepWatch {
-    /// Value of `step` for a body that is not checked in this round. Such a body is asleep or unstrained, so that its
-    /// shape does not change, or it has been checked elsewhere.
+    /// Value of `step` for a body that is not checked in this round, because it is asleep or unstrained (its shape does
+    /// not change), because another rank checks it, or because forget() was called.
     static constexpr Real not_evaluated = -1;
 
     std::uint64_t steps = 0;  // number of steps since the current round began
     // True in every second round. The balance of energy is checked at the end of such a round.
     bool second = false;
     Index body = 0;             // row of BodyTable whose check is in progress
-    Index kept = 0;             // in this round, the shapes of all bodies in rows below this row have been stored
+    Index kept = 0;             // store_shapes has stored the shapes of all bodies below this row in this round
     StepEvaluation evaluation;  // progress of the check of `body`
     std::uint64_t before = 0;   // number of pieces of all bodies in rows below `body`
-    std::uint64_t target = 0;   // number of pieces of this round that must be done by the end of the next step
+    std::uint64_t target = 0;   // number of pieces, of all bodies, that must be done when the next step ends
 
     Column<Vec3> position;       // by node: its position in the stored shape that is checked [m]
     Column<Real> stiffness_sum;  // by node: sum of the stiffnesses of its elements (stable_step.h)
-    Column<Real> step;           // by body: the stable step found, or not_evaluated [s]
-    // For each body: number of pieces of all bodies before it in the undivided world. The last entry is the number of
-    // all pieces. Derived by count_pieces; empty after a change of bodies.
+    Column<Real> step;           // by body: stable step; 0 until its check ends; or not_evaluated [s]
+    // For each body: number of pieces of all bodies before it, including those of other ranks. The last entry is the
+    // number of all pieces. Derived by count_pieces; empty when it must be derived again.
     Column<std::uint64_t> first_piece;
 
     /// Starts a new round. An unfinished round is abandoned.
@@ -58,8 +60,8 @@ struct StepWatch {
         evaluation = {};
         first_piece.clear();  // elements that become implicit change the numbers of pieces
     }
-    /// Cancels the check of the body in row `row`, because the body has been checked elsewhere or has changed since its
-    /// shape was stored.
+    /// Cancels the check of the body in row `row`, because the caller has computed its stable step, or the body has
+    /// changed since its shape was stored.
     void forget(std::size_t row) {
         if (row < step.size()) step[row] = not_evaluated;
         first_piece.clear();

@@ -1,5 +1,5 @@
-// Surface properties that differ from those of bodies and colliders: by pair of materials, and by place on a body
-// (docs/methods/friction.md 4).
+// Surface properties that override those of bodies and colliders: for pairs of materials, and for parts of the surface
+// of a body (docs/methods/friction.md 4).
 #pragma once
 
 #include <algorithm>
@@ -20,11 +20,12 @@ namespace skerry {
 /// One row per pair of materials with its own surface properties. Rows are sorted by ascending (first, second).
 struct MaterialPairTable {
     Column<Index> first, second;  // rows of MaterialTable, first <= second
-    // properties of contacts between the two materials; a negative property follows the general rule
+    // properties of contacts between the two materials; for a negative property, mean_surface() applies
     Column<SurfaceProperties> surface;
 
     std::size_t size() const { return first.size(); }
-    /// Row of the pair of these two materials, in either order. Without such a row: the row where it would be inserted.
+    /// Row of the pair of the materials a and b, in either order. If the pair has no row: the row where it would be
+    /// inserted.
     std::size_t place_of(Index a, Index b) const {
         const std::pair key(std::min(a, b), std::max(a, b));
         std::size_t begin = 0, end = size();
@@ -53,13 +54,14 @@ struct MaterialPairTable {
 struct SurfaceSetTable {
     Column<std::uint32_t> slot;
     Column<Index> body;  // row of BodyTable
-    // properties of the surface in the set; a negative property is that of the body
+    // properties of the surface in the set; for a negative property, that of the body applies
     Column<SurfaceProperties> surface;
-    // Direction in the rest shape in which `surface` gives the friction coefficients; zero: the same in all directions.
+    // Direction in the rest shape along which the friction coefficients in `surface` apply; zero: isotropic friction.
     Column<Vec3> direction;
-    Column<Real> across;    // coefficient across `direction`, as a multiple of the coefficient along it, > 0
+    Column<Real> across;    // friction coefficient across `direction` divided by that along `direction`, > 0
     Column<Range> members;  // range of rows in the column `member`
-    // Faces (three nodes) and nodes (three times the same number) of all sets. Nodes have their numbers in the mesh.
+    // Faces and nodes of all sets, with node numbers of the mesh. A face is stored as its three nodes, a single node as
+    // three equal numbers.
     Column<std::array<Index, 3>> member;
 
     std::size_t size() const { return slot.size(); }
@@ -93,8 +95,8 @@ struct SurfaceSetTable {
     }
 };
 
-/// Set that each surface feature belongs to: by row of TriangleTable, EdgeTable and VertexTable the row of
-/// SurfaceSetTable, or no_index. Rows without an entry belong to no set.
+/// For each row of TriangleTable, EdgeTable and VertexTable: row of SurfaceSetTable of the set that the feature belongs
+/// to, or no_index. All columns are empty if there is no set.
 struct SetOfFeature {
     Column<Index> triangle, edge, vertex;
 };

@@ -10,20 +10,21 @@
 
 namespace skerry {
 
-/// Boundary triangles, counter-clockwise as seen from outside. Each vertex and each edge is owned by exactly one of its
-/// triangles, the triangle with the lowest row. Two close triangles therefore yield each pair of their features only
-/// once.
+/// Boundary triangles, counter-clockwise as seen from outside. A vertex or edge belongs to several triangles; the
+/// triangle with the lowest row owns it. A search compares two triangles by the features that they own, and so finds
+/// each pair of features once.
 ///
 /// A round body has one degenerate triangle, its core. For a sphere or cylinder all three corners are the centre. For a
-/// capsule corner 0 is one end of the axis, and corners 1 and 2 are the other end; only the side from corner 0 to
-/// corner 1 is an edge. A side without an edge has the row no_index in `edge`.
+/// capsule corner 0 is one end of the axis, and corners 1 and 2 are the other end; its side from corner 0 to corner 1,
+/// the axis, is its only edge. A side that is not an edge has the entry no_index in `edge`.
 struct TriangleTable {
     Column<std::array<Index, 3>> node;    // rows of NodeTable
     Column<std::array<Index, 3>> edge;    // rows of EdgeTable; edge k connects corner k and corner (k + 1) % 3
     Column<std::array<Index, 3>> vertex;  // rows of VertexTable
     Column<std::uint8_t> owned_vertices;  // bit k: this triangle owns vertex k
     Column<std::uint8_t> owned_edges;     // bit k: this triangle owns edge k
-    // Tetrahedron whose face is the triangle (index in TetrahedronBlockTable), or no_index.
+    // Number e of the tetrahedron that the triangle is a face of: lane e % 8 of block e / 8 of TetrahedronBlockTable;
+    // or no_index.
     Column<Index> element;
 
     void for_each_column(auto&& visit) {

@@ -14,7 +14,7 @@ using TieHandle = Handle<struct TieTag>;  // refers to a tie of a world
 enum class TieKind : std::uint8_t {
     weld,   // no motion
     slide,  // motion in the tangent plane of the surface at the point
-    ball,   // any motion; only the mean point of all tied nodes, weighted by their masses, stays at a point
+    ball,   // any motion, as long as the centre of mass of all tied nodes stays at its point on the other object
 };
 template <>
 struct EnumNames<TieKind> {

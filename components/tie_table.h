@@ -19,15 +19,15 @@ namespace skerry {
 struct TieTable {
     Column<std::uint32_t> slot;
     Column<TieKind> kind;
-    Column<std::uint8_t> parts;                    // 1: the tie switches off collisions between its two bodies
-    Column<std::uint8_t> close_gap, bodies_touch;  // values that the user gave
+    Column<std::uint8_t> parts;                    // 1: the tie switches off collisions between its two objects
+    Column<std::uint8_t> close_gap, bodies_touch;  // settings of the user (TieSettings)
     Column<Index> first;                           // row of BodyTable; the deformable body whose nodes are tied
     Column<Index> second;                          // row of BodyTable, or no_index
     Column<Index> collider;      // row of ColliderTable, or no_index; without body and collider: the world
-    Column<Range> nodes;         // rows of the columns by tied node
+    Column<Range> nodes;         // range of rows of the columns `node` to `broken`
     Column<Real> break_force;    // force at which a node breaks off; may be infinite [N]
-    Column<Real> largest_force;  // largest force of the tie in a step [N]
-    Column<Real> step;           // time for which the impulses acted in the last step; 0 before the first step [s]
+    Column<Real> largest_force;  // largest force of the tie in any step so far [N]
+    Column<Real> step;           // time for which the forces of the tie acted in the last step; 0 before the first [s]
 
     // The next columns have one row per tied node. Nodes have their numbers in the meshes of the bodies.
     Column<Index> node;  // node of the first body
@@ -38,13 +38,14 @@ struct TieTable {
     // triangle, in the frame of the triangle (explicit body) or in the frame of the mesh (implicit body). Otherwise: in
     // the frame of the mesh of the rigid body, in the frame of the collider, or in the world.
     Column<Vec3> place;
-    // Unit normal of the surface in the same frame. Deformable bodies use the normal of the triangle instead.
+    // Unit normal of the other object, in the frame of `place`. If the other object deforms, the normal of the triangle
+    // is used instead.
     Column<Vec3> normal;
     Column<Vec3> impulse;  // impulse on the node in the last step [N s]
     Column<Real> broken;   // time at which the node broke off; infinite if it is tied [s]
 
     std::size_t size() const { return slot.size(); }
-    /// True if a node of the tie has not broken off.
+    /// True if at least one node of the tie has not broken off.
     bool holds(std::size_t tie) const {
         for (Index k = nodes[tie].begin; k < nodes[tie].end; ++k)
             if (!(broken[static_cast<std::size_t>(k)] < infinity)) return true;
@@ -95,10 +96,11 @@ inline void TieTable::erase_keys_of(std::size_t tie) {
         if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
 }
 
-/// Rows of ties in the contact problem of a step. They follow the contacts in ContactTable while regions are solved.
+/// One row per tied node that takes part in the contact problem of a step. While regions are solved, ContactTable
+/// contains these rows after those of the contacts.
 struct TieRowTable {
     Column<Index> tie;   // row of TieTable
-    Column<Index> node;  // row of the columns by tied node
+    Column<Index> node;  // row of the columns `node` to `broken` of TieTable
     Column<Stencil> stencil;
     Column<Vec3> point;    // position of the tied node at the start of the step [m]
     Column<Vec3> impulse;  // impulse on the node; before the solve: the warm start [N s]

@@ -14,8 +14,8 @@ namespace skerry {
 /// analysis of set union algorithms). A join attaches the greater root to the smaller one, so the root of a set is its
 /// smallest index, whatever the order of the joins. The next call of start() reuses the memory.
 struct UnionFind {
-    /// Parent, stamp and number of an index. The three values are stored together, because they are read together and
-    /// in random order.
+    /// Parent, stamp and number of an index. root() and number() read all three at random indices, so they are stored
+    /// side by side.
     struct Node {
         Index parent;
         // Number of calls of start() when the node was written; parent and number are only valid if it equals `now`.

@@ -7,7 +7,8 @@
 
 namespace skerry {
 
-/// Writes all columns of a row. The row belongs to no region yet, and its impulse is zero.
+/// Writes `row` to row c of the table. The contact belongs to no region yet; its impulse and slip are zero, and it is
+/// open.
 inline void write_contact(const ContactRow& row, std::size_t c, ContactTable& contacts) {
     contacts.key[c] = row.key;
     contacts.kind[c] = row.kind;
@@ -30,7 +31,7 @@ inline void write_contact(const ContactRow& row, std::size_t c, ContactTable& co
     contacts.state[c] = ContactState::open;
 }
 
-/// Appends a row. `impulse`: initial impulse for the solver [N s]
+/// Appends `row`. `impulse`: start value of the impulse for the solver [N s].
 inline void append_row(const ContactRow& row, const Vec3& impulse, ContactTable& contacts) {
     const std::size_t c = contacts.size();
     contacts.resize(c + 1);

@@ -63,13 +63,13 @@ struct CommandMember {
     void (*read)(const std::string& field, const CommandJson& value, LiveCommand& command);
 };
 
-/// Reads a member by a function of the field and the value.
+/// Sets a member of `command` to the result of the function `read`.
 template <auto member, auto read>
 void read_to(const std::string& field, const CommandJson& value, LiveCommand& command) {
     command.*member = read(field, value);
 }
 
-/// Members that a command must have besides "do". Other members are refused.
+/// JSON members that a command with this action must have besides "do". No others are allowed.
 std::vector<CommandMember> members_of(LiveAction action) {
     constexpr CommandMember number{"number", read_to<&LiveCommand::number, count_from>},
         value{"value", read_to<&LiveCommand::value, number_from>}, on{"on", read_to<&LiveCommand::on, on_from>},

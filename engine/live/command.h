@@ -13,8 +13,8 @@
 namespace skerry {
 
 enum class LiveAction {
-    seen,     // the browser has drawn the frame `number` and all before it
-    fields,   // the browser shows the fields `names`
+    seen,     // the browser has drawn frame `number` and all frames before it
+    fields,   // the browser shows the fields in the list "names"; see LiveCommand::content
     play,     // go on
     pause,    // stop
     step,     // advance by one step, then pause
@@ -44,16 +44,16 @@ struct EnumNames<LiveAction> {
     }};
 };
 
-/// A command. Each action uses the members that the text of the command has.
+/// A command. Members that its text does not give keep their defaults and are not used by its action.
 struct LiveCommand {
     LiveAction action = LiveAction::pause;
     std::uint64_t client = 0;  // number of the browser
-    std::uint64_t number = 0;  // number of a frame, or of a slider from 0
+    std::uint64_t number = 0;  // number of a frame from 1, or index of a slider
     Real value = 0;
     bool on = false;
-    FrameContent content = FrameContent::motion;   // content of frames with the fields that the browser shows
-    std::uint64_t body_number = 0;                 // number of the body in the stream of the browser
-    BodyHandle body{};                             // the body with this number
+    FrameContent content = FrameContent::motion;   // least FrameContent that contains the fields shown by the browser
+    std::uint64_t body_number = 0;                 // index of the body in LiveEncoder::bodies of this browser
+    BodyHandle body{};                             // handle of this body, set by LiveHub::receive
     Vec3 point = Vec3::Zero(), to = Vec3::Zero();  // [m]
 };
 

@@ -36,7 +36,7 @@ std::uint64_t LiveHub::join(LiveLink& link) {
     Client& client = clients_.emplace_back();
     client.number = ++last_client_;
     client.link = &link;
-    client.snapshot = last_snapshot_;  // earlier snapshots may be outdated
+    client.snapshot = last_snapshot_;  // skips earlier snapshots, which may be outdated
     if (!failure_.empty()) put_text(client, problem_text(failure_));
     client.thread = std::thread([this, &client] { serve(client); });
     note_busy();
@@ -204,7 +204,8 @@ LiveHub::Client* LiveHub::find(std::uint64_t number) {
     return place == clients_.end() ? nullptr : &*place;
 }
 
-/// Appends a message. A browser that takes no messages is dropped, so that they do not pile up.
+/// Appends a message. Drops a browser with `most_waiting` messages, so that messages to a hanging browser do not pile
+/// up.
 void LiveHub::put_text(Client& client, const std::string& text) {
     if (client.texts.size() < most_waiting)
         client.texts.push_back(text);
@@ -263,7 +264,7 @@ void LiveHub::serve(Client& client) {
             outgrown = encoder.is_outgrown(*snapshot);
         }
         lock.lock();
-        if (std::exchange(outgrown, false)) client.run = 0;  // starts a new stream
+        if (std::exchange(outgrown, false)) client.run = 0;  // differs from run_, so the next turn starts a new stream
         // released under the lock, so that free_snapshot() returns it only after it was read completely
         snapshot.reset();
     }

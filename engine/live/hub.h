@@ -26,17 +26,17 @@ public:
     virtual ~LiveLink() = default;
     virtual bool send_text(std::string_view text) = 0;
     virtual bool send_bytes(std::string_view bytes) = 0;
-    /// Asks the browser to close the connection. The owner then calls LiveHub::leave.
+    /// Starts to close the connection. When it has ended, the owner of the link calls LiveHub::leave.
     virtual void close() = 0;
 };
 
 /// Each browser has its own thread, which encodes and sends frames. So a browser that hangs does not delay the others.
-/// A browser gets a frame if it has acknowledged all frames but the last one. Frames that it misses are never encoded,
-/// so the differences in its stream remain correct.
+/// A browser gets a frame if it has acknowledged all frames but the last one. Frames that it misses are not encoded:
+/// each frame of a stream contains the differences from the last frame sent in it.
 class LiveHub {
 public:
     static constexpr std::size_t most_clients = 4;
-    // Largest number of waiting commands of all browsers, and of waiting messages to one browser.
+    // Largest number of commands that wait, from all browsers together, and of messages that wait for one browser.
     static constexpr std::size_t most_waiting = 1000;
 
     LiveHub() = default;
@@ -46,18 +46,18 @@ public:
 
     // The next functions are for the threads of the connections.
 
-    /// Adds a browser and returns its number. If there are too many, sends it a problem and returns 0. `link` must live
-    /// until leave().
+    /// Adds a browser and returns its number. After close() returns 0. If most_clients browsers are connected, sends
+    /// the browser a problem and returns 0. `link` must live until leave().
     std::uint64_t join(LiveLink& link);
-    /// Removes a browser, and ends its pull. For a browser that pulls nothing no command is added, because a command
-    /// ends a call of advance and so changes the length of the steps. Waits for its thread.
+    /// Removes a browser after waiting for its thread. If the browser pulls a body, adds a command that ends the pull.
+    /// Otherwise adds no command, because a command ends a call of advance and so changes the length of the steps.
     void leave(std::uint64_t client);
     /// Takes a message of a browser. A message that is no command is answered with a problem.
     void receive(std::uint64_t client, std::string_view text);
 
     // The next functions are for the thread of the simulation.
 
-    /// True if commands wait, or browsers are connected. Costs one comparison.
+    /// True if commands wait, or browsers are connected. Reads an atomic variable and takes no lock.
     bool is_busy() const { return busy_.load(std::memory_order_relaxed); }
     bool has_commands() const { return commands_waiting_.load(std::memory_order_relaxed); }
     std::vector<LiveCommand> take_commands();
@@ -69,22 +69,22 @@ public:
     void report(std::uint64_t client, const std::string& problem);
     /// Sends all browsers the reason why the run has failed. Browsers that join before the run continues get it too.
     void report_failure(const std::string& reason);
-    /// Notes that the world may differ from the last snapshot.
+    /// Notes that the world may differ from the last snapshot, so that browsers get a new frame.
     void mark_changed();
 
     struct Wish {
-        bool frame = false;                           // a browser waits for a frame
-        FrameContent content = FrameContent::motion;  // fields that it shows
+        bool frame = false;                           // at least one browser waits for a frame
+        FrameContent content = FrameContent::motion;  // least content with the fields that these browsers show
     };
-    /// Finds out whether a browser waits for a frame, and which fields it shows. Counts a missed frame for each browser
-    /// that is still busy with earlier frames.
+    /// Finds out whether browsers wait for a frame, and the fields that they show. Counts a missed frame for each other
+    /// browser that has not seen the present state, because it is still busy with earlier frames.
     Wish wish();
-    /// Returns a snapshot that no browser reads any more.
+    /// Returns a snapshot to be overwritten: one that no browser reads any more, or a new one.
     std::shared_ptr<Snapshot> free_snapshot();
     void publish(std::shared_ptr<Snapshot> snapshot);
     /// Waits until a command arrives, or until `end`.
     void wait_for_commands(std::chrono::steady_clock::time_point end);
-    /// Ends all connections. Later ones are refused.
+    /// Ends all connections. join() refuses later ones.
     void close();
 
     // For any thread.
@@ -98,15 +98,15 @@ private:
     struct Client {
         std::uint64_t number = 0;
         LiveLink* link = nullptr;
-        bool closed = false;                          // its thread ends
+        bool closed = false;                          // true: its thread ends the connection
         FrameContent content = FrameContent::motion;  // fields that it shows
-        bool pulls = false;                           // its last pull has not been released
+        bool pulls = false;                           // true: it still pulls a body
         std::deque<std::string> texts;                // messages that wait for its thread
-        std::uint64_t run = 0;                        // run that it shows
+        std::uint64_t run = 0;                        // number of the run in its stream; 0: it starts a new stream
         std::uint64_t snapshot = 0;                   // number of the last snapshot that the browser got
-        std::uint64_t version = 0;                    // version of that snapshot
-        std::uint64_t sent = 0, seen = 0;             // numbers of frames
-        std::vector<BodyHandle> bodies;               // bodies by number in its stream
+        std::uint64_t version = 0;                    // version of this last snapshot; 0: the browser needs a frame
+        std::uint64_t sent = 0, seen = 0;             // numbers of the last frames sent and acknowledged
+        std::vector<BodyHandle> bodies;               // copy of LiveEncoder::bodies of its stream
         std::thread thread;
 
         bool is_ready() const { return sent - seen < 2; }

@@ -12,10 +12,11 @@ namespace skerry {
 
 namespace {
 
-// longest duration of a call of advance, the default time between two frames of a scene [s]
+// Longest simulated time of a call of advance [s]. It equals the default time between two frames of a scene.
 constexpr Real frame_step = 1.0 / 60;
 constexpr Real frames_per_second = 30;  // most snapshots per wall time [1/s]
-// least time between two snapshots, as a multiple of the time that a snapshot takes
+// least wall time from one snapshot to the next, as a multiple of the time to take one: at most 1/4 of the wall time is
+// spent on snapshots
 constexpr int snapshot_pause = 4;
 constexpr Real longest_wait = 0.02;  // longest wait in due(), and in sync() while paused [s]
 constexpr Real longest_lag = 0.1;    // lag behind the wall clock that the simulation makes up for [s]
@@ -262,7 +263,8 @@ void LiveRun::show(const World& world, bool between_calls) {
     snapshot->pulls.clear();
     for (const auto& [client, pull] : pulls_) {
         if (const auto state = pull.state(world)) snapshot->pulls.emplace_back(client, *state);
-        // The page draws one line for its pull. Its springs are no objects of the scene.
+        // The page draws one line for the pull. The springs of a pull are no objects of the scene, so their lines are
+        // removed.
         std::erase_if(snapshot->frame.lines, [&held = pull](const LineFrame& line) { return held.has(line); });
     }
     hub_.publish(snapshot);
@@ -278,7 +280,7 @@ std::vector<LiveRun::PlottedProbe> LiveRun::tracked_probes(World& world) const {
     return probes;
 }
 
-/// Sums up the forces of the last call of advance.
+/// Adds the forces of the last call of advance to the sums of the probes.
 void LiveRun::sample_probes(const World& world) {
     if (!(world.time() > sampled_time_)) return;
     sampled_time_ = world.time();
@@ -286,7 +288,7 @@ void LiveRun::sample_probes(const World& world) {
         if (probe.tracked.empty()) continue;
         try {
             add_forces(world, probe.tracked.front());
-        } catch (const SceneError&) {  // show() finds that the object of the probe was removed
+        } catch (const SceneError&) {  // the object was removed; show() then clears the probe
         }
     }
 }
@@ -306,8 +308,8 @@ void LiveRun::pace_from_now(const World& world) {
     pace_time_ = world.time();
 }
 
-/// Duration of a call of advance: 1/60 s of wall time, but neither longer than 1/60 s of simulated time nor shorter
-/// than a step, so that slow motion does not change the length of the steps much.
+/// Simulated time of a call of advance [s]: the time that passes in 1/60 s of wall time at the set rate, at most 1/60
+/// s. It is not shorter than the stable step, so that slow motion hardly changes the length of the steps.
 Real LiveRun::call_length(const World& world) const {
     if (!(state_.rate > 0)) return frame_step;
     return std::min(frame_step, std::max(state_.rate * frame_step, world.stable_step()));

@@ -27,7 +27,7 @@ public:
     bool between_steps(const World& world);
     void fail(const std::string& text);
     void refuse_resets(const std::string& reason) { reset_refusal_ = reason; }
-    /// Removes the springs and fields of all pulls from the world.
+    /// Ends all pulls: removes their springs and drag fields from the world.
     void end_pulls(World& world);
 
 private:
@@ -47,7 +47,7 @@ private:
 
     /// A probe with its last values. The values of a probe whose object was removed are NaN.
     struct PlottedProbe {
-        std::vector<TrackedProbe> tracked;  // one probe, or none if its object was removed
+        std::vector<TrackedProbe> tracked;  // one probe; empty if its object was removed
         std::vector<Real> values;           // by column
     };
     std::vector<PlottedProbe> tracked_probes(World& world) const;
@@ -59,16 +59,16 @@ private:
     LiveState state_;
     Vec3 gravity_ = Vec3::Zero();           // last gravity of the world that was not zero [m/s^2]
     std::map<std::uint64_t, Pull> pulls_;   // by number of the browser
-    std::atomic<bool> step_asked_ = false;  // true until due() or the next sync() advances by one step
+    std::atomic<bool> step_asked_ = false;  // true from the command `step` to the end of due() or to the next sync()
     bool failed_ = false;                   // paused by fail()
     std::string reset_refusal_;             // reason why resets are refused; empty if they are allowed
     std::atomic<std::uint64_t> resets_ = 0;
 
     SnapshotTaker taker_;
     bool changed_ = false;            // the world may differ from the last snapshot although the time is the same
-    Real shown_time_ = 0;             // simulated time of the last check for a snapshot [s]
+    Real shown_time_ = 0;             // simulated time when a snapshot was last due [s]
     Real sampled_time_ = 0;           // simulated time of the last sample of the probes [s]
-    Clock::time_point next_show_{};   // a snapshot is due
+    Clock::time_point next_show_{};   // wall time from which a snapshot is due
     Clock::time_point pace_wall_{};   // wall time at which the simulated time was pace_time_
     Real pace_time_ = 0;              // [s]
     Clock::time_point speed_wall_{};  // begin of the interval over which the speed is measured

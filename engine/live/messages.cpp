@@ -82,9 +82,9 @@ bool LiveEncoder::is_outgrown(const Snapshot& snapshot) const {
     return stored > present + std::max(present, least);
 }
 
-/// Returns a value that 99 % of the positive values in `values_` do not exceed, so that few extreme values among many
-/// do not stretch a legend. If there are at most 100 values, it is the largest. Returns 0 if there are none. Changes
-/// the order of the values.
+/// Returns the 99th percentile of the positive finite values in `values_` as the upper end of a legend, so that few
+/// extreme values do not stretch the legend. For up to 100 values this is the largest. Returns 0 if there are none.
+/// Reorders `values_` and removes all other values.
 Real LiveEncoder::usual() {
     std::erase_if(values_, [](Real value) { return !(value > 0) || !std::isfinite(value); });
     if (values_.empty()) return 0;

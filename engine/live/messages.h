@@ -43,22 +43,22 @@ std::string state_text(const LiveState& state);
 /// Reports a refused command, or a failed step.
 std::string problem_text(const std::string& problem);
 
-/// Encodes the snapshots for one browser. The memory does not grow with the number of frames. It stores every object
-/// that was in any frame, until the stream starts anew.
+/// Encodes the snapshots for one browser. Its memory does not grow with the number of frames, but with the number of
+/// objects that were in any frame of the stream.
 class LiveEncoder {
 public:
-    /// Messages of one frame. They are valid until the next call.
+    /// Messages of one frame, in the order in which they are sent. `changes` is valid until the next call of pack().
     struct Messages {
         std::string added;         // objects that are new in this frame; empty if there are none
         std::string row;           // values for plots and legends
         std::string_view changes;  // bytes of PageStream::pack
     };
-    /// `frame`: number of the frame for this browser. `client`: number of the browser.
+    /// `frame`: number of the frame among those sent to this browser, from 1. `client`: number of the browser.
     Messages pack(const Snapshot& snapshot, std::uint64_t frame, std::uint64_t client);
-    /// True if most of the objects in the stream, and more than 1000 of them, are not in this snapshot any more. A new
-    /// stream then saves memory here and on the page.
+    /// True if most objects of the stream, and more than 1000, are no longer in the world. A new stream then saves
+    /// memory here and on the page.
     bool is_outgrown(const Snapshot& snapshot) const;
-    /// Bodies by number in the stream.
+    /// Handles of the bodies, in the order in which the stream numbers them.
     std::span<const BodyHandle> bodies() const { return stream_.body_handles(); }
 
 private:

@@ -19,18 +19,19 @@ struct PullState {
 };
 
 /// Drags a body by a spring without rest length from a point of its surface to a target. The stiffness is m (2 pi f)^2
-/// with the mass m of the body and f = 2 Hz. The force is at most 50 times m 9.81 m/s^2. For a body that deforms, up to
-/// 12 parallel springs around the point share stiffness and force. A drag field damps the body critically: a stiff free
-/// body approaches the target as (1 + w t) exp(-w t) with w = 2 pi f. A damper at the point would shorten the
-/// step of a fine mesh; the drag and the springs make it about 3 % shorter, and 25 % for an implicit body.
+/// with the mass m of the body and f = 2 Hz. The force is at most 50 times m 9.81 m/s^2. For a deformable body, up to
+/// 12 parallel springs around the point share stiffness and force equally. A drag field damps the body critically: a
+/// stiff free body approaches the target as (1 + w t) exp(-w t) with w = 2 pi f. The field acts on the whole body,
+/// because a damper at the point would shorten the step of a fine mesh much more. With springs and field the step is
+/// about 3 % shorter, for an implicit body 25 %.
 ///
-/// The springs and the field are objects of the world until end(). They are removed with the body. After World::reset
-/// to a clone without them, the pull is over.
+/// The springs and the field are objects of the world until end(). They are removed with the body. World::reset to a
+/// clone without them ends the pull.
 class Pull {
 public:
-    /// Starts to drag the nearest surface point of a body to `point`; a previous pull ends. Wakes the body. Throws
-    /// SceneError, and changes nothing, for a removed body, for coordinates beyond 1e9 m, and for an implicit body in
-    /// a world with theta < 1.
+    /// Starts to drag a body towards `target`, at its surface point nearest to `point`. Ends the previous pull. Wakes
+    /// the body. Throws SceneError, and changes nothing, for a removed body, for coordinates beyond 1e9 m, and for an
+    /// implicit body in a world with theta < 1.
     void begin(World& world, BodyHandle body, const Vec3& point, const Vec3& target);
     /// Moves the target. Does nothing if no body is pulled. Throws SceneError for coordinates beyond 1e9 m.
     void move(World& world, const Vec3& target);

@@ -1,4 +1,4 @@
-// State of a world in one frame of a live view, with copies of all data that it needs.
+// Snapshots: the state of a world in one frame of a live view, with copies of all data that the frame needs.
 #pragma once
 
 #include <chrono>
@@ -17,11 +17,11 @@ namespace skerry {
 struct Snapshot {
     Frame frame;  // its spans and pointers refer to the copies below
 
-    std::uint64_t number = 0;               // position in the sequence of all snapshots, from 1
-    std::uint64_t run = 0;                  // number of the run: 1, and one more after each reset
-    std::uint64_t version = 0;              // number of the state that it shows (LiveHub::mark_changed)
-    std::vector<std::vector<Real>> probes;  // values by probe and column
-    std::vector<Real> sliders;              // values of the sliders
+    std::uint64_t number = 0;                                // position in the sequence of all snapshots, from 1
+    std::uint64_t run = 0;                                   // number of the run; LiveHub::begin_run adds 1
+    std::uint64_t version = 0;                               // number of the shown state, see LiveHub::mark_changed
+    std::vector<std::vector<Real>> probes;                   // values by probe and column
+    std::vector<Real> sliders;                               // values of the sliders
     std::vector<std::pair<std::uint64_t, PullState>> pulls;  // number of a browser, and the pull of its user
     Real speed = 0;                                          // simulated time per wall time
 
@@ -39,14 +39,14 @@ struct Snapshot {
 /// Takes snapshots of a world. Surfaces and shapes, which do not change, are copied once and shared by all snapshots.
 class SnapshotTaker {
 public:
-    /// Replaces the frame of `snapshot`, whose memory is used again. If the content does not include the energy, which
-    /// takes a pass over all elements, the calculation may take 1 % of the wall time. Frames between two calculations
-    /// get the last energy.
+    /// Replaces the content of `snapshot`, and reuses its memory. A content below mesh_error does not include the
+    /// energy, which takes a pass over all elements. It is then calculated so rarely that it takes at most 1 % of the
+    /// wall time, and the snapshots between get the last result.
     void take(const World& world, FrameContent content, Snapshot& snapshot);
-    /// Returns true if time went back, or if a body has another number of nodes or triangles than in an earlier
-    /// snapshot. The world was then reset or replaced by its owner, and a stream cannot continue.
+    /// Returns true if time is earlier than in the last snapshot, or if a body has other numbers of nodes or triangles
+    /// than when it was first taken. Then the owner has reset or replaced the world, and streams must start anew.
     bool is_other_run(const World& world) const;
-    /// Forgets all objects.
+    /// Forgets all objects, the energy and the time of the last snapshot.
     void clear();
 
 private:

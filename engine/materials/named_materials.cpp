@@ -51,8 +51,8 @@ constexpr std::string_view openstax = "OpenStax, College Physics, table 5.1";
 
 constexpr Real psi = 6894.757;  // pound-force per square inch [Pa]
 
-/// Young's modulus of a neo-Hookean rubber with this engineering stress at twice its length [Pa]: the stress is
-/// E/3 (2 - 1/4).
+/// Young's modulus E of an incompressible neo-Hookean rubber with the given engineering stress at the stretch s = 2
+/// (100 % strain) [Pa]. The stress is E/3 (s - 1/s^2).
 constexpr SourcedValue from_100_percent_modulus(Real pounds_per_square_inch) {
     return {12.0 / 7 * pounds_per_square_inch * psi, smooth_on};
 }
@@ -200,7 +200,7 @@ MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, Mate
                    "modulus and exponent of the same sign, not zero");
         twice_shear += modulus * exponent;
     }
-    // Poisson's ratio must be above -1, which any positive bulk modulus satisfies.
+    // With a positive bulk modulus, Poisson's ratio is between -1 and 0.5 for any shear modulus.
     if (!(bulk_modulus > 0))
         refuse("material", "bulk_modulus", std::to_string(bulk_modulus) + " Pa", "a modulus > 0 (Pa)");
     const Real shear = twice_shear / 2;
@@ -214,7 +214,7 @@ MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, Mate
 }
 
 MaterialSettings mooney_rivlin(Real c10, Real c01, Real bulk_modulus, MaterialSettings base) {
-    // mu_1 = 2 c10 with the exponent 2, mu_2 = -2 c01 with the exponent -2
+    // Mooney-Rivlin is Ogden's law with mu_1 = 2 c10, exponent 2, and mu_2 = -2 c01, exponent -2.
     const std::array<OgdenTerm, 2> both{{{2 * c10, 2}, {-2 * c01, -2}}};
     return ogden(std::span(both).first(c01 == 0 ? 1 : 2), bulk_modulus, base);
 }

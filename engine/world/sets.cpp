@@ -30,7 +30,7 @@ const MeshSet& set_of(const BodyRecord& record, const std::string& name) {
     return found->second;
 }
 
-/// Returns the numbers of a part of a set, if there are any.
+/// Returns `numbers`, the faces or tetrahedra of a set. Throws SceneError if there are none.
 template <class Numbers>
 Numbers require_any(Numbers numbers, const BodyRecord& record, const std::string& name, const char* kind) {
     if (numbers.empty())

@@ -44,8 +44,8 @@ void add_rows(Hash& hash, AnyColumn column, std::size_t first, std::size_t count
         for (std::size_t i = 0; i < count; ++i) add_members(hash, type, rows + i * type.bytes);
 }
 
-/// Hashes the given rows of every column of a table with the role `state`. A range of negative size extends to the last
-/// row.
+/// Hashes the given rows of every column of a table with the role `state`. Rows beyond the end of a column are left
+/// out. A range of negative size, which wraps to a large unsigned number, extends to the last row.
 void add_state(Hash& hash, AnyTable table, Range rows) {
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::state) continue;
@@ -125,8 +125,8 @@ void add_filter(Hash& hash, const CollisionFilter& filter) {
     if (filter != CollisionFilter{}) add_row(hash, filter);
 }
 
-/// Hashes the state columns that have one row per collider or attachment. Columns with links to other rows are left
-/// out.
+/// Hashes one row of the state columns that have one row per object of the table. Columns with links to other rows are
+/// left out.
 void add_row_state(Hash& hash, AnyTable table, std::size_t row) {
     for (const ColumnInfo& info : table.columns())
         if (info.role == ColumnRole::state && info.has_row_each) add_rows(hash, table.column(info), row, 1);
@@ -147,7 +147,7 @@ void add_attachment(Hash& hash, Model& model, std::size_t a) {
 }
 
 /// Hashes a row that joins bodies, such as a joint. The slots of the joined bodies and colliders are hashed, not their
-/// rows.
+/// rows, which change when other objects are removed.
 template <class Table>
 void add_joining_row(Hash& hash, const Model& model, Table& of, std::size_t row) {
     const AnyTable table(of);
@@ -170,7 +170,7 @@ void add_joining_row(Hash& hash, const Model& model, Table& of, std::size_t row)
     }
 }
 
-/// Hashes the lists of keys of all rows of a table. Rows without keys add nothing.
+/// Hashes the lists of time keys (values at given times) of all rows of a table. Rows without keys add nothing.
 template <class Table>
 void add_keys(Hash& hash, const Table& table) {
     for (const std::size_t row : in_slot_order(table.slot)) {

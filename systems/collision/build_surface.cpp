@@ -22,8 +22,8 @@ std::array<Index, 2> edge_nodes(const std::array<Index, 3>& node, std::size_t k)
     return {std::min(a, b), std::max(a, b)};
 }
 
-/// True if side k of a triangle is an edge of the surface. The core of a round body is stored as a degenerate triangle.
-/// At most side 0 of such a triangle is an edge.
+/// True if side k of a triangle is an edge of the surface. In the degenerate triangle that stores the core of a round
+/// body (TriangleTable), only side 0 can be an edge: the axis of a capsule.
 bool has_edge(const std::array<Index, 3>& node, std::size_t k) {
     return !is_core(node) || (k == 0 && node[0] != node[1]);
 }
@@ -36,8 +36,8 @@ Index end_of(std::span<const BoundaryTriangle> triangles) {
     return end;
 }
 
-/// `node`: nodes of a boundary surface in ascending order. `place`: index of each node of the body in this list, or
-/// no_index.
+/// Nodes of the boundary surface of a body. `node`: their numbers, ascending. `place`: for each node of the body, its
+/// index in `node`, or no_index for an inner node.
 struct BoundaryNodes {
     std::vector<Index> node, place;
 
@@ -53,10 +53,11 @@ struct BoundaryNodes {
     }
 };
 
-/// `node`: the two nodes of each edge of a boundary surface, sorted. `of_triangle`: the three edges of each triangle.
+/// Edges of the boundary surface of a body. `node`: the lower and the higher node of each edge; edges are sorted by
+/// these nodes.
 struct BoundaryEdges {
     std::vector<std::array<Index, 2>> node;
-    // Edge at each side of the triangle; no_index if the side is not an edge.
+    // For each triangle and side: index of the edge in `node`; no_index if the side is not an edge.
     std::vector<std::array<Index, 3>> of_triangle;
 
     BoundaryEdges(std::span<const BoundaryTriangle> triangles, Index end)
@@ -151,7 +152,7 @@ std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> 
 
 std::vector<BoundaryTriangle> boundary_triangles(std::span<const std::array<Index, 4>> tetrahedra) {
     const std::vector<TetrahedronFace> faces = sorted_faces(tetrahedra);
-    // Flag of each face, by tetrahedron and opposite corner: 1 for a boundary face.
+    // For face k of tetrahedron t, at index 4 t + k: 1 for a boundary face.
     std::vector<std::uint8_t> is_single(faces.size(), 0);
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t end = i + 1;

@@ -15,7 +15,7 @@ namespace skerry {
 struct TetrahedronFace {
     std::array<Index, 3> node;  // ascending
     Index tetrahedron;
-    std::uint8_t corner;  // number, 0 to 3, of the tetrahedron's corner opposite to the face
+    std::uint8_t corner;  // corner of the tetrahedron opposite to the face, 0 to 3
     bool turned;          // true: the nodes in ascending order are clockwise as seen from outside
 };
 /// Returns the faces of all tetrahedra, sorted by their nodes. Faces with the same nodes are sorted by tetrahedron.
@@ -25,7 +25,7 @@ std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> 
 /// counter-clockwise as seen from outside. boundary_triangles returns the triangles in the order of their tetrahedra.
 struct BoundaryTriangle {
     std::array<Index, 3> node;  // node numbers within the body
-    Index element;              // element number within the body
+    Index element;              // number of the tetrahedron within the body
 };
 std::vector<BoundaryTriangle> boundary_triangles(std::span<const std::array<Index, 4>> tetrahedra);
 
@@ -33,15 +33,16 @@ struct SurfaceRanges {
     Range triangles, edges, vertices;
 };
 
-/// Appends the triangles, edges and vertices of the surface of a new body to `surface`. The node and element numbers in
-/// `triangles` are local to the body. `first_node` and `first_element` are the table rows of node 0 and element 0 of
-/// the body. For a surface without elements, `first_element` is no_index.
+/// Appends the triangles, edges and vertices of the surface of a new body to `surface`. Returns the ranges of the new
+/// rows. The node and element numbers in `triangles` are local to the body. `first_node` and `first_element` are the
+/// table rows of node 0 and element 0 of the body. For a surface without elements, `first_element` is no_index.
 SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index first_node, Index first_element,
                              SurfaceTables& surface);
 
-/// Appends the surface of a body, as append_surface does, by copying the surface of an earlier body with the same mesh.
-/// `like`: rows of the earlier surface. `behind`: differences between the rows of the new and the earlier body. The
-/// differences for nodes and elements are inputs, all others are outputs.
+/// Appends the surface of a new body as a copy of the surface of an earlier body with the same mesh, and returns the
+/// ranges of the new rows. `like`: ranges of the earlier surface. `behind`: row numbers of the new body minus those of
+/// the earlier body. The differences for nodes and elements are inputs; the function computes those for triangles,
+/// edges and vertices.
 SurfaceRanges append_surface_again(const SurfaceRanges& like, RowsBehind& behind, SurfaceTables& surface);
 
 }  // namespace skerry

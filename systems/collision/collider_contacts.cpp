@@ -53,8 +53,8 @@ private:
         }
         if (motion_.stands_still() && is_convex_part(geometry_, part) &&
             !within_reach(distance, speed_against(Vec3::Zero(), node))) {
-            // `distance` is a lower bound for all points of the edge. If the edge is the axis of a capsule, the surface
-            // is nearer by the radius.
+            // `distance` bounds the distance of every point of the edge from below, so no point of the edge can touch
+            // in this step. If the edge is the axis of a capsule, the surface is nearer by the radius.
             least_ = std::min(least_, distance - scale.radii);
             return;
         }
@@ -81,7 +81,7 @@ private:
         const Vec3 point = to_world(motion_, contact.point.at - contact.point.radius * contact.normal),
                    velocity = velocity_at(motion_, point);
         if (!within_reach(contact.distance, speed_against(velocity, node))) return;
-        // Depth of the collider point's centre behind the face [m].
+        // Depth of `contact.point.at`, which is the centre of the ball for a sphere or capsule, behind the face [m].
         const Real depth = -(contact.distance + contact.point.radius);
         if (depth > 0 && !is_truly_behind(c, contact.point.at, depth)) return;
         const auto& weight = contact.closest.weight;
@@ -90,9 +90,9 @@ private:
             {point, -(motion_.rotation * contact.normal), contact.distance, scale.contact_distance, velocity});
     }
 
-    /// True if the collider point has entered the body through this face. If the result is false, the point may be in
-    /// front of a face on the far side of a thin part, nearer to another face, or outside the body in a fold of its
-    /// surface.
+    /// True if the collider point has entered the body through the face of candidate c. False if the point is deeper
+    /// than face_depth (then it may have come from the other side of a thin part), if another face is nearer, or if the
+    /// point is outside the body, in a fold of its surface.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return depth <= scale.face_depth &&
                is_nearest(c, depth,

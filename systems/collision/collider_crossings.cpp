@@ -15,13 +15,14 @@ class ColliderCrossings : PairCrossings {
 public:
     using PairCrossings::PairCrossings;
 
-    /// Tests one candidate for a crossing in this step. `least`: lower bound of the distance between its features, or
-    /// of the motion during which only nodes can touch [m]. Returns true if a full test was needed.
+    /// Tests one candidate for a crossing in this step. `least`: relative motion of body and collider during which the
+    /// two features cannot touch, or during which other candidates (nodes in a flat region) would touch first [m].
+    /// Returns true if a full test was needed.
     bool test(const Candidate& candidate, Real least) {
         std::array<Index, 3> node{};
         const TouchingFeature feature = feature_of_candidate(candidate, node);
-        // The rim is tested once, by the candidate of the rim point that depends on the face. The candidates of the
-        // other points of the rim are skipped.
+        // A rim has five points (collider_point). Only the candidate of point 0, which is furthest behind the plane of
+        // the face, is tested, because this test covers the whole rim.
         const bool has_rims = collider_point_follows(geometry_.shape, 0);
         const bool is_another =
             feature.kind == Kind::face && has_rims && !collider_point_follows(geometry_.shape, feature.of_shape);
@@ -34,7 +35,7 @@ public:
                                                  {to_local(pose_, x[0]), to_local(pose_, x[1]), to_local(pose_, x[2])});
             if (!(approach > slow_fraction * std::max(now.nearest, now.distance))) return false;
         }
-        // Height of the first node above a plane collider [m].
+        // For a plane collider: height of the first node above the plane [m].
         const Real height = pose_.rotation.col(2).dot(feature.position[0] - pose_.position);
         if (the_end_tells(geometry_, feature) && !(approach > height)) return false;
         const std::optional<Touch> touch = first_touch(geometry_, pose_, motion.h, feature);
@@ -63,11 +64,12 @@ private:
 
     void add(const Candidate& candidate, const TouchingFeature& feature, const std::array<Index, 3>& node,
              const Touch& touch) {
-        // contact point and normal of the collider in its pose at the start of the step
+        // contact point and normal on the collider, moved back with the collider to its pose at the start of the step
         const Vec3 normal = pose_.rotation * touch.normal, point = to_world(pose_, touch.point);
         Stencil stencil{{}, {}};
         std::size_t count = 0;
-        // Distance of the feature from the contact point along the normal, at the start of the step [m].
+        // Height of the touching point of the feature above the contact point, along the normal, at the start of the
+        // step [m].
         Real along = 0;
         for (std::size_t i = 0; i < feature.nodes(); ++i) {
             if (touch.weight[i] == 0) continue;

@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// Data of a pair that the tests of its candidates share. A rigid cylinder is always the first body of its pair. If
-/// both bodies are cylinders, the first is the one whose middle node is the point in the feature keys.
+/// Data of a pair that the tests of its candidates share. If one body is a rigid cylinder, `first` is this body, even
+/// if it is the second body in PairTable. If both bodies are cylinders, the order of PairTable is kept.
 struct PairData {
     const CollisionInputs& inputs;
     std::uint64_t key;
@@ -23,7 +23,7 @@ struct PairData {
     PairState state;
     PairScale scale;
     SurfaceProperties surface;
-    Real travel;  // [m]
+    Real travel;  // travel of the pair up to the start of this step (contact_reach.h) [m]
     std::span<const Candidate> candidates;
 
     PairData(const CollisionInputs& all_inputs, const PairTable& pairs, Index p);
@@ -36,13 +36,14 @@ struct PairData {
 };
 
 /// Contact point between two features. An analytic collider or a rigid cylinder is a single feature. The feature of a
-/// sphere or capsule is its core (centre or axis), but against a cylinder it is its surface.
+/// sphere or capsule is its core (centre or axis); in a pair with a cylinder it is the surface of the sphere or
+/// capsule.
 struct ContactPlace {
     Vec3 point;                            // contact point on the second feature [m]
     Vec3 normal;                           // unit normal from the second to the first feature
     Real distance;                         // signed distance of the features [m]
     Real contact_distance;                 // distance that the contact maintains between the features [m]
-    Vec3 surface_velocity = Vec3::Zero();  // velocity of a collider at `point` [m/s]
+    Vec3 surface_velocity = Vec3::Zero();  // velocity of an analytic collider at `point`; 0 for two bodies [m/s]
 };
 
 ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind kind, const Stencil& stencil,
@@ -52,22 +53,22 @@ ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind 
 /// number of the contact point among the points of this candidate, counted from 0.
 std::uint64_t feature_of_touch(const PairData& pair, std::uint64_t feature, Index number);
 
-// Limits of the numbers of contact points on a cylinder. Contact points with a triangle have numbers below
-// touches_of_triangle. Contact points with any other shape have numbers below touches_of_shape; the upper half of these
-// numbers is for crossings.
+// Upper limits of the number in feature_of_touch. It is below touches_of_triangle for a cylinder and a triangle, and
+// below touches_of_shape for a cylinder and any other shape, where the upper half is used for crossings
+// (cylinder_crossings.cpp).
 inline constexpr Index touches_of_triangle = 64, touches_of_shape = 512;
 
-/// Contact stencil of a point and a triangle. `node`: node of the point, then nodes of the three corners. Nodes with
-/// weight 0 are left out, so that the contact does not connect them to a region.
+/// Contact stencil of a point and a triangle. `node`: node of the point, then nodes of the three corners. Corners with
+/// weight 0 are replaced by the node of the point, so that the contact does not make them part of its region.
 Stencil stencil_of_point(const std::array<Index, 4>& node, const std::array<Real, 3>& weight);
 
 /// Contact stencil of two edges. `node`: both nodes of the first edge, then both nodes of the second edge. Nodes with
-/// weight 0 are left out.
+/// weight 0 are replaced by another node of the stencil.
 Stencil stencil_of_edges(const std::array<Index, 4>& node, const SegmentSegment& closest);
 
-/// Merges the rows of all blocks and the rows `more` into one column in key order. The blocks and `more` must be in key
-/// order. If a block and `more` contain rows with the same key, only one of the two rows is used: the row of the block
-/// if `prefer_blocks` is true, else the row in `more`.
+/// Merges the rows of all blocks and the rows `more` into `merged`, in key order. The rows of the blocks, one block
+/// after the other, and the rows `more` must be in key order. If a block and `more` contain rows with the same key,
+/// only one of the two rows is used: the row of the block if `prefer_blocks` is true, else the row in `more`.
 void merge_rows(const std::vector<Column<ContactRow>>& blocks, const Column<ContactRow>& more, bool prefer_blocks,
                 Column<ContactRow>& merged);
 

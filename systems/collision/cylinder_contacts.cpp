@@ -14,8 +14,9 @@ namespace skerry {
 
 namespace {
 
-// Smallest ratio of the displacement of the rim nodes of a cylinder to the displacement of any rim point. It is needed
-// because travel is measured at nodes only.
+// Lower bound of the ratio of two displacements: the greatest one of the rim nodes of a cylinder and the greatest one
+// of all rim points. A rim point between two nodes can move further than both nodes, but travel is measured at nodes
+// only.
 constexpr Real of_rim_nodes = 0.95;
 
 // An edge counts as parallel to the axis of a cylinder if the sine of the angle between them is below this limit. Such
@@ -25,13 +26,13 @@ constexpr Real parallel_sine = 1e-3;
 // The distance along an edge counts as constant if its derivative is below this limit.
 constexpr Real straight_slope = 1e-7;
 
-// Numbers of the contact points between a cylinder and a triangle: 0 to 2 for the three corners, then eight for each
-// edge, then nine for each rim of the cylinder.
+// Numbers of the contact points between a cylinder and a triangle: 0 to 2 are the corners of the triangle. Then follow
+// eight numbers for each edge of the triangle and nine for each rim of the cylinder.
 constexpr Index number_of_edges = 3, places_of_edge = 8, number_of_faces = number_of_edges + 3 * places_of_edge;
 static_assert(number_of_faces + 2 * RimPoints::most_of_rim <= touches_of_triangle);
 
-// A rim point beside a face counts as above the face if its distance from the face's border is below this fraction of
-// the edge length.
+// A rim point whose projection lies beside a face by less than this fraction of the edge length counts as above the
+// face, so that no rim point is lost between two faces by rounding errors.
 constexpr Real seam_fraction = 1e-9;
 
 class CylinderContacts : PairContacts {
@@ -52,15 +53,15 @@ public:
     Real least_distance() const { return least_; }
 
 private:
-    /// Stores the travel up to which candidate c needs no test. `distance`: lower bound of the distance between the two
-    /// surfaces [m]. Returns true if the candidate must be tested more closely in this step.
+    /// Stores the travel up to which candidate c needs no test (asleep_until). `distance`: lower bound of the distance
+    /// between the two surfaces [m]. Returns true if the contact points of the candidate must be computed in this step.
     bool note(Index c, Real distance) {
         least_ = std::min(least_, distance);
         asleep_until[c] = travel_base + (distance > 0 ? of_rim_nodes : 1) * distance - scale.shell;
         return distance <= near_surface();
     }
-    /// True if the lower bound `bound` of the distance shows that the candidate needs no closer test. Otherwise the
-    /// contact points give a sharper bound.
+    /// True if `bound`, a lower bound of the distance, shows that candidate c has no contact in this step; asleep_until
+    /// is then stored. Otherwise the caller stores it with a sharper bound that follows from the contact points.
     bool is_far(Index c, Real bound) { return bound > near_surface() && !note(c, bound); }
     Real near_surface() const { return near - scale.radii; }
 
@@ -105,8 +106,9 @@ private:
             const EdgePoint& touch = contact.point[i];
             if (!(touch.on.distance <= near_surface())) continue;
             const Vec3 normal = -(cylinder_.motion.rotation * touch.on.normal);
-            // A cylinder that rolls or slides over a nearly flat region is supported by faces only. An edge in front of
-            // the cylinder would act as a bump.
+            // A nearly flat edge makes a contact only with an end of the cylinder, or where it crosses the curved side
+            // and the normal is perpendicular to it. Elsewhere the faces support the cylinder; a contact at an edge,
+            // for example parallel to a rolling cylinder and ahead of it, would act as a bump.
             const CylinderPlace place = place_of(touch.on.normal);
             const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
             const bool nearly_flat =
@@ -139,8 +141,8 @@ private:
         }
     }
 
-    /// True if a point of the cylinder has entered the body through this face. If contacts keep the two surfaces apart,
-    /// no point can be behind a face, so the result is false.
+    /// True if a point of the cylinder has entered the body through the face of candidate c. If contacts and
+    /// find_crossings keep the two surfaces apart, no point can have entered, so the result is false.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return !held_apart && depth <= scale.face_depth && is_nearest(c, depth, [&](Index i) {
             const auto& node = inputs.surface.triangles.node[candidates[i].second];
@@ -167,8 +169,9 @@ private:
             kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
             stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, weight), place);
     }
-    /// Adds the contact points on one other shape. `speed_at(velocity, place)`: relative speed of the shape and the
-    /// cylinder at the contact point `place`, where the cylinder has the velocity `velocity` [m/s].
+    /// Adds a contact for each entry of `touches_`, the contact points of the cylinder and one other shape. `node`:
+    /// nodes of the other shape, with the weights weight_of(touch). `speed_at(velocity, place)`: relative speed of the
+    /// two shapes at the contact point `place`, where the cylinder has the velocity `velocity` [m/s].
     void add_touches(Index c, const std::array<Index, 3>& node, auto&& weight_of, auto&& speed_at) {
         for (const CylinderTouch& touch : touches_) {
             const Vec3 point = cylinder_.world(touch.on_other), velocity = cylinder_.velocity_at(point);

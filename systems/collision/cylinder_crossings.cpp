@@ -17,15 +17,17 @@ namespace skerry {
 
 namespace {
 
-// Numbers of crossings, which follow the numbers of the contact points at the start of the step. A triangle has eight
-// crossings: three for corners, three for edges and two for rims of the cylinder. Another shape has one crossing for
-// each contact point at the end of the step, and one for the first contact during the step.
+// First numbers of crossings (feature_of_touch), above the numbers that find_cylinder_contacts uses. A triangle has
+// eight numbers: three for its corners, three for its edges and two for the rims of the cylinder. Another shape has one
+// number for each contact point at the end of the step, from crossing_of_shape on, and the number crossing_on_the_way
+// for the first contact during the step.
 constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::most,
                 crossing_on_the_way = touches_of_shape - 1;
 static_assert(crossing_of_triangle + 8 <= touches_of_triangle && 2 * CylinderTouches::most <= touches_of_shape);
 
-// If the motion in the step is below this fraction of the smaller half thickness of the two shapes, neither shape can
-// pass completely through the other within the step.
+// A shape can only pass completely through the other one within the step if the motion exceeds this fraction of half
+// the thickness of the thinner shape; otherwise a test at the end of the step suffices. The fraction 0.5 includes a
+// wide safety margin.
 constexpr Real thin_fraction = 0.5;
 
 class CylinderCrossings : PairCrossings {
@@ -71,8 +73,8 @@ private:
         return true;
     }
 
-    /// Tests a feature of the other body for a crossing. `radius`: radius of the other body if it is a sphere or
-    /// capsule, whose feature is its core (centre or axis) [m]. Returns true if a full test was needed.
+    /// Tests a feature of the other body for a crossing. `radius`: radius if the body is a sphere or capsule, whose
+    /// feature is its core (centre or axis); 0 for a surface of triangles [m]. Returns true if a full test was needed.
     bool test_feature(const Candidate& candidate, Index number, Kind of_other, const std::array<Index, 3>& node,
                       Index of_shape = 0, Real radius = 0) {
         const TouchingFeature feature = feature_of(of_other, node, of_shape, kept(radius));
@@ -118,8 +120,9 @@ private:
         return true;
     }
 
-    /// Adds the contact points that overlap at the end of the step, and other contact points near them. Without
-    /// contacts at the near points, the cylinder would penetrate there. Returns true if any point overlaps.
+    /// If any contact point overlaps at the end of the step, adds all contact points that are nearer than the shell
+    /// distance then, and returns true. Contacts at the overlapping points alone would let the cylinder rotate and
+    /// overlap at the other points.
     bool add_end(const Candidate& candidate, const OtherShape& other) {
         find_touches(1, other, scale.shell);
         if (!any_overlap()) return false;
@@ -128,7 +131,8 @@ private:
         return true;
     }
 
-    /// Adds the first contact during the step between the cylinder and the facets of the other shape.
+    /// Adds the first contact during the step between the cylinder and the other shape, which is approximated by its
+    /// facets.
     void add_on_the_way(const Candidate& candidate, const OtherShape& other) {
         std::optional<Hit> first_found;
         TouchingFeature of_first{};
@@ -163,7 +167,8 @@ private:
         const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion.h, feature, &time);
         return touch ? std::optional(Hit{*touch, time}) : std::nullopt;
     }
-    /// Touched point of the feature: its position at the start of the step [m].
+    /// Position at the start of the step of the point of the feature that touches the cylinder at the time hit.time
+    /// [m].
     static Vec3 touched_point(const TouchingFeature& feature, const Hit& hit) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t i = 0; i < feature.nodes(); ++i) sum += hit.touch.weight[i] * feature.position[i];
@@ -245,8 +250,9 @@ private:
     /// [m]. `along` and `left`: distances between the surfaces at the contact point at the start and at the end of the
     /// step [m].
     ///
-    /// If an earlier attempt at the step already had this contact and `left` is still negative, the rotation of the
-    /// cylinder has used up the gap. The distance of the contact is then reduced by the overlap.
+    /// If an earlier attempt at the step already had this contact and `left` is still negative, the contact kept its
+    /// gap open along a straight path, but the rotation of the cylinder has closed it. The distance of the contact is
+    /// then reduced by the overlap.
     void put(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm, const Vec3& normal,
              Real along, const Vec3& surface_velocity, Real left = 0) {
         const auto row_at = [&](Real distance) {
@@ -255,8 +261,8 @@ private:
                                kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
                                stencil, {point, normal, distance, scale.shell, surface_velocity});
         };
-        // If the feature rotates by more than a right angle, the distance can be negative at this place although
-        // nothing overlaps.
+        // The normal is that at the time of contact. If the shapes have rotated by more than a right angle since the
+        // start of the step, `along` can be negative although nothing overlapped then.
         ContactRow row = row_at(std::max(along, Real(0)));
         if (left < 0) {
             const auto before = std::ranges::lower_bound(known_, row.key, std::less{}, &ContactRow::key);
@@ -266,14 +272,15 @@ private:
         found.push_back(row);
     }
 
-    /// Distance that must remain between a feature and the cylinder. If a contact stops the feature at the contact
-    /// distance, the feature has not crossed the surface, however far it moved.
+    /// Distance that must remain between a feature and the cylinder. A feature counts as crossing only if it comes
+    /// nearer than a tenth of the shell distance (contact_slack). A feature that a contact stops at the shell distance
+    /// is thus no crossing.
     KeptApart kept(Real radius) const { return {radius, scale.shell > 0 ? contact_slack * scale.shell : infinity}; }
     bool any_moves(const std::array<Index, 3>& node) const {
         return can_move(std::array{cylinder_.middle, node[0], node[1], node[2]});
     }
     Stencil stencil_of_middle() const { return stencil_of_point({cylinder_.middle, no_index, no_index, no_index}, {}); }
-    /// Index of the rim point whose position depends on the face (collider_point).
+    /// Index of the first point of a rim, whose position depends on the face (collider_point).
     static Index point_of_rim(Index rim) { return rim * collider_point_count(ColliderShape::cylinder) / 2; }
     /// Pose of a shape at `time`, a fraction of the step.
     RigidMotion at(const RigidMotion& pose, Real time) const {
@@ -305,7 +312,7 @@ private:
     }
 
     const RigidCylinder cylinder_ = cylinder_in_step(inputs, motion, first);
-    std::span<const ContactRow> known_;  // contacts found by earlier attempts at this step, in key order
+    std::span<const ContactRow> known_;  // crossings that earlier attempts at this step have found, in key order
     CylinderTouches touches_;
 };
 

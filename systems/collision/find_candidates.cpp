@@ -18,12 +18,14 @@ namespace skerry {
 
 namespace {
 
-// Refitting the trees of one block takes a few microseconds; computing the boxes and spheres of one block takes less.
+// Number of trees that one task refits in a few microseconds, and number of bodies whose boxes and spheres one task
+// computes in less time.
 constexpr std::size_t trees_per_block = 2, bounds_per_block = 32;
-// The work for one block of this many bodies or pairs takes a few microseconds.
+// Numbers of bodies or pairs that one task processes in a few microseconds.
 constexpr std::size_t bounded_bodies_per_block = 128, bounded_pairs_per_block = 256, far_pairs_per_block = 64;
 
-/// Marks the bodies or colliders whose distances from other objects are unknown. Returns true if any object is marked.
+/// Marks the bodies or colliders whose distances from other objects are unknown (SearchState). With `all`, marks every
+/// object. Returns true if any object is marked.
 bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Column<std::uint8_t>& forgotten) {
     if (all) valid_until.clear();
     SKERRY_CHECK(valid_until.size() <= count);
@@ -34,7 +36,7 @@ bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Colu
     return any;
 }
 
-/// Adds the bodies marked as forgotten to body_unmeasured, the bodies whose stored speeds are out of date.
+/// Marks the forgotten bodies also in body_unmeasured, because their stored speeds are out of date.
 void note_unmeasured(SearchMemory& memory) {
     const std::size_t count = memory.body_forgotten.size();
     if (!memory.any_unmeasured) memory.body_unmeasured.clear();
@@ -73,8 +75,8 @@ bool all_below(const Column<Real>& travel_bound, const Column<Real>& valid_until
     return below;
 }
 
-/// True if the travel bounds of all colliders are below their limits. The rows of mesh colliders in ColliderTable are
-/// skipped, because mesh colliders move as bodies.
+/// True if the travel bounds of all colliders are below their limits. Mesh colliders are skipped, because each has a
+/// kinematic body, whose travel bound is compared instead.
 bool colliders_below(const CollisionInputs& inputs, const SearchState& search) {
     bool below = true;
     for (std::size_t c = 0; c < search.memory.collider_travel_bound.size(); ++c)
@@ -83,7 +85,8 @@ bool colliders_below(const CollisionInputs& inputs, const SearchState& search) {
     return below;
 }
 
-/// Bounds the relative motion of the two partners of a pair, both up to now and up to the end of this step.
+/// Writes `travel`, `travel_bound` and `closing` of a pair: bounds of the relative motion of its partners, up to the
+/// start and up to the end of this step.
 void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Real h, Index p, PairTable& pairs) {
     const Index a = pairs.first[p], b = pairs.second[p];
     if (pairs.kind[p] == PairKind::collider) {
@@ -109,8 +112,8 @@ void list_bodies(SearchMemory& memory) {
         if (memory.needs_refit[b]) memory.refit.push_back(static_cast<Index>(b));
 }
 
-/// True if the candidate list of a pair is complete for the step that begins. For a body paired with itself, the
-/// motion of its parts may extend the validity of the list.
+/// True if the candidate list of a pair is complete for the step that begins. For a body paired with itself, the list
+/// may be complete beyond valid_until, because its parts move together (self_motion.h); valid_until is then raised.
 bool is_valid(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, PairTable& pairs) {
     if (pairs.travel_bound[p] < pairs.valid_until[p]) return true;
     if (pairs.kind[p] != PairKind::self || !settings.use_budgets || !(pairs.valid_until[p] > -infinity)) return false;
@@ -131,7 +134,7 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, const Colli
             pairs.fresh[p] = !is_valid(inputs, settings, h, static_cast<Index>(p), pairs);
         }
     });
-    // The loop has no branch, because a branch would be hard to predict.
+    // Every index is written, but kept only if the pair has expired: a branch would be hard to predict.
     memory.expired.resize(pairs.size() + 1);
     std::size_t expired = 0;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -161,13 +164,14 @@ void fit_expired(Executor& executor, const CollisionInputs& inputs, std::span<Aa
 }
 
 /// Upper bound of the decrease in distance between the partners of a pair in this step [m]. For two bodies, the bound
-/// by motions relative to their frames is sharper than the bound by their speeds.
+/// from motions relative to their frames (travel_bound - travel) is sharper than PairTable::closing, which follows from
+/// their speeds in the world.
 Real closing(const PairTable& pairs, Index p) {
     return pairs.kind[p] == PairKind::collider ? pairs.closing[p] : pairs.travel_bound[p] - pairs.travel[p];
 }
 
-/// Lower bound of the distance between any features of two bodies. It follows from the boxes and bounding spheres of
-/// the bodies [m].
+/// Lower bound of the distance between the features of two bodies [m], from the boxes and bounding spheres of the
+/// bodies; 0 if a body has no tree.
 Real least_distance(const CollisionInputs& inputs, std::span<const Aabb> box, const SearchMemory& memory, Index first,
                     Index second) {
     const Range a = inputs.body.bvh_nodes[first], b = inputs.body.bvh_nodes[second];
@@ -193,15 +197,15 @@ bool is_far(const PairToSearch& pair) {
     return pair.apart - pair.scale.zone >= pair.margin;
 }
 
-/// Splits the expired pairs into near pairs, which must be searched, and far pairs. Trees are refitted only for bodies
-/// in near pairs, each tree once.
+/// Splits the expired pairs into far pairs, which get an empty candidate list, and near pairs, whose trees must be
+/// searched. Lists the bodies in near pairs, each once, for refit_trees().
 void list_refits(const CollisionInputs& inputs, const CollisionSettings& settings, std::span<const Aabb> box,
                  SearchMemory& memory, const PairTable& pairs) {
     memory.refit.clear();
     memory.needs_refit.assign(inputs.body.slot.size(), 0);
     memory.near.clear();
     memory.far.clear();
-    memory.near.reserve(pairs.size());  // room for all pairs, because any pair may expire in a later step
+    memory.near.reserve(pairs.size());  // so that later steps, in which more pairs expire, allocate nothing
     memory.far.reserve(pairs.size());
     for (Index p : memory.expired) {
         const bool surfaces = pairs.kind[p] != PairKind::collider;
@@ -219,7 +223,7 @@ void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aa
     });
 }
 
-/// Adds candidates to a list. Both are in feature order.
+/// Merges `found` into a candidate list, from the back and in place. Both are sorted by feature.
 void add_found(std::span<const FoundCandidate> found, Column<Candidate>& candidates, Column<Real>& asleep_until) {
     std::size_t kept = candidates.size(), added = found.size(), row = kept + added;
     candidates.resize(row);
@@ -243,8 +247,8 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     PairToSearch pair = pair_to_search(inputs, settings, box, memory, pairs, p);
     const bool anew = !(pairs.valid_until[p] > -infinity) || pairs.state[p] != PairState::apart;
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
-        // The state of the pair is determined before the search, because surfaces that are apart need a smaller search
-        // distance.
+        // Whether the surfaces cross is tested before the search, because surfaces that do not cross need a smaller
+        // search distance. A pair that is already known to be apart stays apart (PairTable::state).
         const bool crossing = !is_far(pair) && surfaces_cross(inputs, pair, box);
         pairs.state[p] = crossing ? PairState::overlapping : PairState::apart;
         pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
@@ -264,8 +268,8 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     add_found(found.span(), pairs.candidates[p], pairs.asleep_until[p]);
 }
 
-/// Searches the expired pairs. Each block searches one near pair, which takes some tens of microseconds, and an equal
-/// share of the far pairs, which take almost no time. All blocks thus have about the same amount of work.
+/// Searches the expired pairs. Each task searches at most one near pair, which takes some tens of microseconds. The far
+/// pairs, which take almost no time each, are divided evenly among the tasks.
 void search_expired(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                     std::span<const Aabb> box, SearchMemory& memory, PairTable& pairs) {
     const std::size_t near = memory.near.size(), far = memory.far.size();
@@ -293,8 +297,8 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
 }
 
 /// Requests new displacement origins for the bodies of expired pairs: from then on, displacements are measured from the
-/// present positions. Bodies with small displacements are left out, because a new origin would hardly prolong the
-/// validity of their lists.
+/// present positions. A list is valid for the travel m - 2 d (contact_reach.h), with the margin m and the displacement
+/// d. Bodies with a small d are left out, because a new origin would hardly prolong the validity of their lists.
 void request_new_origins(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
                          const PairTable& pairs) {
     constexpr Real good_part = 0.25;
@@ -323,7 +327,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     broad |= !all_below(memory.body_travel_bound, search.body_valid_until) || !colliders_below(inputs, search);
     if (broad) {
         find_pairs(executor, inputs, settings, h, search, pairs);
-        // For a rotating plane, the travel bounds depend on the present positions of the bodies.
+        // find_pairs() has updated collider_extent, from which the travel bounds of rotating colliders follow.
         bound_collider_travels(inputs, h, memory);
     }
     list_expired(executor, inputs, settings, h, memory, pairs);

@@ -8,17 +8,17 @@
 
 namespace skerry {
 
-/// Updates the list of pairs and the candidate list of each pair. Returns false after one comparison per body and per
-/// pair if no list has expired.
+/// Updates the list of pairs and the candidate list of each pair. Returns false if no list has expired; this takes one
+/// comparison per body, collider and pair.
 ///
-/// If a body or collider has travelled up to its limit, the broad search lists all pairs again. For each pair with an
-/// expired candidate list, the trees of its bodies are refitted and traversed, in parallel over the pairs. `box`: boxes
-/// of BvhTable, refitted by this function.
+/// If a body or collider has travelled up to its limit (SearchState), a broad search lists all pairs again. For each
+/// pair with an expired candidate list, the trees of its bodies are refitted to the present node positions and
+/// traversed, in parallel over the pairs. `box`: boxes of BvhTable, which this function refits.
 ///
 /// The limits of travel (contact_reach.h) require that BodyTable::travel bounds the motion of every node since the body
 /// was added, and that BodyTable::max_speed and frame_speed are the speeds of the last motion. A body without such
-/// bounds (new, or moved by the user) is marked as forgotten (SearchState). In all attempts at the step, its pairs are
-/// then found and searched again with its present velocities.
+/// bounds (new, or moved by the user) is marked as forgotten (SearchState). In every attempt at the next step, its
+/// pairs are then found and searched again, with bounds from its present velocities.
 ///
 /// The result is deterministic: pairs are in key order, candidates in feature order.
 bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,

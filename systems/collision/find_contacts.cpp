@@ -17,16 +17,16 @@ namespace skerry {
 
 namespace {
 
-// Work of one block. The unit is the test of one candidate between two surfaces. Each pair adds a fixed amount of work.
-// A candidate against a collider counts several times, because it is tested in every step and not in groups of eight. A
-// block takes a microsecond if no candidate can touch in this step, and a hundred microseconds if all candidates must
-// be tested.
+// Work of one block, in units of the test of one candidate of two surfaces. Each pair adds a fixed amount of work. A
+// candidate of a body and a collider counts several times, because only candidates of two surfaces are tested in groups
+// of eight. A block takes a microsecond if no candidate can touch in this step, and a hundred microseconds if all
+// candidates must be tested.
 constexpr std::int64_t candidates_per_block = 1536;
 constexpr Index candidates_worth_of_a_pair = 16;
 constexpr Index candidates_worth_of_one_at_collider = 5;
 
 constexpr std::size_t contacts_per_block = 256;
-// While the candidates of a pair are tested, the candidate list of the pair with this offset is prefetched.
+// While the candidates of pair p are tested, the list of pair p + pairs_ahead is prefetched (prefetch_list).
 constexpr Index pairs_ahead = 3;
 constexpr std::size_t counted_pairs_per_block = 512;  // number of pairs whose work is estimated by one task
 
@@ -39,19 +39,20 @@ bool body_stands_still(const CollisionInputs& inputs, Index body) {
     return inputs.body.asleep[body] != 0;
 }
 
-/// Work of testing one candidate of a pair. The unit is the test of one candidate between two surfaces.
+/// Work of testing one candidate of a pair, in the unit of candidates_per_block.
 Index work_of_one(const PairTable& pairs, std::size_t p) {
     return pairs.kind[p] == PairKind::collider ? candidates_worth_of_one_at_collider : 1;
 }
 
-/// Work of testing all candidates of a pair. The unit is the test of one candidate between two surfaces.
+/// Work of testing all candidates of a pair, in the unit of candidates_per_block.
 std::int64_t work_of(const PairTable& pairs, std::size_t p) {
     const Index count = pairs.looked_at[p];
     return count == 0 ? 0 : std::int64_t{count} * work_of_one(pairs, p) + candidates_worth_of_a_pair;
 }
 
-/// Marks pairs as idle if neither partner moves. They need no tests: their contacts are in equilibrium, because
-/// otherwise the bodies would not be asleep. For all other pairs, counts the candidates and adds up their work.
+/// Marks pairs as idle if neither partner moves. Idle pairs are not tested: their last contacts remain valid, because
+/// bodies are only put to sleep in equilibrium. For all other pairs, counts the candidates and adds up their work by
+/// group of counted_pairs_per_block pairs.
 void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pairs) {
     pairs.idle.resize(pairs.size());
     pairs.looked_at.resize(pairs.size());
@@ -69,8 +70,9 @@ void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pai
     });
 }
 
-/// Divides the concatenated candidate lists of all pairs that are not idle into blocks of equal work. Returns the
-/// number of blocks.
+/// Divides the concatenated candidate lists of all pairs that are not idle into blocks of equal work, and writes the
+/// starts of the blocks to pairs.block. Replaces the work of each group of pairs by the sum over the groups before it.
+/// Returns the number of blocks.
 Index cut_blocks(Executor& executor, PairTable& pairs) {
     std::int64_t total = 0;
     for (std::int64_t& work : pairs.work) total += std::exchange(work, total);
@@ -94,8 +96,9 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
     return blocks;
 }
 
-/// Prefetches the beginning of a candidate list; the hardware prefetches the rest. The lists are scattered in memory.
-/// Waiting for them would take a considerable part of the time of this stage.
+/// Prefetches the beginning of the asleep_until column of a pair, which the test of a list reads first; the hardware
+/// prefetches the rest. The columns are scattered in memory, and waiting for them would take a considerable part of the
+/// time of find_contacts.
 void prefetch_list(const PairTable& pairs, Index p) {
     constexpr std::size_t begin = 32;
     if (p < static_cast<Index>(pairs.size())) prefetch_lines(pairs.asleep_until[p].data(), begin);
@@ -119,7 +122,7 @@ void test_block(const CollisionInputs& inputs, const CollisionSettings& settings
             surfaces.add(p, {from, to});
             continue;
         }
-        surfaces.test();  // appends the contacts of the pairs collected so far, to keep the order
+        surfaces.test();  // tests the pairs collected so far first, so that contacts are appended in pair order
         const auto find = cylinder ? find_cylinder_contacts : find_collider_contacts;
         nearest = std::min(nearest, find(inputs, settings, h, p, {from, to}, pairs, found));
     }
@@ -131,7 +134,8 @@ void write_rows(std::span<const ContactRow> found, std::size_t first, ContactTab
     for (std::size_t i = 0; i < found.size(); ++i) write_contact(found[i], first + i, contacts);
 }
 
-/// Writes the contacts. If a crossing and a contact have the same features, the crossing replaces the contact.
+/// Writes the contacts that the blocks have found, and the crossings from earlier attempts at this step. A crossing
+/// replaces a contact with the same key.
 void write_with_crossings(std::size_t blocks, PairTable& pairs, CrossingTable& crossings, ContactTable& contacts) {
     for (std::size_t b = blocks; b < pairs.found.size(); ++b) pairs.found[b].clear();
     merge_rows(pairs.found, crossings.row, false, crossings.merged);
@@ -160,8 +164,8 @@ bool find_contacts(Executor& executor, const CollisionInputs& inputs, const Coll
         write_with_crossings(static_cast<std::size_t>(blocks), pairs, crossings, contacts);
         return true;
     }
-    // Pairs are in key order, candidates are in feature order, and the blocks follow both orders. The contacts are
-    // therefore in key order.
+    // Pairs are sorted by key, the candidates of a pair by feature, and blocks are consecutive ranges of them. The
+    // contacts of all blocks, one after the other, are therefore in key order.
     pairs.block_first.resize(static_cast<std::size_t>(blocks));
     std::size_t count = 0;
     for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b) {

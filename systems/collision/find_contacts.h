@@ -12,10 +12,11 @@ namespace skerry {
 /// Fills the contact table in key order. Returns false if no candidate has to be tested. Runs in parallel over blocks
 /// of candidates.
 ///
-/// A candidate becomes a contact if its gap could close within the step of length h; a margin accounts for the velocity
-/// that forces can add. A candidate that cannot touch until the travel of the pair reaches asleep_until is skipped
-/// after one comparison. Crossings from an earlier attempt at this step are added unchanged. In all new rows impulses
-/// and slips are zero, regions are no_index and states are open.
+/// A candidate becomes a contact if its gap could close within the step of length h, at the present velocities plus a
+/// margin for the forces of the step (reach() in contact_reach.h). A candidate is skipped after one comparison as long
+/// as the travel_bound of its pair is below its asleep_until. Crossings from earlier attempts at this step
+/// (crossings.row) are added unchanged. In all new rows impulses and slips are zero, regions are no_index and states
+/// are open.
 bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                    PairTable& pairs, CrossingTable& crossings, ContactTable& contacts);
 

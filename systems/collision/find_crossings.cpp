@@ -21,7 +21,7 @@ namespace skerry {
 
 namespace {
 
-// Number of pairs for which one task compares motion and list validity.
+// Number of pairs that one task tests with is_beyond_list().
 constexpr std::size_t checked_pairs_per_block = 512;
 
 /// Nearest points of two features at some time within the step.
@@ -31,8 +31,8 @@ struct NearestPoints {
     Vec3 point;   // nearest point of the second feature [m]
 };
 
-// Bound of the relative difference, due to rounding, between distances computed by vector code (eight lanes) and by
-// scalar code. The actual difference is much smaller. The result of the scalar code is used.
+// Bound of the relative difference, due to rounding, between the distances in NearCandidate, which vector code
+// computed, and those that scalar code computes. The actual difference is much smaller.
 constexpr Real lane_rounding = 1e-6;
 
 /// Tests candidates of two surfaces for crossings.
@@ -49,8 +49,8 @@ public:
     }
 
     /// Tests the candidates that find_contacts has listed as near. No crossing is missed as long as the partners
-    /// approach by no more than find_contacts assumed. `reach`: distance by which the partners may approach in the step
-    /// [m].
+    /// approach by no more than find_contacts assumed (travel_bound at most PairTable::travel_bound). `reach`: bound of
+    /// the relative motion of the partners in the step [m].
     std::uint64_t run(std::span<const NearCandidate> near, Real reach, Real travel_bound) {
         std::uint64_t tested = 0;
         for (const NearCandidate& at : near)
@@ -60,8 +60,9 @@ public:
     }
 
 private:
-    /// Tests one candidate. `least`: lower bound of the distance between the surfaces [m]. The surface of a round body
-    /// is at a distance of its radius from the feature, its core. Returns true if a full test was needed.
+    /// Tests one candidate. `least`: lower bound of the distance between the surfaces [m]. For a round body, whose
+    /// feature is its core (centre or axis), the surface is nearer than the feature. Returns true if a full test was
+    /// needed.
     bool test(const Candidate& candidate, Real least) {
         const FeaturePair features = features_of(candidate);
         const CandidateNodes node = nodes_of(inputs.surface, candidate);
@@ -101,13 +102,13 @@ private:
 
     void add(const Candidate& candidate, FeaturePair features, const NearestPoints& met) {
         const Real length = met.offset.norm();
-        if (!(length > 0)) return;  // the features touch at the start of the step
+        if (!(length > 0)) return;  // the features touch already at the start of the step, so they have no normal
         const Vec3 normal = met.offset / length;
         Real along = 0;  // distance of the two nearest points along the normal, at the start of the step [m]
         for (std::size_t a = 0; a < 4; ++a)
             along += met.stencil.weight[a] * normal.dot(inputs.position[met.stencil.node[a]]);
-        // If features rotate by more than a right angle, the distance along the normal can be negative although nothing
-        // overlaps.
+        // The normal is that at the time of contact. If the features have rotated by more than a right angle since the
+        // start of the step, `along` can be negative although nothing overlapped then.
         found.push_back(
             contact_row(*this, candidate.feature,
                         features == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle,
@@ -169,8 +170,10 @@ std::span<const NearCandidate> take_near(std::span<const NearCandidate> near, In
     return near.subspan(first, next - first);
 }
 
-/// Tests the candidates of one block for crossings. Without `use_budgets`, all candidates are tested, including those
-/// that find_contacts skipped. Returns the number of tested candidates.
+/// Tests the candidates of one block for crossings. Candidates of two surfaces are taken from the list of near
+/// candidates (PairTable::near), unless `use_budgets` is false or the pair moves further than find_contacts assumed;
+/// then all candidates are tested. `known`: crossings found by earlier attempts at this step. Returns the number of
+/// tested candidates.
 std::uint64_t test_block(const CollisionInputs& inputs, bool use_budgets, const StepMotion& motion,
                          const PairTable& pairs, std::size_t b, std::span<const ContactRow> known,
                          Column<ContactRow>& found) {
@@ -214,8 +217,8 @@ bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& sett
     if (reach_of(inputs, pairs, p, motion.h).travel_bound < pairs.valid_until[p] + drifted) return false;
     if (pairs.kind[p] != PairKind::self || !(pairs.valid_until[p] > -infinity)) return true;
     const SelfMotion parts = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
-    // If travel_bound does not keep the list valid, the list's spare distances were found to exceed the reach of this
-    // step.
+    // If travel_bound has reached valid_until, find_candidates kept the list because its spare distances exceed the
+    // reach of this step (is_valid, self_motion.h). They suffice if the nodes move as expected.
     const bool within_reach = !(pairs.travel_bound[p] < pairs.valid_until[p]) && moves_as_expected(parts, motion);
     return !within_reach && !holds_for_motion(parts, motion, pairs.leaf_pairs[p].listed.span(), pairs.self);
 }
@@ -233,8 +236,8 @@ bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const Co
 }
 
 /// Requests longer candidate lists for the pairs that move further than their lists allow. Returns the number of
-/// requests. `hopeless` counts the pairs for which no list is requested: their list was already made for such a motion,
-/// the motion is not finite, or requests are not `allowed`.
+/// requests. `hopeless` counts the pairs for which no list is requested: their list was already made in this step for a
+/// motion at least as long, the motion is not finite, or requests are not `allowed`.
 Index extend_lists(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion,
                    bool allowed, PairTable& pairs, Index& hopeless) {
     Index count = 0;
@@ -258,7 +261,8 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
         for (const ContactRow& row : found) {
             const auto at = std::lower_bound(pairs.key.begin(), pairs.key.end(), row.key.pair);
             const auto p = static_cast<std::size_t>(at - pairs.key.begin());
-            // Pairs with a collider have no state, because the signed distance from a collider shows an overlap.
+            // The state of a pair with a collider is not used, because the signed distance from the collider shows an
+            // overlap.
             if (pairs.kind[p] == PairKind::collider) continue;
             pairs.state[p] = PairState::overlapping;
             pairs.valid_until[p] = -infinity;  // an overlapping pair needs a list with a larger search distance

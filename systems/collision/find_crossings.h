@@ -9,18 +9,19 @@
 namespace skerry {
 
 /// Finds features that would pass through each other while every node moves by h (velocity_next + push_out). Returns
-/// the number of crossings; if it is not zero, the step must not be committed. Runs in parallel over the blocks of
-/// find_contacts.
+/// zero if the step may be committed, else the number of crossings and of pairs that move further than their candidate
+/// lists are valid for. Runs in parallel over the blocks of find_contacts.
 ///
 /// Tests only pairs with a contact distance whose surfaces are known to be apart. Without a contact distance, surfaces
-/// may touch, and a touch cannot be distinguished from a crossing. Skips a pair if the relative motion in this step is
-/// at most half of the least distance of its candidates, and a candidate if the motion is at most half of its distance.
-/// A slow scene therefore takes one comparison per pair. BodyTable::frame_speed must be the speed of this motion.
+/// may touch, and a touch cannot be distinguished from a crossing. Skips the candidates of a pair in one block if the
+/// relative motion of the pair in this step is at most half of the least distance of the candidates of this block, and
+/// a single candidate if the motion is at most half of its distance. A slow scene therefore takes one comparison per
+/// pair. BodyTable::frame_speed must be the speed of this motion.
 ///
 /// Each crossing is stored in crossings.found as a contact, with the weights and the normal at the time when the
-/// features meet. If a pair moves further than its candidate list is valid for, no features are tested. Instead
-/// beyond_lists is set, and the attempt must be repeated with new lists from find_candidates. In the last attempt
-/// (last_try) crossings are permitted, and the function returns zero.
+/// features meet. If a pair moves further than its candidate list is valid for, and extends_lists is set, no features
+/// are tested. Instead beyond_lists is set, and the attempt must be repeated with new lists from find_candidates. In
+/// the last attempt (last_try) crossings are permitted, and the function returns zero.
 Index find_crossings(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                      std::span<const Vec3> velocity_next, std::span<const Vec3> push_out, PairTable& pairs,
                      CrossingTable& crossings);

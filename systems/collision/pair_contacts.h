@@ -1,6 +1,6 @@
 // Contact tests of the candidates of one pair in one step. A candidate whose gap may close within the step of length h
-// becomes a contact; contacts are appended in candidate order. For each tested candidate, the travel of the pair up to
-// which the candidate needs no further test is stored (asleep_until).
+// becomes a contact; contacts are appended in candidate order. The tests also write asleep_until: the value of the
+// pair's travel bound (contact_reach.h) below which the candidate needs no further test.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 
 namespace skerry {
 
-/// Tests candidates of pair p, which consists of a body and an analytic collider. The range of the candidate list is
-/// `range`. Candidates that cannot touch in this step are skipped if use_budgets is set. Returns the least distance of
-/// the tested features [m]. If a feature is over a flat region of the collider and can move further inside this region,
-/// the latter distance is used instead.
+/// Tests the candidates in `range` of the list of pair p, a body and an analytic collider. If use_budgets is set,
+/// candidates that cannot touch in this step are skipped. Returns the least distance of the tested features from the
+/// collider [m]. For an edge or face that lies in a flat region of the collider, the distance that it can move within
+/// this region (flat_reach) is used if it is larger.
 Real find_collider_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
                             Range range, PairTable& pairs, Column<ContactRow>& found);
 
@@ -28,8 +28,8 @@ Real find_cylinder_contacts(const CollisionInputs& inputs, const CollisionSettin
 // Number of candidates whose asleep_until is compared at once, without a branch for each candidate.
 inline constexpr Index candidates_at_once = 16;
 
-// Another triangle counts as nearer to a point only if the relative difference of the distances exceeds this value,
-// which bounds the rounding error.
+// Another triangle counts as nearer to a point only if its distance is smaller by more than this fraction of the
+// distance plus the mean edge length, which bounds the rounding error.
 inline constexpr Real nearer_fraction = 1e-9;
 
 /// Bit mask of the candidates that may touch in this step, for candidates_at_once candidates from index `begin` on.
@@ -44,8 +44,8 @@ inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Rea
     return awake;
 }
 
-/// Calls test(c) for each candidate c in a range of the list of pair p that may touch in this step, in list order.
-/// Without use_budgets, test(c) is called for all candidates in the range.
+/// Calls test(c), in list order, for each candidate c whose features may touch in this step. `range`: range of the
+/// candidate list of pair p. Without use_budgets, test(c) is called for all candidates in the range.
 void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, Index p, Range range, auto&& test) {
     const std::span<const Real> asleep_until = pairs.asleep_until[p].span();
     const Real travel_bound = settings.use_budgets ? pairs.travel_bound[p] : infinity;
@@ -57,8 +57,8 @@ void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, I
         if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) test(c);
 }
 
-/// Distance of two features below which they must be tested closely, if the partners approach by `closing` in this step
-/// [m].
+/// Distance below which the contact of two features is computed; above it, their distance alone shows that they do not
+/// touch [m]. `closing`: distance by which the partners may approach in this step [m].
 inline Real near_distance(const PairScale& scale, Real closing) {
     return scale.contact_distance + (closing >= 0 ? closing : 0);
 }
@@ -68,7 +68,7 @@ struct PairContacts : PairData {
     const CollisionSettings& settings;
     const Real h;
     const Real travel_base;  // travel T0 of the pair from which bounds are counted (contact_reach.h) [m]
-    const Real near;         // features at a larger distance are not tested closely [m]
+    const Real near;         // contacts are computed up to this distance of the features (near_distance) [m]
     const bool held_apart;   // true: contacts and find_crossings have kept the two surfaces apart
     std::span<Real> asleep_until;
     Column<ContactRow>& found;
@@ -105,9 +105,9 @@ struct PairContacts : PairData {
             }
     }
 
-    /// True if no other triangle that is a candidate for the same point is nearer to the point than `depth`. All
-    /// triangles within this distance are candidates and adjacent in the list. `squared(i)`: squared distance from the
-    /// point of candidate c to the triangle of candidate i [m^2].
+    /// True if the point of candidate c has no other candidate triangle at a distance below `depth`, the distance from
+    /// the triangle of candidate c [m]. All triangles within `depth` of the point are candidates. `squared(i)`: squared
+    /// distance from the point to the triangle of candidate i [m^2].
     bool is_nearest(Index c, Real depth, auto&& squared) const {
         const Real limit = depth - nearer_fraction * (depth + scale.edge);
         return none_of_point(c, [&](Index i) { return limit > 0 && squared(i) < limit * limit; });

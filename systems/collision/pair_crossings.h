@@ -13,8 +13,8 @@
 namespace skerry {
 
 /// Tests candidates of pair p, which consists of a body and an analytic collider. Candidates in `range` are tested if
-/// they can have met when the travel of the pair is `travel_bound` [m]. Features that would cross are appended to
-/// `found` as contacts. Returns the number of tested candidates.
+/// they can have met before the travel of the pair reaches `travel_bound` [m]. Features that would cross are appended
+/// to `found` as contacts. Returns the number of tested candidates.
 std::uint64_t find_collider_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
                                       Index p, Range range, Real travel_bound, Column<ContactRow>& found);
 
@@ -24,8 +24,9 @@ std::uint64_t find_cylinder_crossings(const CollisionInputs& inputs, const StepM
                                       Index p, Range range, Real travel_bound, std::span<const ContactRow> known,
                                       Column<ContactRow>& found);
 
-/// Calls test(c) for those candidates c in a range that can have met when the travel of the pair is `travel_bound` [m].
-/// test(c) returns true if a full test was needed. Returns the number of full tests.
+/// Calls test(c) for those candidates c in a range that can have met before the travel of the pair reaches
+/// `travel_bound` [m]. test(c) returns false if a bound on the motion already excludes a crossing. Returns the number
+/// of calls that returned true.
 std::uint64_t count_tested(std::span<const Real> asleep_until, Range range, Real travel_bound, auto&& test) {
     std::uint64_t tested = 0;
     for (Index c = range.begin; c < range.end; ++c)

@@ -73,11 +73,12 @@ private:
             {contact.closest.on_second, contact.normal, contact.distance, scale.contact_distance - contact.slack});
     }
 
-    /// True if a point behind a triangle must be pushed out through this triangle. No other triangle of the body may be
-    /// nearer to the point. Otherwise the point may be in front of a face on the far side of a thin part, or must be
-    /// pushed out through a nearer face.
+    /// True if a point behind a triangle must be pushed out through this triangle: no other triangle of the body may be
+    /// nearer to the point. If there is a nearer triangle, the point may be in front of that triangle, on the far side
+    /// of a thin part, or must be pushed out through that triangle.
     bool is_truly_behind(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
-        // In self-contact, the point may belong to the body on the other side of a thin part.
+        // In self-contact, a point that was near the triangle in the rest shape may lie on the other side of a thin
+        // part.
         if (kind == PairKind::self && !was_far_at_rest(inputs, scale, point, corner)) return false;
         return is_nearest(c, depth, [&](Index i) {
             const auto& n = inputs.surface.triangles.node[candidates[i].second];
@@ -87,9 +88,10 @@ private:
         });
     }
 
-    /// True if this candidate is the one that makes the contact of a round body's core (axis or centre) with a point of
-    /// the other body. If an end of the axis is nearest to the point, the candidate of this end and the other surface
-    /// makes the contact. Two ends of axes are tested against each other once.
+    /// The triangle of the candidate is the core (axis or centre) of a round body. True if this candidate makes the
+    /// contact with the point; several candidates can describe one contact. A vertex of a mesh touches only between the
+    /// ends of the axis, because each end has candidates with the faces of the mesh. Two round bodies whose ends are
+    /// nearest have two candidates, and one of them makes the contact.
     bool core_is_touched(const Candidate& candidate, const PointTriangle& closest) const {
         const bool turned = is_point_of_second(candidate.feature);
         const BodyTable& body = inputs.body;
@@ -103,8 +105,9 @@ private:
     }
 
     /// True if no face of the other body lies between the core (axis or centre) of a round body and the point `place`
-    /// on that body. The round body then touches `place` from behind, because the other body is inverted there. Other
-    /// faces may be nearer, because a round body touches many faces at once.
+    /// of the other body. The round body then touches `place` from behind, because elements of the other body are
+    /// inverted there. This test replaces is_truly_behind for round bodies: they touch many faces at once, so a nearer
+    /// face excludes no contact.
     bool is_in_sight(Index c, Index core, const Vec3& place) const {
         const Vec3& from = inputs.position[core];
         const Vec3 until = from + (1 - sight_slack) * (place - from);
@@ -176,8 +179,8 @@ void SurfaceContacts::measure_distances(FeaturePair kind) {
     }
 }
 
-/// Removes the candidates of a pair that cannot touch at the greatest speeds of the two bodies, and tests the others.
-/// Stores the travel up to which each candidate needs no further test.
+/// Tests the candidates of a pair that can touch at the greatest speeds of the two bodies. Appends candidates that can
+/// meet in this step to near_. Stores for each candidate the travel up to which it needs no further test.
 void SurfaceContacts::test_pair(const AwakePair& awake) {
     const Index p = awake.pair;
     const PairScale scale = pair_scale_as_known(settings_, pairs_.state[p],

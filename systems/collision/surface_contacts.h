@@ -14,21 +14,22 @@ namespace skerry {
 
 /// Tests the candidates of several pairs together, because most pairs have few candidates; distances are computed for
 /// eight candidates at a time. Candidates whose gap may close within the step of length h are appended to `found` as
-/// contacts, in list order. Candidates that could meet within the step are appended to `near`. For each tested
-/// candidate, the travel of the pair up to which the candidate needs no further test is stored (asleep_until).
+/// contacts, in list order. Candidates that could meet within the step are appended to `near`, for find_crossings. For
+/// each tested candidate, asleep_until receives the value of the pair's travel bound (contact_reach.h) below which it
+/// needs no further test.
 class SurfaceContacts {
 public:
     SurfaceContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,
                     Column<ContactRow>& found, Column<NearCandidate>& near)
         : inputs_(inputs), settings_(settings), h_(h), pairs_(pairs), found_(found), near_(near) {}
 
-    /// Collects the candidates in a range of the list of pair p that may touch in this step. Without use_budgets, all
-    /// candidates in the range are collected. Neither partner may be a cylinder.
+    /// Collects those candidates in a range of the list of pair p whose features may touch in this step. Without
+    /// use_budgets, all candidates in the range are collected. Neither partner may be a cylinder.
     void add(Index p, Range range);
     /// Tests the collected candidates.
     void test();
 
-    /// Least distance of all tested candidates [m].
+    /// Least distance between the surfaces of all tested candidates [m].
     Real least_distance() const { return least_distance_; }
 
 private:

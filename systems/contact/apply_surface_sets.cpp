@@ -16,8 +16,8 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t contacts_per_task = 256;
-// Smallest ratio of the projection of a direction onto a tangent plane to its length. A direction that is closer to the
-// normal has no tangent, so friction counts as isotropic.
+// A direction whose projection onto the tangent plane is shorter than this fraction of its length counts as normal. It
+// has no tangent, so friction is isotropic.
 constexpr Real least_projection = 1e-6;
 
 enum class FeatureKind { vertex, edge, triangle };
@@ -53,7 +53,8 @@ private:
     static Index row_at(const Column<Index>& column, Index row) {
         return static_cast<std::size_t>(row) < column.size() ? column[row] : no_index;
     }
-    /// The feature with the number `local` of a body. Only bodies with faces have features.
+    /// Feature `local` of a body, counted from 0 in the body. A collider or a round body has no features: `set` is then
+    /// no_index.
     Feature feature(Index body, FeatureKind kind, Index local) const {
         const BodyTable& table = inputs_.body;
         if (!is_body(body) || table.core_nodes[body] > 0) return {body, kind, no_index};
@@ -130,8 +131,9 @@ private:
         return {tangent / length, sets_.across[of.set]};
     }
 
-    /// Direction of the set, carried along by the faces of the set at the feature, or by all faces at the feature if
-    /// none of them is in the set. Its length is arbitrary.
+    /// Direction of the set in the present shape; its length is arbitrary. The direction is mapped by those faces at
+    /// the feature that are in the set, or by all faces at the feature if none is (carried()), and the results are
+    /// added.
     Vec3 present_direction(const Feature& of) const {
         for (const bool in_set : {true, false}) {
             Vec3 sum = Vec3::Zero();
@@ -154,7 +156,8 @@ private:
                 visit(surface.vertex_triangle[i]);
         }
     }
-    /// Image under the deformation of a face of the projection of a direction of the rest shape onto the face.
+    /// Projects a direction of the rest shape onto face t, and maps the projection to the present shape by the
+    /// deformation of the face. Returns zero for a face without area.
     Vec3 carried(const Vec3& direction, Index t) const {
         const auto& node = inputs_.surface.triangles.node[t];
         const auto side = [&](std::span<const Vec3> position, std::size_t k) {
@@ -197,7 +200,8 @@ MeanShape mean_shape(const FrictionShape& first, const FrictionShape& second, co
     const Real middle = (sum.xx + sum.yy) / 2, radius = std::hypot((sum.xx - sum.yy) / 2, sum.xy);
     MeanShape mean;
     mean.scale = factor * (middle + radius);
-    // Rounding could otherwise make the ratio differ from 1 if the two tensors cancel each other's anisotropy.
+    // If the anisotropies of the two tensors cancel, both eigenvalues are equal. Rounding would still make `across`
+    // differ from 1.
     constexpr Real rounding = 1e-12;
     if (radius <= rounding * middle) return mean;
     const Real angle = std::atan2(sum.xy, (sum.xx - sum.yy) / 2) / 2;

@@ -1,4 +1,5 @@
-// Friction and restitution of contacts in parts of surfaces that have their own (docs/methods/friction.md 4).
+// Friction and restitution of contacts in surface sets: parts of a surface with properties of their own
+// (docs/methods/friction.md 4).
 #pragma once
 
 #include "components/contact_table.h"
@@ -8,16 +9,16 @@
 
 namespace skerry {
 
-/// Friction at one place of a surface as a tensor in the tangent plane: the coefficients along a unit tangent, times 1
-/// along and `across` across it. If `across` is 1, the direction has no effect.
+/// Dependence of friction on the direction at a place of a surface. The friction coefficients are multiplied by 1 along
+/// the unit tangent `direction`, and by `across` in (0, 1] across it. If `across` is 1, `direction` is not used.
 struct FrictionShape {
     Vec3 direction = Vec3::Zero();
     Real across = 1;
 };
 
-/// Geometric mean of two friction tensors whose larger eigenvalue may differ from 1: the coefficients along `axis` are
-/// those of isotropic friction times `scale`. Order does not matter (Ando, Li and Mathias 2004, the mean of two
-/// positive definite matrices).
+/// Geometric mean of the friction tensors A, B of two surfaces, with the eigenvalues 1 and `across`. For 2x2 matrices
+/// it is sqrt(a b) G / sqrt(det G) with G = A/a + B/b, a^2 = det A, b^2 = det B (Ando, Li and Mathias 2004). `scale`:
+/// larger eigenvalue of the mean. The friction coefficients along `axis` are those of isotropic friction times `scale`.
 struct MeanShape {
     FrictionAxis axis;
     Real scale = 1;

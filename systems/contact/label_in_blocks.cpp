@@ -9,8 +9,8 @@ namespace skerry {
 namespace {
 
 // Smallest block size and largest number of blocks. A block of 2^least_shift contacts takes a few microseconds, about
-// as long as it takes a worker to join. The number of blocks must stay small, because each block counts its contacts
-// for each other block.
+// as long as it takes a worker to start. The number of blocks must stay small, because the table Places has an entry
+// for each pair of blocks.
 constexpr std::size_t least_shift = 7, most_blocks = 64;
 
 /// Splits the contacts into blocks whose size is a power of two.
@@ -33,7 +33,8 @@ struct Blocks {
 };
 
 /// Table over pairs of blocks (a, b). Each entry first counts the contacts of block a whose region begins in block b.
-/// Later it is a position for these contacts in a sorted list. A region begins at its first contact.
+/// cut() replaces the count by the index of the first of these contacts in a list that is sorted by b, then by a. A
+/// region begins at its first contact.
 class Places {
 public:
     Places(std::size_t blocks, Column<Index>& place) : blocks_(blocks), place_(place) {
@@ -43,9 +44,9 @@ public:
     /// for later blocks are unused, because no region begins after its contacts.
     Index* of(std::size_t block) { return place_.data() + block * blocks_; }
 
-    /// Replaces the counts in the table by positions in a list of all contacts. The list is sorted by the block in
-    /// which a contact's region begins; within a block, contacts keep their order. Returns the list position at which
-    /// each block begins, then the length of the list.
+    /// Replaces the counts in the table by indices in a list of all contacts. The list is sorted by the block in which
+    /// the region of a contact begins, then by contact. Returns for each block the index in the list of the first
+    /// contact whose region begins in the block, then the length of the list.
     std::array<Index, most_blocks + 1> cut() {
         std::array<Index, most_blocks + 1> begin;
         Index sum = 0;
@@ -107,8 +108,8 @@ void unite_all(Executor& executor, const Blocks& blocks, std::span<const Stencil
 }
 
 /// Numbers the regions first .. last - 1 and sorts the contacts of these regions by region. `contact`: all contacts of
-/// these regions in ascending order; contact_region still holds, for each contact, the first contact of its region.
-/// `begin`: position of `contact` in the list of all contacts.
+/// these regions in ascending order; on entry contact_region holds, for each contact, the first contact of its region.
+/// `begin`: index of contact[0] in the list of the contacts of all regions.
 void collect(std::span<const Index> contact, Index begin, Index first, Index last, std::span<Index> contact_region,
              Ragged<Index>& list) {
     Index* const offset = list.offset.data();
@@ -153,7 +154,8 @@ Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std:
             sets.begin_with(contact_region[i], static_cast<Index>(i));
         }
     });
-    // From here on contact_region holds, for each contact, the first contact of its region.
+    // contact_region now holds the root of the set of each contact. The next loop replaces it by the first contact of
+    // the region.
     Places places(blocks.count(), memory.place);
     std::array<Index, most_blocks + 1> first_region{};  // by block: number of the first region that begins in the block
     blocks.run(executor, [&](std::size_t block, std::size_t begin, std::size_t end) {

@@ -16,7 +16,8 @@ namespace skerry {
 struct BlockLabels {
     SharedUnionFind sets;
     Column<Index> by_block;  // contacts, sorted by the block in which the region of a contact begins
-    // Entry for each pair of blocks (a, b): next position of a contact of block a whose region begins in block b.
+    // Entry for each pair of blocks (a, b): index in `by_block` for the next contact of block a whose region begins in
+    // block b.
     Column<Index> place;
 };
 

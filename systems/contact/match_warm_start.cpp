@@ -60,8 +60,8 @@ Rows rows_of_pair(std::span<const ContactKey> key, std::uint64_t pair) {
     return {static_cast<std::size_t>(begin - key.begin()), static_cast<std::size_t>(end - key.begin())};
 }
 
-/// Largest distance over which a contact takes over the impulse of a vanished contact; 0 if no body of the pair is
-/// rigid or implicit [m].
+/// Largest distance over which a contact takes over the impulse of a vanished contact of its pair; 0 if no body of the
+/// pair is rigid or implicit [m]. `row`: any contact of the pair in `now`.
 Real reach_of_pair(const ContactsNow& now, std::size_t row) {
     const auto has_frame = [&](Index body) {
         return body != no_index && now.body_rigid[static_cast<std::size_t>(body)].size() > 0;
@@ -86,7 +86,8 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
     SKERRY_CHECK(last.key.empty() || (last.step.size() == 1 && last.step[0] > 0));
     const Real scale = last.key.empty() ? 0 : kick / last.step[0];
     parallel_for(executor, key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
-        // each block of contacts finds its first key in both tables of old impulses, then advances in all three tables
+        // each block searches for its first key in both tables of old impulses once; then it reads the contacts and
+        // both tables side by side in key order
         SearchPlace of_last(last.key, key[begin]), of_resting(resting.contact.key, key[begin]);
         for (std::size_t i = begin; i < end; ++i) {
             impulse[i] = Vec3::Zero();
@@ -121,7 +122,8 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
         if (nearest != rows.end)
             impulse[nearest] += scale * turn(last.impulse[gone], last.normal[gone], now.normal[nearest]);
     };
-    // Blocks never split a pair, because impulses pass only between contacts of one pair.
+    // A block never splits a pair. An impulse only passes to a contact of the same pair, so no two blocks write the
+    // same impulse.
     parallel_for(executor, last.key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
         end = start_of_pair(last.key, end);
         for (std::size_t row = start_of_pair(last.key, begin); row < end;) {

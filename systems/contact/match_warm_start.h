@@ -26,7 +26,7 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
 /// The contacts of this step, and data of their bodies.
 struct ContactsNow {
     std::span<const ContactKey> key;
-    std::span<const Vec3> normal, point;  // unit; m
+    std::span<const Vec3> normal, point;  // unit normals; contact points [m]
     std::span<const Index> first_body, second_body;
     std::span<const Range> body_rigid;  // rows of RigidBodyTable; empty for a body that is neither rigid nor implicit
     std::span<const Real> body_contact_distance;  // [m]
@@ -47,7 +47,7 @@ struct ContactsNow {
 /// match_warm_start. Returns false if there is nothing to do (skipped). Parallel over blocks of pairs.
 ///
 /// The reason: two flat faces have more contacts than degrees of freedom, and rounding makes contacts come and go. The
-/// part of the weight on a vanished contact would otherwise be lost.
+/// part of the load that a vanished contact carried would otherwise be lost.
 bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStartTable& last, Real kick,
                       std::span<Vec3> impulse);
 
@@ -58,8 +58,8 @@ struct ContactsDone {
     std::span<const Vec3> impulse;     // [N s]
     std::span<const Vec3> point = {};  // contact points; empty if no body is rigid or implicit [m]
 
-    /// `frames_on_ranks`: true if the body of some rank is rigid or implicit. All ranks then store the points, because
-    /// their contacts may move to other ranks.
+    /// `frames_on_ranks`: true if any rank has a rigid or implicit body. All ranks then store the points, because their
+    /// contacts may move to other ranks.
     static ContactsDone bind(const Binder& binder, const ContactTable& contact, const RigidBodyTable& rigid,
                              const bool& frames_on_ranks) {
         return {

@@ -9,8 +9,8 @@ namespace skerry {
 
 namespace {
 
-/// Sum of the velocities of the point of a tie before and after the step [m/s]. The point moves with the node, or with
-/// the frame of its rigid or implicit body.
+/// Velocity of a tied point before the step plus its velocity after the step [m/s]. On an explicit body the point moves
+/// like `node`; on a rigid or implicit body the rotation of the frame about `node` is added.
 Vec3 twice_mean(const TieWorkInputs& motion, Index node, const Vec3& point) {
     const auto n = static_cast<std::size_t>(node);
     Vec3 sum = motion.velocity[n] + motion.velocity_next[n];
@@ -20,7 +20,8 @@ Vec3 twice_mean(const TieWorkInputs& motion, Index node, const Vec3& point) {
     return sum + (motion.spins.before(r) + motion.spins.after(r)).cross(point - motion.position[n]);
 }
 
-/// True if the impulses of a tie act on its bodies for the whole step, since all of them are implicit.
+/// True if all bodies of a tie are implicit. Its impulses then act for the whole step, otherwise for the force
+/// interval.
 bool acts_for_whole_step(const TieTable& ties, std::span<const Range> body_implicit, std::size_t t) {
     const auto implicit = [&](Index body) {
         return body == no_index || body_implicit[static_cast<std::size_t>(body)].size() > 0;
@@ -33,7 +34,8 @@ Vec3 impulse_of(const CableBlockTable& blocks, const CableBlock& tie) {
             blocks.impulse[tie.points.begin + 2]};
 }
 
-/// Divides the impulse of tie `t` among its nodes by their masses. Returns true if the tie breaks.
+/// Divides the impulse of tie `t` among its nodes in proportion to their masses. If the force exceeds the limit, all
+/// nodes break off at the time `end` [s], and the result is true.
 bool store_mean(const Vec3& impulse, const TiedMeans& means, std::size_t t, Real end, TieTable& ties) {
     const Index first = means.body_nodes[static_cast<std::size_t>(ties.first[t])].begin;
     Index k = ties.nodes[t].begin;

@@ -39,8 +39,9 @@ struct TieWorkInputs {
     }
 };
 
-/// Takes the rows of ties out of the contacts after the solve, and stores their impulses in `rows`. Returns the sums
-/// over all rows, and over the ties in `blocks`, without nodes of ghosts. Sequential, in row order.
+/// Removes the rows of ties from the end of the contacts after the solve, and stores their impulses in `rows`. Returns
+/// sums over these rows and over the ties in `blocks`. Nodes of ghosts (bodies that other ranks own) do not count.
+/// Sequential, in row order.
 TieMeasures take_tie_rows(const TieWorkInputs& motion, const CableBlockTable& blocks, ContactTable& contacts,
                           TieRowTable& rows);
 
@@ -59,14 +60,15 @@ struct TiedMeans {
     }
 };
 
-/// Times of a step [s]: its end, its length, and the interval in which forces act on nodes with their own mass.
+/// Times of a step [s]. `end`: simulated time at its end. `h`: its length. `kick`: force interval, the time for which
+/// forces act on bodies that are not implicit.
 struct TieTimes {
     Real end = 0, h = 0, kick = 0;
 };
 
 /// Stores the impulses and the largest forces of a committed step. A node breaks off if its force exceeds the limit of
-/// its tie; a tie of the kind `ball` breaks as a whole. Returns the number of ties of which the last node has broken
-/// off.
+/// its tie; a tie of the kind `ball` breaks as a whole. Returns the number of ties that have lost their last node in
+/// this step.
 Index store_ties(const TieRowTable& rows, const TiedMeans& means, const TieTimes& times, TieTable& ties);
 
 }  // namespace skerry

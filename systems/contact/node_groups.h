@@ -55,7 +55,7 @@ struct RigidNodes {
     }
 
     bool any() const { return !body_rigid.empty(); }
-    /// Row of RigidBodyTable of the rigid body that a node moves with, or no_index.
+    /// Row of RigidBodyTable of the rigid or implicit body to which a node belongs, or no_index.
     Index row(Index node) const {
         if (!any()) return no_index;
         const Range rows = body_rigid[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
@@ -70,9 +70,10 @@ struct RigidNodes {
         return !core_nodes.empty() &&
                core_nodes[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])] == cylinder_core_nodes;
     }
-    /// Vector from a point on the core of a round body to the contact point, times the sum of the weights of the body's
-    /// nodes, which is 1 or -1 [m]. For a sphere or capsule this is -radius normal. For a cylinder the vector starts at
-    /// the centre.
+    /// Moment arm of a contact on a round body [m]: the vector from a point on its core to the contact point, times the
+    /// sum of the weights of its nodes (1 for the first partner, -1 for the second). For a sphere or capsule the point
+    /// is the nearest core point, and the arm is -radius normal for both partners. For a cylinder it is the centre, and
+    /// `weight` is the sum.
     Vec3 beside_core(Index node, Real weight, std::size_t contact, const Vec3& normal,
                      const TouchPlaces& places) const {
         if (!is_cylinder(node)) return -radius(node) * normal;
@@ -96,7 +97,7 @@ struct RigidNodes {
         }
         return sum;
     }
-    /// The first node of the rigid body that contains `node`; `node` itself if it belongs to no rigid body.
+    /// The first node of the rigid or implicit body that contains `node`; `node` itself if its body is explicit.
     Index leader(Index node) const {
         return row(node) == no_index
                    ? node
@@ -117,7 +118,7 @@ struct RigidSpins {
 
     /// Spin at the start of the step [rad/s].
     Vec3 before(std::size_t r) const { return inverse_inertia[r] * angular_momentum[r]; }
-    /// Spin after the moments of forces have acted in this step [rad/s].
+    /// Spin after the kick of this step (moments of gravity and loads), before the contacts act [rad/s].
     Vec3 kicked(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
 };
 
@@ -159,7 +160,7 @@ struct NodeGroups {
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                            const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints,
                            const CableBlockTable& cables, const Column<std::uint8_t>& elsewhere) {
-        // the matrices of the clusters are not declared as read, because they may still change in a step
+        // Only these columns are declared as used: the matrices of the clusters may still change in a step.
         binder.value(clusters.nodes);
         binder.value(clusters.body);
         binder.value(clusters.cluster_of);
@@ -190,8 +191,8 @@ struct NodeGroups {
             });
         }
     }
-    /// Removes the region of rows that another rank solves. All of them are rows of ties and of held nodes, because the
-    /// contacts have been sent to that rank.
+    /// Sets contact_region to no_index for the rows that another rank solves. Only rows of ties and of held nodes are
+    /// concerned, because contacts with moving nodes have been sent to that rank.
     void leave_out_elsewhere(std::span<const Stencil> stencil, std::span<Index> contact_region) const {
         if (elsewhere.empty()) return;
         for (std::size_t i = 0; i < stencil.size(); ++i)

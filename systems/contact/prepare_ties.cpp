@@ -23,7 +23,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// Weights of the corners for the point of the plane of a triangle that is nearest to `point`.
+/// Barycentric weights of the point nearest to `point` in the plane of a triangle.
 Vec3 weights_at(const Corners& corner, const Vec3& point) {
     const Vec3 first = corner[1] - corner[0], second = corner[2] - corner[0], to = point - corner[0];
     const Real a = first.squaredNorm(), b = first.dot(second), c = second.squaredNorm();
@@ -43,7 +43,7 @@ Corners corners_of(const TieInputs& ties, std::size_t t, std::size_t k) {
     return corner;
 }
 
-/// Rotation of the mesh frame of a rigid or implicit body.
+/// Rotation matrix from the frame of the mesh of a rigid or implicit body to the world frame.
 Mat3 mesh_axes(const TieInputs& ties, Index frame) {
     const auto r = static_cast<std::size_t>(frame);
     return ties.rotation[r] * ties.axes[r].transpose();
@@ -53,10 +53,11 @@ Mat3 mesh_axes(const TieInputs& ties, Index frame) {
 struct FrameMotion {
     Vec3 turning = Vec3::Zero();       // part of the velocity that stems from the spin [m/s]
     Vec3 velocity = Vec3::Zero();      // [m/s]
-    Vec3 acceleration = Vec3::Zero();  // acceleration by the free rotation [m/s^2]
+    Vec3 acceleration = Vec3::Zero();  // due to the rotation of the frame [m/s^2]
 };
 
-/// `node`: row of NodeTable of a node at the point if the body is implicit, else no_index.
+/// `node`: row of NodeTable of the node at the point, whose velocity relative to the frame gives the Coriolis
+/// acceleration. no_index: the point is fixed to the frame.
 FrameMotion frame_motion(const TieInputs& ties, Index frame, const Vec3& point, Index node) {
     FrameMotion at;
     if (frame == no_index) return at;
@@ -74,7 +75,8 @@ FrameMotion frame_motion(const TieInputs& ties, Index frame, const Vec3& point, 
     return at;
 }
 
-/// Velocity with which the offset of a tie from its triangle turns with the triangle, for predicted velocities [m/s]
+/// Mean velocity over the step of the offset of a tie, which turns with the triangle [m/s]. The triangle moves at the
+/// predicted velocities.
 Vec3 turning_offset(const TieInputs& ties, std::size_t t, std::size_t k, Real h) {
     const Vec3& offset = ties.tie.place[k];
     if (offset.isZero(0)) return Vec3::Zero();
@@ -115,10 +117,11 @@ TiedPoint mean_of_points(const TieInputs& ties, std::size_t t) {
     return mean;
 }
 
-/// Equation of one tied node, or of the mean point of a tie whose first node is `k`.
+/// Equation of tied node `k` (row of the columns of TieTable by tied node), or of the mean point of a tie of the kind
+/// `ball`; `k` is then the first node of the tie.
 class TieRow {
 public:
-    /// `weight`: weight of node `k` in the stencil.
+    /// `weight`: weight of node `k` in the stencil; 0 for a mean point, whose nodes have stencils of their own.
     TieRow(const TieInputs& ties, const TieStep& step, std::size_t t, std::size_t k, const TiedPoint& point,
            Real weight)
         : ties_(ties), step_(step), t_(t), k_(k), point_(point), place_(ties.place(t, k)) {
@@ -141,7 +144,8 @@ public:
     const Vec3& point() const { return point_.position; }
     const Vec3& normal() const { return place_.normal; }
 
-    /// Velocity that the row prescribes for the node relative to the nodes of the other object [m/s]
+    /// Velocity that the row prescribes for the node relative to the nodes of the other object [m/s]. The formula is
+    /// derived in docs/methods/ties.md.
     Vec3 demanded() const {
         const TieTable& tie = ties_.tie;
         const Index second = tie.second[t_], frame = ties_.frame(second);
@@ -171,7 +175,7 @@ private:
     Stencil stencil_;
 };
 
-/// Key of the row of a tied node. It differs from all keys of contacts and is greater.
+/// Key of the row of a tied node. It is greater than all keys of contacts, because bit 63 of ContactKey::pair is set.
 ContactKey key_of(const TieTable& tie, std::size_t t, std::size_t k) {
     constexpr std::uint64_t of_ties = std::uint64_t{1} << 63;
     return {of_ties | tie.slot[t], static_cast<std::uint64_t>(k) - static_cast<std::uint64_t>(tie.nodes[t].begin)};
@@ -195,8 +199,8 @@ ContactRow contact_row_of(const TieTable& tie, std::size_t t, std::size_t k, con
             .collider = tie.collider[t]};
 }
 
-/// Appends the equation of the mean point of a tie, unless impulses can move none of its points. Each point but the
-/// last one combines four nodes.
+/// Appends a block for the equation of the mean point of a tie, unless impulses can move none of its nodes. The points
+/// of the block are stencils: each combines up to four tied nodes, and the last one is on the other object.
 void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real scale, CableBlockTable& blocks) {
     const TieTable& tie = ties.tie;
     const TieRow row(ties, step, t, static_cast<std::size_t>(tie.nodes[t].begin), mean_of_points(ties, t), 0);
@@ -219,7 +223,8 @@ void append_mean(const TieInputs& ties, const TieStep& step, std::size_t t, Real
         four.weight[count] = share;
         if (++count == 4) end_point();
     });
-    // The three components of the impulse are stored by point, so at least three points are needed.
+    // Each point of a block stores one number of the impulse, which has three components. So at least three points are
+    // needed.
     while (count > 0 || static_cast<Index>(blocks.stencil.size()) < begin + 2) end_point();
     append(row.stencil(), -row.demanded());
     if (!moves) {

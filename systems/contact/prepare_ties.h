@@ -26,9 +26,9 @@ struct TiePlace {
     Vec3 weight = Vec3::Zero();
 };
 
-/// Calls visit(node, share) for each of some nodes of a body. `nodes`: numbered as in the mesh of the body. `first`:
-/// row of NodeTable of its first node. `node`: row of NodeTable. `share`: mass of the node divided by the mass of all
-/// `nodes`.
+/// Calls visit(node, share) for each node of a list. `nodes`: the list, numbered as in the mesh of the body. `first`:
+/// row of NodeTable of the first node of the body. `node`: row of NodeTable. `share`: mass of the node divided by the
+/// mass of all nodes of the list.
 void for_each_share(std::span<const Index> nodes, Index first, std::span<const Real> mass, auto&& visit) {
     Real sum = 0;
     for (const Index node : nodes) sum += mass[static_cast<std::size_t>(first + node)];
@@ -105,7 +105,8 @@ struct TieInputs {
         for_each_share(t, [&](Index node, Real share) { mean += share * position[static_cast<std::size_t>(node)]; });
         return mean;
     }
-    /// Present place to which node `k` of the columns by tied node, or the mean point, is tied. `t`: row of its tie.
+    /// Point of the other object to which tied node `k` is tied, at the start of the step. `k`: row of the columns of
+    /// TieTable by tied node; the first node of the tie stands for the mean point of a `ball`. `t`: row of the tie.
     TiePlace place(std::size_t t, std::size_t k) const;
 };
 
@@ -120,12 +121,12 @@ struct TieStep {
 };
 
 /// Appends a row to the contacts for each tied node of a weld or slide that does not rest, and a block to `blocks` for
-/// each tie of the kind `ball`. They require that the position error is zero at the end of the step. Returns false if
-/// there is no tie (skipped).
+/// each tie of the kind `ball`. The equations require that the position error is zero at the end of the step, or
+/// decreases at recovery_speed. Returns false if there is no tie (skipped).
 bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows,
                   CableBlockTable& blocks);
 
-/// Marks bodies that are tied to a moving collider. Returns false if there is none.
+/// Sets the mark of each body that is tied to a moving collider to 1. Returns false if there is no such body.
 bool mark_led(const TieInputs& ties, std::span<std::uint8_t> marked);
 
 }  // namespace skerry

@@ -129,8 +129,8 @@ Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, s
                          std::span<Index> contact_region) {
     const Index count =
         label_in_blocks(executor, stencil, inverse_mass, groups, labels, regions.contacts, contact_region);
-    // A set of nodes without contacts gets as its first item the next number after all contact numbers. Such sets are
-    // thereby numbered in order, and their regions follow the regions with contacts.
+    // A set of nodes without contacts is given a number above all contact numbers in place of its first contact. The
+    // numbers ascend in the order in which the sets are met, and their regions follow the regions with contacts.
     const Index contacts = static_cast<Index>(stencil.size());
     Index item = contacts;
     const auto number = [&](Index node) {

@@ -24,8 +24,8 @@ inline constexpr std::size_t least_contacts_in_blocks = 1024;
 inline constexpr int least_workers_for_blocks = 4;
 
 /// Fills the lists of contacts, joints and cables of `regions`, and `contact_region`. Two contacts are in one region if
-/// a chain of shared moving nodes (inverse mass > 0) connects them. Nodes of the same group in `groups` count as
-/// shared, and so do bodies connected by a joint or a cable. With `mode` global, there is one region. Contacts without
+/// a chain of shared moving nodes (inverse mass > 0) connects them. The nodes of one group in `groups` count as one
+/// node, and joints and cables connect nodes as contacts do. With `mode` global, there is one region. Contacts without
 /// a moving node belong to no region. Returns false if there are no contacts, joints and cables (skipped).
 ///
 /// Regions are numbered in the order of their first contacts. Regions without contacts follow, in the order of their

@@ -24,9 +24,9 @@ struct ContactPartners {
     bool operator==(const ContactPartners&) const = default;
 };
 
-/// Sums of impulses and moments over contacts. The moments on the two partners differ, because friction acts across the
-/// distance of their surfaces. Each moment is computed at the nodes of a body, or at the contact point on a collider,
-/// so that it equals the change of angular momentum of that partner.
+/// Sums of impulses and moments over contacts. The moments on the two partners do not add up to zero, because friction
+/// acts across the distance of their surfaces. Each moment is computed at the nodes of a body, or at the contact point
+/// on a collider, so that it equals the change of angular momentum of that partner.
 struct ContactSums {
     Vec3 impulse = Vec3::Zero();        // impulse on the first partner [N s]
     Vec3 first_moment = Vec3::Zero();   // moment on the first partner [N m s]

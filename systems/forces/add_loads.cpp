@@ -14,7 +14,7 @@ constexpr std::size_t loaded_nodes_per_block = 4096;
 
 /// Mean scales of a load in this step.
 struct MeanScales {
-    Real usual, implicit;  // for explicit and rigid bodies, and for implicit bodies
+    Real usual, implicit;  // `usual`: for explicit and rigid bodies; `implicit`: for implicit bodies
 
     MeanScales(const LoadInputs& loads, std::size_t load) {
         const std::span<const TimeKey> keys = rows_of(loads.key, loads.scale_keys[load]);

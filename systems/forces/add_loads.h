@@ -69,8 +69,8 @@ struct LoadInputs {
                 .intervals = binder.value(intervals)};
     }
 
-    /// True if a field acts on a body. A factor of the weight that is given for the body replaces the one for all
-    /// bodies.
+    /// True if the field `load` acts on a body. A factor of gravity that is given for the body replaces the factor that
+    /// is given for all bodies.
     bool acts_on(std::size_t load, std::size_t body) const;
     bool is_on_present_area(std::size_t load) const {
         return kind[load] == LoadKind::traction && area[load] == LoadArea::present;
@@ -90,17 +90,17 @@ struct LoadInputs {
 };
 
 /// Adds the forces of all loads to `applied_force`, by node [N]. A scale that changes over time acts with its exact
-/// mean in the interval of the step, so the sum of impulses over the steps equals the integral over time. Drag uses the
-/// velocities at the start of the step, and a traction on the present area the positions. Parallel over nodes: loads on
-/// nodes are added in the order of LoadTable, and then the sum of all fields. `fields`: working memory. Returns false
-/// if there is no load.
+/// mean in the interval of the step, so the sum of impulses over the steps equals the integral over time. Drag is
+/// computed from the velocities, and a traction on the present area from the positions, at the start of the step.
+/// Parallel over nodes: loads on nodes are added in the order of LoadTable, and then the sum of all fields. `fields`:
+/// working memory. Returns false if there is no load.
 bool add_loads(Executor& executor, const LoadInputs& loads, Column<BodyField>& fields, std::span<Vec3> applied_force);
 
-/// Bound of docs/methods/loads.md 2 for a traction on the present area of an explicit body [1/s^2]. `inverse_mass`: by
-/// node [1/kg]
+/// Bound on the increase of omega^2 by a traction on the present area of an explicit body (docs/methods/loads.md 2)
+/// [1/s^2]. `inverse_mass`: by node [1/kg].
 Real traction_rate(const LoadInputs& loads, std::size_t load, std::span<const Real> inverse_mass);
 
-/// The columns that decide on which bodies a load changes.
+/// The columns from which mark_loaded finds the bodies whose loads change.
 struct LoadedBodies {
     std::span<const Index> load_body;
     std::span<const Range> scale_keys;

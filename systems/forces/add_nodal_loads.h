@@ -1,4 +1,4 @@
-// Force element: the loads on nodes that the user has set.
+// Force element: loads that the user has set on single nodes.
 #pragma once
 
 #include <span>

@@ -11,13 +11,14 @@ namespace skerry {
 
 /// Position and orientation of a collider, an attachment or a body.
 struct Pose {
-    Vec3 position = Vec3::Zero();  // position of the origin in the world [m]
+    Vec3 position = Vec3::Zero();  // position of the origin of the object's frame in the world [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
 };
 
 /// Velocities of a rigid motion.
 struct Twist {
-    Vec3 velocity = Vec3::Zero();          // velocity of the centre of mass of a body, or of the origin of a pose [m/s]
+    // velocity of the centre of mass (body) or of Pose::position (collider, attachment) [m/s]
+    Vec3 velocity = Vec3::Zero();
     Vec3 angular_velocity = Vec3::Zero();  // [rad/s]
 };
 
@@ -27,8 +28,9 @@ struct CollisionGroups {
     std::uint32_t mask = 0;   // groups that it can touch
 };
 
-/// Friction and restitution of one body or collider. For a body, missing values are those of its material. For a
-/// collider, missing values are those of the body that touches the collider.
+/// Friction and restitution of a body or a collider; also of a pair of materials or a surface set (for missing values
+/// of these two see surface.h). For a body, missing values are those of its material. For a collider, missing values
+/// are those of the body that touches the collider.
 struct SurfaceSettings {
     // Coulomb's friction coefficient, >= 0; default value of static_friction and dynamic_friction
     std::optional<Real> friction{};

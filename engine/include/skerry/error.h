@@ -19,8 +19,8 @@ struct Complaint {
     [[noreturn]] void raise() const;
 };
 
-/// Exception for bad input while a world is built or a file is read. The message names the file, the object, the field,
-/// the value found and the value expected.
+/// Exception for bad input: in a file, or in an argument of a function that builds, changes or reads a world. The
+/// message names the file, the object, the field, the value found and the value expected.
 class SceneError : public std::runtime_error {
 public:
     /// `complaint` contains the parts of the text that are known.

@@ -20,7 +20,7 @@ struct FibreSettings {
     BodyHandle body{};  // a body that deforms
     // Numbers of tetrahedra in the mesh of the body, each at most once; empty: all tetrahedra
     std::vector<Index> tetrahedra{};
-    // Directions in the mesh, of any length except zero: one for all tetrahedra, or one for each of them.
+    // Directions in the frame of the mesh, of any length except zero: one for all of `tetrahedra`, or one for each.
     std::vector<Vec3> direction{Vec3::UnitX()};
     // Constant k_1 of the energy, >= 0. Near the rest length, fibres have Young's modulus 4 k_1 [Pa].
     Real stiffness = 0;
@@ -33,10 +33,10 @@ struct FibreState {
     BodyHandle body{};  // body of the fibres
     Real tension = 0;   // present active tension [Pa]
     Real energy = 0;    // energy of the stretch [J]
-    // Numbers of the tetrahedra with fibres, and a value for each of them:
+    // The following lists have one entry for each tetrahedron with fibres. `tetrahedra`: its number in the mesh.
     std::vector<Index> tetrahedra{};
     std::vector<Real> stretch{};  // present length of fibres over their length at rest
-    std::vector<Real> stress{};   // nominal stress along the fibres, with the active tension [Pa]
+    std::vector<Real> stress{};   // nominal stress along the fibres, including the active tension [Pa]
 };
 
 extern template class __attribute__((visibility("default"))) ObjectView<FibreHandle>;
@@ -52,7 +52,8 @@ public:
     BodyHandle body(FibreHandle fibres) const;
     /// Stretch, tension and energy of the fibres after the last step.
     FibreState state(FibreHandle fibres) const;
-    /// Settings of the fibres, with a direction for each tetrahedron.
+    /// Settings of the fibres. `tetrahedra` and `direction` list every tetrahedron with fibres, even if add() got
+    /// shorter lists.
     FibreSettings settings(FibreHandle fibres) const;
     /// Sets the active tension [Pa].
     void set_tension(FibreHandle fibres, const TimeTable& tension);

@@ -25,7 +25,7 @@ struct FillSettings {
     // Factor for all coordinates of the surfaces, > 0. All other lengths are those after scaling.
     Real scale = 1;
     // Edge length of the new tetrahedra and of their surface, > 0 [m]. If it is not given, the triangles of a clean
-    // surface are kept, and other surfaces get a twentieth of the diagonal of their bounding box.
+    // surface (see fill()) are kept; for other surfaces it is a twentieth of the diagonal of their bounding box.
     std::optional<Real> edge{};
     // Largest distance between the given and the new surface, as a fraction of the diagonal of the bounding box, from 0
     // to below 1. With 0 the triangles of the surface are kept; surfaces that are not clean are then refused.
@@ -33,17 +33,17 @@ struct FillSettings {
     // A shell inside another shell is the boundary of an empty cavity if this is true, or if the triangles of the inner
     // shell are clockwise as seen from its outside. Otherwise it is the boundary of a region with a label of its own.
     bool cavities = false;
-    MaterialSettings material{};  // material for which the stable steps of meshes are compared
-    FillLimits limits{};          // time and memory of each mesher
+    MaterialSettings material{};  // if several meshes are made, fill() compares their stable steps for this material
+    FillLimits limits{};          // limits of each run of a mesher
     // Python interpreter with the package wildmeshing. If it is empty: the value of the environment variable
     // SKERRY_FILL_PYTHON, or else python3 in PATH.
     std::string python{};
 };
 
-/// Largest and mean distance of the points of two surfaces to the nearest point of the other surface [m].
+/// Distances between two surfaces, measured from points of one surface to the nearest point of the other [m].
 struct SurfaceDistance {
-    Real from_first = 0, from_second = 0;            // largest distance of the points of one surface
-    Real mean_from_first = 0, mean_from_second = 0;  // mean distance
+    Real from_first = 0, from_second = 0;            // largest distance from first to second, and back
+    Real mean_from_first = 0, mean_from_second = 0;  // mean distance from first to second, and back
 
     /// The larger one of both largest distances.
     Real greatest() const { return from_first > from_second ? from_first : from_second; }
@@ -51,7 +51,7 @@ struct SurfaceDistance {
 
 /// Result of fill(): the mesh, its distance from the given surface, and notes.
 struct FilledMesh {
-    Mesh mesh;                   // tetrahedra, with a label for each region and a set for each shell
+    Mesh mesh;                   // tetrahedra, with labels of regions and sets of shells; see fill()
     std::string mesher;          // "Netgen", "fTetWild", or "fTetWild and Netgen"
     bool exact = false;          // true if the new surface is SurfaceReport::cleaned, bitwise
     SurfaceReport surface;       // check of the given surface
@@ -65,22 +65,24 @@ struct FilledMesh {
     bool may_change = false;
 };
 
-/// Receives a description of the current activity many times a second. An exception ends the filling.
+/// Function that fill() calls many times a second with a description of the current activity. If it throws, fill() ends
+/// with this exception.
 using FillProgress = std::function<void(const std::string&)>;
 
-/// Fills surfaces with tetrahedra. Nodes are first merged as by check_surface. Clean surfaces (closed manifolds that do
-/// not cross) are filled by Netgen, which keeps them bitwise, unless `edge` requests other triangles. Other surfaces
+/// Fills surfaces with tetrahedra. Nodes are first merged as by check_surface. Clean surfaces (closed manifolds without
+/// crossings) are filled by Netgen, which keeps them bitwise, unless `edge` requests other triangles. Other surfaces
 /// are filled by fTetWild (Hu et al., Fast tetrahedral meshing in the wild, 2020) within the tolerance: holes are
 /// closed, and crossing shells are united; repeated runs give slightly different meshes. Each mesher runs in its own
 /// process. If several meshes are made, the one with the longest stable step is returned
 /// (docs/decisions/0026-filling-surfaces.md).
 ///
-/// If shells are nested, regions have the labels 1, 2, ..., beginning with the region of the largest shell. The faces
-/// of each shell are a set: with the name of the file if each file has one shell, otherwise shell_1, shell_2, ...
+/// If shells are nested, regions have the labels 1, 2, ..., beginning with the region of the largest shell. If there
+/// are nested shells or several files, the faces of each shell form a set. Its name is that of the file without
+/// extension if there are as many files as shells, otherwise shell_1, shell_2, ...
 ///
-/// Shells that repeat another shell are dropped, with a note. A note also reports if the new surface is farther from
-/// the given one than the tolerance, for example where a hole was closed. Throws SceneError that names the file if a
-/// file cannot be read, a mesher is not installed, or no mesher fills the surface within the limits.
+/// Identical shells are used once, and a note reports them. A note also reports if the new surface is farther from the
+/// given one than the tolerance, for example where a hole was closed. Throws SceneError that names the file if a file
+/// cannot be read, a mesher is not installed, or no mesher fills the surface within the limits.
 FilledMesh fill(const std::vector<std::filesystem::path>& files, const FillSettings& settings = {},
                 const FillProgress& progress = {});
 
@@ -90,10 +92,10 @@ FilledMesh fill(const SurfaceMesh& surface, const std::string& name, const FillS
 
 /// Reads the mesh that fills a surface file from the cache file beside it, or else fills the surface and writes the
 /// cache file. The name of the cache file contains a hash of the surface, `edge`, `tolerance`, `cavities` and whether
-/// skerry-fill is installed; the stable steps of meshes are compared for the default material. A text file beside the
-/// cache file keeps the notes of the filling. A mesh is not kept if skerry-fill is installed and FilledMesh::may_change
-/// is true. `notes`: gets the notes of reading and filling, also if the mesh comes from the cache file, and a note if
-/// the mesh was not kept.
+/// skerry-fill (the program that runs Netgen) is installed. It does not contain `material`: stable steps are compared
+/// for the default material, so one file serves all materials. A text file beside the cache file keeps the notes of the
+/// filling. A mesh is not kept if skerry-fill is installed and FilledMesh::may_change is true. `notes`: gets the notes
+/// of reading and filling, also if the mesh comes from the cache file, and a note if the mesh was not kept.
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings = {},
                  const FillProgress& progress = {}, std::vector<std::string>* notes = nullptr);
 

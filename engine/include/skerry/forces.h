@@ -15,8 +15,8 @@ struct WorldState;  // internal type, declared outside the pragma that exports s
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Forces on a body or a collider, summed over all steps of the last call of advance. A step that needed several
-/// attempts counts once.
+/// Forces on a body or a collider, summed over all steps of the last call of advance. Of a step that needed several
+/// attempts, only the last attempt counts.
 struct ForceReport {
     Vec3 impulse = Vec3::Zero();  // sum of the impulses on the object [N s]
     // Sum of the moments of the impulses about `moment_point` [N m s]. Each impulse acts at its contact point at the
@@ -25,16 +25,16 @@ struct ForceReport {
     Vec3 friction_impulse = Vec3::Zero();  // tangential part of `impulse` [N s]; zero for attachments
     // Sum of the magnitudes of the normal impulses [N s]. It shows pressure even where opposite impulses cancel.
     Real pressing_impulse = 0;
-    // Largest force of a single step [N]: the impulse of the step, divided by the time for which loads act in this
-    // step.
+    // Largest force of a single step [N]: the impulse of the step divided by its force interval (see `seconds`).
     Real largest_force = 0;
     Index contacts = 0;       // number of contacts with an impulse in the last step
     Index most_contacts = 0;  // largest number of contacts with an impulse in any step
-    // Time for which loads acted [s]: the duration of the call plus half of (length of the last step before the call -
-    // length of the last step of the call). For implicit bodies and with leapfrog it is the duration alone
-    // (docs/methods/time_stepping.md 1.5).
+    // Sum of the force intervals of the steps [s]. The forces of a step act from the middle of the previous step to the
+    // middle of this step. So the sum is the duration of the call plus half of (length of the last step before the call
+    // - length of the last step of the call). With leapfrog and for implicit bodies, forces act from start to end of a
+    // step, and the sum is the duration (docs/methods/time_stepping.md 1.5).
     Real seconds = 0;
-    Vec3 moment_point = Vec3::Zero();  // reference point of moments, as given to measure_forces [m]
+    Vec3 moment_point = Vec3::Zero();  // point about which moments are taken, as given to measure_forces [m]
     // False if the call was too short for the force to be measured (docs/outputs.md), or took no step.
     bool measured = true;
 
@@ -64,9 +64,9 @@ struct PairForces {
 /// bodies and colliders that were removed since the call are not included.
 ///
 /// Forces on sleeping bodies are mean values over the time in which the bodies were still before they fell asleep. For
-/// each body these forces balance the weight and the loads. The error is at most (mass of the body) * (its speed) /
-/// sleep_time. If forces were not measured at that time, the forces of the last step before the sleep are used
-/// (World::contacts).
+/// each body these forces balance the weight and the loads. The error of this balance is at most the change of the
+/// momentum of the body during this time, divided by this time (at least sleep_time). If forces were not measured
+/// during this time, the forces of the last step before the sleep are used (World::contacts).
 ///
 /// The impulses on the two partners of a pair are exactly opposite. Their moments differ by the moment of friction
 /// across the distance of the two surfaces, because each impulse acts on the nodes of its own body, or at the point of
@@ -74,7 +74,7 @@ struct PairForces {
 class Forces {
 public:
     /// Sum of the forces of all contacts on a body. Contacts of a body with itself add only to `contacts` and
-    /// `pressing_impulse`.
+    /// `pressing_impulse`, because their impulses cancel.
     ForceReport on(BodyHandle body) const;
     ForceReport on(ColliderHandle collider) const;
     /// Forces between two given partners; zero if the two did not touch. If the two partners are one body, the impulses
@@ -84,8 +84,8 @@ public:
     ForceReport on(ColliderHandle collider, BodyHandle by) const;
     /// Forces of an attachment on its body. They keep the attached nodes on their prescribed motion: they balance
     /// elastic forces, weight, loads and contacts, and accelerate the nodes. If several attachments hold a node, the
-    /// force on this node counts for the attachment added last. Damping of a held body is not included, because it acts
-    /// on all nodes, like a medium at rest.
+    /// force on this node counts for the attachment added last. The force of MaterialSettings::damping is not included:
+    /// on a body with held nodes it acts on all nodes, like the drag of a medium at rest.
     ForceReport by(AttachmentHandle attachment) const;
     /// All pairs of objects that touched during the call: first body-collider pairs, then body-body pairs, each sorted
     /// by handles.

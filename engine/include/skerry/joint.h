@@ -25,15 +25,15 @@ struct JointMotor {
     std::optional<Real> speed{};     // target speed [rad/s or m/s]
     std::optional<Real> position{};  // target coordinate of the joint, reached within one step if possible [rad or m]
     Real strength = 0;               // largest moment (hinge) or force (slider) of the motor, >= 0 [N m or N]
-    // Largest speed at which the motor approaches `position`, > 0 [rad/s or m/s].
+    // Largest speed at which the motor approaches a target coordinate, > 0 [rad/s or m/s].
     Real fastest = infinity;
     // Targets at ascending times, either all of them speeds or all of them positions. The target changes linearly
     // between keys, and is constant before the first and after the last key.
     std::vector<MotorKey> keys{};
 };
 
-/// Passive forces along the axis of a hinge (angles, moments) or a slider (displacements, forces). They act also if the
-/// joint has no motor (docs/methods/joints.md 4).
+/// Spring, damper and dry friction on the axis of a joint. They exert a moment on a hinge, and a force on a slider,
+/// whether or not the joint has a motor (docs/methods/joints.md 4).
 struct JointPassive {
     Real stiffness = 0;  // stiffness of a spring, >= 0 [N m/rad or N/m]
     Real rest = 0;       // coordinate of the joint at which the spring exerts no force [rad or m]
@@ -55,7 +55,7 @@ struct JointMimic {
 
 /// Limits of the coordinate of a joint.
 struct JointLimits {
-    std::optional<Real> lower{}, upper{};  // no value: no limit [rad or m]
+    std::optional<Real> lower{}, upper{};  // a missing value is no limit [rad or m]
 };
 
 /// A joint between two rigid bodies, or between a rigid body and the world, in their present poses. The coordinate of a
@@ -69,7 +69,7 @@ struct JointSettings {
     Vec3 point = Vec3::Zero();             // position of the joint in the world [m]
     Vec3 axis = {0, 0, 1};                 // axis of a hinge or slider in the world; the length must not be zero
     Real coordinate = 0;                   // coordinate of a hinge or slider in the present poses [rad or m]
-    std::optional<Real> lower{}, upper{};  // limits of the joint coordinate, lower <= upper
+    std::optional<Real> lower{}, upper{};  // limits of the coordinate, lower <= upper [rad or m]
     std::optional<JointMotor> motor{};     // motor on the axis; default: none
     JointPassive passive{};                // spring, damper and dry friction on the axis
     bool bodies_touch = false;             // true: the two bodies may collide while the joint exists
@@ -87,11 +87,11 @@ struct JointState {
     Real speed = 0;                      // rate of the coordinate [rad/s or m/s]
     Vec3 force = Vec3::Zero();           // force acting at `point` [N]
     Vec3 moment = Vec3::Zero();          // [N m]
-    // Parts of the moment (hinge) or force (slider) along the axis: of the motor, of spring, damper and friction
-    // together, and of the limits [N m or N].
+    // Parts of the moment (hinge) or force (slider) along the axis [N m or N]. `passive` is the sum of spring, damper
+    // and friction (JointPassive).
     Real motor = 0, passive = 0, limit = 0;
-    // Moment or force along the axis that makes the joint mimic its leader; `force` and `moment` do not contain it. The
-    // leader gets -ratio times as much [N m or N].
+    // Moment or force along the axis that makes the joint mimic its leader [N m or N]; `force` and `moment` do not
+    // contain it. The leader gets -JointMimic::ratio times this moment or force.
     Real mimic = 0;
     // Position error [m]: distance between the two points that the joint should keep together. For a slider, only the
     // part of this distance normal to the axis counts.
@@ -111,7 +111,7 @@ public:
     /// Returns the present pose and motion of a joint, and the joint's force and moment in the last step.
     JointState state(JointHandle joint) const;
     /// Settings with which add() would make an equal joint now: point, axis and coordinate have their present values.
-    /// The mimic is not included.
+    /// They do not contain the coupling to a leader; see mimic().
     JointSettings settings(JointHandle joint) const;
     /// Sets the motor of a hinge or a slider, or removes the motor if none is given. Setting a motor equal to the
     /// present one changes no bit of the state.
@@ -125,7 +125,7 @@ public:
     /// Makes a hinge or a slider mimic another joint, or ends the coupling if no mimic is given. A deviation is
     /// corrected at the bounded speed that set_limits describes. Removing the leader ends the mimic.
     void set_mimic(JointHandle joint, const std::optional<JointMimic>& mimic);
-    /// The leader that a joint mimics, and its ratio; empty if there is none.
+    /// Coupling of a joint to the leader that it mimics; empty if it mimics none.
     std::optional<JointMimic> mimic(JointHandle joint) const;
     /// The motor of a joint; empty if it has none.
     std::optional<JointMotor> motor(JointHandle joint) const;

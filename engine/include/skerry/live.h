@@ -18,10 +18,10 @@ namespace skerry {
 struct LiveSettings {
     std::string title = "Skerry";         // title of the page
     int port = 0;                         // TCP port from 0 to 65535; 0: a free port
-    Real rate = 1;                        // simulated time per wall time, >= 0; 0: as fast as possible
+    Real rate = 1;                        // simulated time per wall time, from 0 to 1000; 0: as fast as possible
     bool paused = false;                  // true: the view waits for the user to press play
     std::vector<Slider> sliders{};        // values that users may change
-    std::vector<RecordedProbe> probes{};  // plotted while the world runs
+    std::vector<RecordedProbe> probes{};  // quantities that the page plots while the world runs
 };
 
 /// A server for browsers on this machine that shows a world. It listens on the loopback address only. A browser needs
@@ -29,8 +29,9 @@ struct LiveSettings {
 ///
 /// One thread advances the world and calls the functions of the view. Other threads encode and send the frames. The
 /// simulation never waits for a browser: a browser that is slow gets fewer frames. A browser that only displays the
-/// world changes no bit of it. In a process made by fork() the view can only be closed, which leaves its server to the
-/// first process. The first view makes the process ignore the signal SIGPIPE from then on.
+/// world changes no bit of it. After fork(), the server stays with the parent process; the child process can only close
+/// the view, which has no effect on the server. When the first view is made, the process begins to ignore the signal
+/// SIGPIPE, because a browser can end a connection at any time.
 class LiveView {
 public:
     /// Starts the server, and stores the present state of the world for a reset. Throws SceneError if a setting is out
@@ -50,15 +51,16 @@ public:
     void close();
     /// False after close().
     bool is_open() const;
-    bool playing() const;  // false if the view is paused; true until the next sync() for a single step
-    int clients() const;   // number of connected browsers
+    // false if the view is paused; a requested single step counts as playing until the next sync()
+    bool playing() const;
+    int clients() const;  // number of connected browsers
     /// Number of frames sent to browsers.
     std::uint64_t frames_sent() const;
     std::uint64_t frames_dropped() const;  // frames that a browser missed because it was still busy with earlier ones
     std::uint64_t resets() const;          // number of resets of the world
 
-    // The following functions must be called between two calls of advance of the world of the constructor, which may
-    // have been moved to another variable meanwhile.
+    // The following functions must be called between two calls of advance; only between_steps() is called within one.
+    // `world` is the world of the constructor, which may have been moved to another variable meanwhile.
 
     /// Carries out the commands that browsers have sent, and shows the world to browsers that are ready for a frame, at
     /// most 30 times a second of wall time. Commands that fail are reported to the browser that sent them, and change
@@ -69,8 +71,8 @@ public:
     /// is ahead of the wall clock. With the result 0 it waits for commands, at most 20 ms. The caller must advance the
     /// world by the result. For a single step the result is the length of one step.
     Real due(World& world);
-    /// For a callback of World::advance. Shows the world between two steps of a long call, and returns false if
-    /// commands wait, so that the call ends and they are carried out soon.
+    /// Call this in the callback `go_on` of World::advance, and return its result. It shows the world between two steps
+    /// of a long call. It returns false if commands wait, so that the call ends and sync() can carry them out.
     bool between_steps(const World& world);
     /// Pauses the view, and shows the text to all browsers. Call it after a step that failed.
     void fail(const std::string& text);
@@ -79,7 +81,7 @@ public:
     void refuse_resets(const std::string& reason);
     /// Advances the world as the browsers ask, until `go_on` returns false. `go_on` is called before each step. One
     /// call of advance() covers at most 1/60 s of simulated time. A step that cannot be committed pauses the view;
-    /// `failed` then gets the error message.
+    /// `failed` is then called with the error message.
     void run(World& world, const std::function<bool()>& go_on,
              const std::function<void(const std::string&)>& failed = {});
 

@@ -35,7 +35,8 @@ struct TractionLoad {
     LoadArea area = LoadArea::reference;  // the area of the faces in the rest shape (dead load), or the present area
 };
 
-/// A uniform acceleration, for example that of a shaken frame of reference. It is added to the gravity of the settings.
+/// A uniform acceleration of bodies, added to the gravity of the settings, for example the apparent acceleration in a
+/// shaken frame of reference.
 struct AccelerationField {
     std::optional<BodyHandle> body{};  // if it is not given, the field acts on all bodies
     Vec3 acceleration = Vec3::Zero();  // [m/s^2]
@@ -46,13 +47,14 @@ struct AccelerationField {
 /// all bodies. The potential energy in reports is still that of the whole weight; the difference counts as work of
 /// loads.
 struct GravityScale {
-    std::optional<BodyHandle> body{};  // if it is not given, the factor applies to all bodies
-    TimeTable scale = 1;               // factor over time
+    // if it is not given, the factor applies to all bodies without a factor of their own
+    std::optional<BodyHandle> body{};
+    TimeTable scale = 1;  // factor over time
 };
 
 /// A drag towards the velocity of a wind: the force on a node of mass m and velocity v is m rate (wind - v). A body
 /// that nothing else moves takes up the velocity of the wind with the time constant 1/rate, whatever its shape. Steps
-/// are not longer than 1/rate.
+/// are not longer than 1/rate, so that the drag in one step cannot reverse a velocity.
 struct DragField {
     std::optional<BodyHandle> body{};  // if it is not given, the field acts on all bodies
     Real rate = 0;                     // force per mass and relative velocity, > 0 [1/s]
@@ -65,13 +67,13 @@ using AnyLoad = std::variant<ForceLoad, TractionLoad, AccelerationField, Gravity
 
 /// State of a load at the present time.
 struct LoadState {
-    LoadKind kind = LoadKind::force;   // force that the load exerts
+    LoadKind kind = LoadKind::force;   // kind of the load
     std::optional<BodyHandle> body{};  // missing if the load acts on all bodies
     // Value without the scale: force [N], traction [Pa], acceleration [m/s^2] or velocity of the wind [m/s]. Zero for a
     // factor of the weight.
     Vec3 vector = Vec3::Zero();
     Real rate = 0;   // rate of a drag [1/s]
-    Real scale = 1;  // present scale
+    Real scale = 1;  // value of `scale` at the present time
     // Sum of the present forces on all nodes [N]. For a factor of the weight, the difference from the full weight.
     Vec3 force = Vec3::Zero();
 };

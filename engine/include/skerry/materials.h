@@ -13,18 +13,20 @@ namespace skerry {
 /// A number from the literature, with its source.
 struct SourcedValue {
     Real value;               // value in the unit stated at the member of NamedMaterial
-    std::string_view source;  // citation, and the way in which the value was derived from it
+    std::string_view source;  // citation, and how the value was derived from the cited number
 };
 
 /// A material of named_materials(). Its values are typical; measure those that decide your result.
 struct NamedMaterial {
-    std::string_view name;                       // for named_material() and for the key "like" of scene files
-    std::string_view title;                      // description for people
-    SourcedValue young_modulus;                  // at small strain [Pa]
-    SourcedValue poisson_ratio;                  // rubber, gels and tissue have 0.49 in place of almost 0.5
-    SourcedValue density;                        // [kg/m^3]
-    std::optional<SourcedValue> loss_factor;     // tangent of the phase angle between stress and strain
-    std::optional<SourcedValue> yield_stress{};  // for Plasticity, which named_material() does not set [Pa]
+    std::string_view name;       // identifier for named_material() and for the key "like" of scene files
+    std::string_view title;      // description for people
+    SourcedValue young_modulus;  // at small strain [Pa]
+    SourcedValue poisson_ratio;  // 0.49 for rubber, gels and tissue, which are nearly incompressible
+    SourcedValue density;        // [kg/m^3]
+    // tangent of the phase angle between stress and strain; empty if not known
+    std::optional<SourcedValue> loss_factor;
+    // Plasticity::yield_stress [Pa], empty if not known; named_material() does not set it
+    std::optional<SourcedValue> yield_stress{};
 };
 
 /// Friction coefficients of two clean, dry surfaces.
@@ -40,18 +42,19 @@ std::span<const NamedMaterial> named_materials();
 std::span<const KnownFriction> known_frictions();
 
 /// Settings of the material called `name`. `friction` is the dynamic friction of two surfaces of this material if
-/// known_frictions() lists the pair, else the default. Loss factors below 0.01 are not set: implicit bodies, to which
-/// such materials belong, accept none. Throws SceneError if no material has this name.
+/// known_frictions() lists the pair, else the default. Loss factors below 0.01 are left out: they belong to stiff
+/// materials, which suit implicit bodies, and implicit bodies accept no loss factor. Throws SceneError if no material
+/// has this name.
 MaterialSettings named_material(std::string_view name);
 
-/// A term of the law of Ogden as papers give it: modulus mu_p [Pa] and exponent alpha_p, of the same sign.
+/// A term of the law of Ogden in the form of the literature. Modulus mu_p and exponent alpha_p must have the same sign.
 struct OgdenTerm {
     Real modulus, exponent;  // mu_p [Pa] and alpha_p
 };
 /// `base` with the law of Ogden (1972, eq. 18), split into changes of shape and volume: Psi = sum_p mu_p / alpha_p
-/// (s_1^ alpha_p + s_2^alpha_p + s_3^alpha_p - 3) + K/2 (J - 1)^2, with the principal stretches s_i divided by J^(1/3),
-/// J = det F, and the bulk modulus K [Pa]. Up to three terms. Sets model, terms, young_modulus and poisson_ratio.
-/// Throws SceneError for values without a stable law.
+/// (s_1^alpha_p + s_2^alpha_p + s_3^alpha_p - 3) + K/2 (J - 1)^2, with the principal stretches s_i divided by J^(1/3),
+/// J = det F, and the bulk modulus K [Pa]. Sets model, terms, young_modulus and poisson_ratio. Throws SceneError unless
+/// there are one to three terms, mu_p alpha_p > 0 for each, and K > 0.
 MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, MaterialSettings base = {});
 
 /// `base` with the law of Mooney and Rivlin: Psi = c10 (I_1 - 3) + c01 (I_2 - 3) + K/2 (J - 1)^2, with the invariants
@@ -59,7 +62,8 @@ MaterialSettings ogden(std::span<const OgdenTerm> terms, Real bulk_modulus, Mate
 MaterialSettings mooney_rivlin(Real c10, Real c01, Real bulk_modulus, MaterialSettings base = {});
 
 /// `base` with the law `orthotropic` for strains of some per cent at any rotation. Sets model, orthotropic,
-/// young_modulus and poisson_ratio. Throws SceneError if the stiffness is not positive definite, with the condition.
+/// young_modulus and poisson_ratio. Throws SceneError if the stiffness is not positive definite; the message states the
+/// violated condition.
 MaterialSettings orthotropic(const OrthotropicModuli& moduli, MaterialSettings base = {});
 
 }  // namespace skerry

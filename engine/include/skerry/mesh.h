@@ -13,11 +13,12 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// A named part of a mesh. A set can list nodes, faces, tetrahedra, or several of them. The functions nodes_of,
-/// faces_of and tetrahedra_of of the namespace mesh return its parts of one kind.
+/// A named part of a mesh. A set can list nodes, faces, tetrahedra, or several of these kinds. The functions
+/// nodes_of(), faces_of() and tetrahedra_of() of the namespace mesh return the parts of one kind that a set lists or
+/// implies.
 struct MeshSet {
     std::vector<Index> nodes{};                 // indices of nodes, ascending
-    std::vector<std::array<Index, 3>> faces{};  // nodes of faces of tetrahedra
+    std::vector<std::array<Index, 3>> faces{};  // three nodes of each face
     std::vector<Index> tetrahedra{};            // indices of tetrahedra, ascending
 
     /// True if the set lists nothing.
@@ -40,8 +41,8 @@ struct Mesh {
     // For a rigid body without tetrahedra: the triangles of its surface, see World::add_body(const SurfaceMesh&, ...).
     // With tetrahedra the list must be empty.
     std::vector<std::array<Index, 3>> triangles{};
-    // Vectors of the tetrahedra, for example directions of fibres, by name: the arrays of three numbers in the cell
-    // data of a VTK file.
+    // Named lists with one vector per tetrahedron, for example directions of fibres. `read` makes one from each array
+    // with three numbers per cell of a VTK file.
     std::map<std::string, std::vector<Vec3>> vectors{};
 };
 
@@ -57,8 +58,8 @@ struct SurfaceMesh {
 namespace mesh {
 
 /// A box of the given edge lengths, divided into `cells` = (i, j, k) cells along x, y and z with six tetrahedra each.
-/// All cells in one octant of the box are divided in the same way. Neighbouring octants are mirror images where the
-/// number of cells is even.
+/// All cells in one octant of the box are divided in the same way. Along axes with an even number of cells, both halves
+/// of the box are mirror images.
 Mesh box(const Vec3& size, const std::array<int, 3>& cells);
 
 /// A ball with `resolution` elements across the diameter; an odd number is rounded up to even. All boundary nodes lie
@@ -110,10 +111,10 @@ Mesh table(const TableShape& shape);
 /// (unstructured grids; ASCII, base64 and raw, also compressed by zlib), TetGen .node/.ele (`path` may name either
 /// file), Medit .mesh/.meshb (ASCII and binary) or Abaqus .inp. Tetrahedra of second order are divided into eight
 /// linear ones each, which together have all nodes of the file. Tetrahedra of higher order are refused. Other kinds of
-/// elements and unused nodes are dropped; Mesh::file_number then names the remaining nodes. Inverted tetrahedra are
-/// turned: two of their nodes change places. If turning would make tetrahedra overlap, the shape itself is faulty; the
-/// mesh is then left as in the file, and `inspect` counts the faults. `notes`, if given, gets sentences about divided,
-/// dropped and turned elements, each with the name of the file.
+/// elements and unused nodes are dropped; Mesh::file_number then lists the numbers of the remaining nodes. Inverted
+/// tetrahedra are turned: two of their nodes change places. If turning would make tetrahedra overlap, the shape itself
+/// is faulty; the mesh is then left as in the file, and `inspect` counts the faults. `notes`, if given, gets sentences
+/// about divided, dropped and turned elements, each with the name of the file.
 ///
 /// An Abaqus file must list its nodes, elements and sets in Cartesian coordinates. Instances of parts are joined into
 /// one mesh. Steps, loads and constants of materials are not read.
@@ -138,7 +139,7 @@ Mesh table(const TableShape& shape);
 /// - Abaqus: sets of nodes, sets of elements and surfaces by name. Names of an instance begin with its own name and a
 ///   dot. If other objects have the same name, sets of elements are called NAME_elements and surfaces NAME_surface.
 ///   A set that is just the nodes of the set of elements of the same name is dropped, and so are internal sets.
-/// Triangles that are not faces of a tetrahedron are dropped from sets, and `notes` gets their number.
+/// Triangles that are not faces of a tetrahedron are dropped from sets, and a note states how many.
 ///
 /// Throws SceneError that names the file, the place in the file, and the found and the expected text.
 Mesh read(const std::string& path, std::vector<std::string>* notes = nullptr);
@@ -152,10 +153,10 @@ Mesh read_rigid(const std::string& path, std::vector<std::string>* notes = nullp
 /// that share their first corner. `notes` as for `read`. Throws SceneError.
 SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes = nullptr);
 
-/// Turns the inverted tetrahedra of a mesh that was not read from a file, as `read` does. `notes` and errors use `name`
-/// in place of a file name. Sorts the numbers of sets, and gives faces of sets the orientation of the boundary. Throws
-/// SceneError if a tetrahedron uses a node twice or a node that does not exist, if a position is not finite, or if a
-/// set has a number that is out of range or a face that is not one of the tetrahedra.
+/// Turns the inverted tetrahedra of a mesh as `read` does, for a mesh that was made in memory. `notes` and errors use
+/// `name` in place of a file name. Sorts the numbers of sets, and gives faces of sets the orientation of the boundary.
+/// Throws SceneError if a tetrahedron uses a node twice or a node that does not exist, if a position is not finite, or
+/// if a set has a number that is out of range or a face that no tetrahedron has.
 void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>* notes = nullptr);
 
 /// Writes a mesh as Gmsh 2.2 text with all digits, so that `read` returns an equal mesh. The file name must end in
@@ -179,7 +180,7 @@ std::vector<Index> tetrahedra_of(const MeshSet& set, std::span<const std::array<
 
 /// Statistics of a mesh, as printed by `skerry inspect`.
 struct MeshReport {
-    // Numbers of nodes, tetrahedra, triangles of the surface, and parts without a common node.
+    // Numbers of nodes, of tetrahedra, of boundary triangles, and of connected components (parts that share no node).
     std::size_t nodes = 0, tetrahedra = 0, boundary_triangles = 0, components = 0;
     Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // bounding box [m]
     Real volume = 0;                                  // volume of all tetrahedra [m^3]
@@ -192,7 +193,7 @@ struct MeshReport {
     std::size_t slivers = 0;             // number of tetrahedra of positive volume with a quality below 0.1
     // true if every boundary edge has two triangles, and the triangles at every node form one ring
     bool closed_manifold = false;
-    std::string boundary_fault;         // first fault of the boundary, and number of faults; empty if there are none
+    std::string boundary_fault;  // describes the first fault of the boundary and counts all; empty if there is none
     std::map<int, std::size_t> labels;  // number of tetrahedra with each label; empty if the mesh has no labels
     // numbers of nodes, faces and tetrahedra of each set
     std::map<std::string, std::array<std::size_t, 3>> sets;

@@ -14,8 +14,8 @@ class World;
 /// A view of all objects of one kind of a world. It is valid until the world is moved or destroyed. Functions of views
 /// that change something may only be called between calls of advance. They throw SceneError and change nothing if a
 /// handle is stale or a value is out of range. The objects belong to the state of the world: they are saved, cloned and
-/// hashed. They are removed with each body and collider that they name. The header of each view declares the instance
-/// of this template with the attribute that makes the shared library export it.
+/// hashed. An object is removed together with any body or collider that it names. The header of each view declares the
+/// instance of this template with the attribute that makes the shared library export it.
 template <class HandleType>
 class ObjectView {
 public:
@@ -27,11 +27,12 @@ public:
     /// True if the object is in the world, false if it was removed.
     bool alive(HandleType object) const;
     std::vector<HandleType> all() const;  // handles in the order added
-    /// Name of an object for users and files, by default KIND_SLOT, such as "cable_0". It affects no step.
+    /// Name of an object for users and files. Default: its kind and a number, such as "cable_0". Names do not affect
+    /// steps.
     std::string name(HandleType object) const;
     /// Sets the name of an object. Names need not differ, but find() needs a name that occurs once.
     void set_name(HandleType object, const std::string& name);
-    /// Returns the object of a name. Throws SceneError if there is none, or more than one.
+    /// Returns the object with this name. Throws SceneError if there is none, or more than one.
     HandleType find(const std::string& name) const;
 
 protected:

@@ -53,10 +53,11 @@ private:
 /// stress or strain, contacts by stick or slide, joints, ties, cables and springs by force, values under the pointer,
 /// and plots of stage times and energies. It can export pictures and videos. It works offline, because three.js is
 /// inlined. The frames are kept in memory in the compressed form of the page. Positions are accurate to 1/32768 of a
-/// body's extent, and values are stored as square roots in 11 bits (docs/decisions/0016-page-stream.md).
+/// body's extent, and values such as speed or stress are stored as their square roots in 11 bits
+/// (docs/decisions/0016-page-stream.md).
 class PageWriter {
 public:
-    /// Writes to `file` when the page is closed.
+    /// The page is written to `file` by close().
     PageWriter(const std::filesystem::path& file, const std::string& title);
     ~PageWriter();
     /// Adds the present state as a frame.
@@ -88,17 +89,18 @@ struct EnumNames<FilmColor> {
 
 /// Settings of a film in USD format.
 struct FilmSettings {
-    Real frame_step = 1.0 / 60;         // time between two frames, which have consecutive numbers in the film [s]
-    FilmColor color = FilmColor::none;  // none: each body has its own colour
-    // Value at the upper end of the colours, which begin at zero, in the unit of the quantity. If empty, 99 % of the
-    // values above zero are below it.
+    Real frame_step = 1.0 / 60;         // simulated time from one frame number of the film to the next [s]
+    FilmColor color = FilmColor::none;  // quantity that the colours show
+    // Value at the upper end of the colour scale, > 0, in the unit of the quantity. The scale begins at zero. If empty,
+    // the end is chosen so that 99 % of the values above zero are below it.
     std::optional<Real> color_max{};
 };
 
 /// Writes a film in the binary format of USD (Universal Scene Description), which Blender, Houdini and other programs
 /// open without plug-ins (docs/outputs.md). The file has a mesh for each body and each collider, with velocities for
 /// motion blur. The quantity of FilmColor is a colour and a number at each vertex: von Mises stress [Pa], speed [m/s],
-/// or contact pressure [Pa]. Frames are written at once to a temporary file. The film is complete or does not exist.
+/// or contact pressure [Pa]. Each frame is written immediately to a temporary file, which close() moves to its place;
+/// so the film is complete or does not exist.
 class FilmWriter {
 public:
     /// Throws SceneError if the file cannot be written, if its extension is not .usd or .usdc, or if a setting is
@@ -118,8 +120,8 @@ private:
 };
 
 /// Writes the present state as a binary glTF file (.glb). The file has a mesh for each body and each collider, with
-/// normals. Colours are as in a film. Textures are included if they are PNG or JPEG images. glTF has the y axis up, so
-/// the meshes are rotated by -90 degrees about x.
+/// normals. `color` and `color_max`: see FilmSettings. Textures are included if they are PNG or JPEG images. glTF has
+/// the y axis up, so the meshes are rotated by -90 degrees about x.
 void write_gltf(const World& world, const std::filesystem::path& file, FilmColor color = FilmColor::none,
                 std::optional<Real> color_max = {});
 

@@ -86,8 +86,8 @@ ContactProblem part_of(const ContactProblem& problem, std::span<const Index> con
 /// value or a setting is out of its range.
 ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings = {});
 
-/// Errors of given reactions as in FCLIB and Siconos (rho = 1, docs/methods/errors.md 3), and the energy gap of
-/// Coulomb's law.
+/// Errors of given reactions as in FCLIB and Siconos (natural map with rho = 1, docs/methods/errors.md 3), and the
+/// violation of Coulomb's law as an energy.
 struct ProblemError {
     Real absolute, relative, over_q;  // see error_absolute, error and error_over_q of ProblemSolution
     Real energy_gap;                  // see ProblemSolution::energy_gap [J]
@@ -96,7 +96,8 @@ struct ProblemError {
 /// number of contacts.
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction);
 
-/// Nodes with a coupled mass matrix: an impulse on one node changes the velocities of all these nodes.
+/// A group of nodes with a coupled mass matrix: an impulse on one node changes the velocities of all nodes of the
+/// group.
 struct CoupledNodes {
     std::vector<Index> node;    // numbers of the nodes
     std::vector<Real> inverse;  // inverse mass matrix, stored row by row, symmetric [1/kg]
@@ -108,10 +109,11 @@ struct RigidPoints {
     std::vector<Vec3> arm;                // node position relative to the centre of mass [m]
     Real inverse_mass = 0;                // [1/kg]
     Mat3 inverse_inertia = Mat3::Zero();  // [1/(kg m^2)]
-    // For a sphere or capsule [m]: distance of the contact points from the centre of the sphere or the axis of the
-    // capsule. The nodes lie on this centre or axis.
+    // For a sphere or capsule: its radius [m]. The nodes lie at the centre of the sphere or on the axis of the capsule,
+    // and contact points at this distance from them along the normal. 0 for other shapes.
     Real radius = 0;
-    // For a cylinder: position of the contact point of each contact relative to the centre of mass [m].
+    // For a cylinder: position of the contact point relative to the centre of mass [m], indexed by contact (entries of
+    // contacts with other bodies are not used). Empty for other shapes.
     std::vector<Vec3> touch{};
 };
 
@@ -129,7 +131,7 @@ struct StrainedPoints {
 struct LumpedContacts {
     // The following arrays have one entry per contact.
     std::vector<std::array<Index, 4>> node;   // nodes of the stencil
-    std::vector<std::array<Real, 4>> weight;  // their signed weights
+    std::vector<std::array<Real, 4>> weight;  // signed weights of these nodes in the relative velocity
     std::vector<Vec3> normal;                 // unit normal of the contact
     // Velocity offset of the contact [m/s]: the sum of the contributions of the gap, of the collider's motion and of
     // the angular velocity of round bodies, minus a friction correction. This correction is half of the change of the
@@ -139,7 +141,8 @@ struct LumpedContacts {
     // The following arrays have one entry per node.
     std::vector<Real> inverse_mass;  // inverse mass; 0 if no impulse moves the node [1/kg]
     std::vector<Vec3> velocity;      // velocity before the contact impulses [m/s]
-    // For the nodes in the following lists inverse_mass must not be 0, but its value is not used.
+    // Nodes in the following lists get their inverse masses from these lists. Their inverse_mass is not used, but must
+    // not be 0, which would mark them as immovable.
     std::vector<CoupledNodes> coupled{};     // groups of nodes with a common mass matrix
     std::vector<RigidPoints> rigid{};        // rigid and implicit bodies
     std::vector<StrainedPoints> strained{};  // deformation of implicit bodies
@@ -149,19 +152,20 @@ struct LumpedContacts {
 /// two tangents that depend on the normal alone. Each contact must have at least one node that can move.
 ContactProblem assemble_problem(const LumpedContacts& contacts, const std::string& name);
 
-/// Transforms vectors from world axes into the contact frames, one vector per contact.
+/// Transforms one vector per contact from world axes into the frame of this contact.
 std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors);
 
 /// The contact problem of one step of a world, as the solver received it, and the impulses that the solver found.
-/// Contacts that no impulse can move are omitted. Joints, ties of the kinds weld and ball, and nodes on rollers are
-/// eliminated from `problem`: its W and q are those of the bodies that these connect. Ties of the kind slide, motors,
-/// limits, passive forces, and cables with friction or a prescribed length keep their impulses of the step, whose
-/// effect is part of q.
+/// Contacts that no impulse can move are omitted. If static friction differs from dynamic friction or depends on the
+/// direction, `impulse` does not solve `problem`, which has only one coefficient per contact. The constraints of
+/// joints, of weld and ball ties, and of nodes on rollers are eliminated from `problem`: its W and q describe the
+/// constrained bodies. The following impulses of the step are taken as given, and their effect is part of q: those of
+/// slide ties, of motors, limits and passive forces of joints, and of cables with friction or a prescribed length.
 struct StepProblem {
     std::uint64_t step = 0;      // number of the step, counted from 1
     Real time = 0;               // time at the start of the step [s]
     Real step_size = 0;          // [s]
-    LumpedContacts lumped;       // the contacts as point-mass stencils, the form that the step used, without
+    LumpedContacts lumped;       // the contacts between point masses, in the form that the step used, without
                                  // joints, ties, rollers and cables
     ContactProblem problem;      // the contacts of `lumped` as a problem with general blocks
     std::vector<Vec3> impulse;   // impulses of the step in the contact frames of `problem` [N s]

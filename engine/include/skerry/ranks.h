@@ -16,11 +16,12 @@ namespace skerry {
 /// The processes that simulate one world together. Each process is a rank.
 class Ranks;
 
-/// Rule that chooses the ranks that own bodies. The results are the same for all rules.
+/// Rule that chooses the rank that owns each body. Connected bodies, for example those of a joint, always have one
+/// owner. The rule does not affect the results of steps.
 enum class OwnerMap : std::uint8_t {
-    curve,        // equal shares of the cost along the Hilbert curve, which keeps neighbours together
-    round_robin,  // bodies in turn; connected bodies count as one
-    random,       // random owners, by RankSettings::seed
+    curve,        // pieces of a Hilbert curve with equal computing cost, so that a rank owns neighbours
+    round_robin,  // the ranks in turn, body by body
+    random,       // random ranks, from RankSettings::seed
 };
 template <>
 struct EnumNames<OwnerMap> {
@@ -34,19 +35,20 @@ struct EnumNames<OwnerMap> {
 /// Settings of distribute().
 struct RankSettings {
     OwnerMap map = OwnerMap::curve;  // rule that chooses the owners
-    // The bodies get new owners if the greatest cost of a rank exceeds the mean cost by this factor. Only for
-    // OwnerMap::curve.
+    // The bodies get new owners if the computing cost of a rank is more than this factor times the mean cost of the
+    // ranks. Only for OwnerMap::curve.
     double most_imbalance = 1.2;
-    std::uint64_t seed = 1;  // for OwnerMap::random
+    std::uint64_t seed = 1;  // seed of OwnerMap::random
 };
 
 /// Divides the world of rank 0 among all ranks, which must all call the function. The worlds of the other ranks are
 /// replaced by parts of this world, with the same handles; only their backend, number of threads and callback of
 /// watch_steps() stay. So the other ranks need not build anything. Afterwards each rank simulates the bodies that it
 /// owns. All ranks must then make the same calls of advance() and gathered(). An error of one rank alone, such as too
-/// little memory, ends all ranks with a message and exit code 1. Calls that change objects throw SceneError, and so
-/// does distribute() on all ranks if they cannot divide the world. Functions that read a divided world, such as
-/// energy() or state_hash(), use only the bodies that this rank holds; read results from gathered().
+/// little memory, ends all ranks with a message and exit code 1. Calls that change objects of a divided world throw
+/// SceneError. If the world cannot be divided, distribute() throws SceneError on all ranks. Functions that read a
+/// divided world, such as energy() or state_hash(), use only the bodies that this rank holds; read results from
+/// gathered().
 void distribute(World& world, Ranks& ranks, const RankSettings& settings = {});
 
 /// Returns the complete world on rank 0 and nothing on the other ranks. All ranks must call the function. The result

@@ -26,7 +26,8 @@ struct PointProbe {
     BodyHandle body{};             // body of the point
     std::array<Index, 4> node{};   // numbers of the nodes within the body
     std::array<Real, 4> weight{};  // weight of each of these nodes
-    // Position from which the displacement is measured [m]. Default: the position when the recorder is made.
+    // Position from which the displacement is measured [m]. Default: the position of the point when the Recorder is
+    // made.
     std::optional<Vec3> origin{};
 };
 /// Returns a probe for the material point that is now at `point` (world coordinates [m]), interpolated in the
@@ -40,7 +41,7 @@ struct BodyProbe {
     std::optional<Vec3> origin{};  // see PointProbe::origin
 };
 /// Records the contact forces on a body, summed over all contacts, or over the contacts with one other body or
-/// collider: impulse, mean force and moment, largest force of a step, pressing force, friction force, and number of
+/// collider: impulse, mean force and moment, largest force of a step, normal force, friction force, and number of
 /// contacts (ForceReport).
 struct BodyForceProbe {
     BodyHandle body{};                                             // body on which the forces act
@@ -56,8 +57,8 @@ struct ColliderForceProbe {
 struct ReactionProbe {
     AttachmentHandle attachment{};  // attachment that exerts the force
 };
-/// Records force and moment of a joint at the last step, and for a hinge or slider also its coordinate, its speed, and
-/// the parts of the moment or force that its motor and its limits exert (JointState).
+/// Records force and moment of a joint at the last step. For a hinge or slider also records its coordinate, its speed,
+/// and the parts of the moment or force that its motor, its passive forces and its limits exert (JointState).
 struct JointProbe {
     JointHandle joint{};  // joint of any kind
 };
@@ -123,9 +124,10 @@ struct SeriesColumn {
     std::string heading() const;
 };
 
-/// Records time series. The first call of sample() at or after a multiple of `every` records a row of values. Forces in
-/// a row cover all calls of advance since the previous row: impulses are sums, forces and moments are means, and
-/// largest_force is the largest force of any step. All rows stay in memory as long as the Recorder exists.
+/// Records time series. The first call of sample() at or after each multiple of `every` records a row of values. Forces
+/// of contacts and attachments in a row cover all calls of advance since the previous row: impulses are sums, forces
+/// and moments are means, and largest_force is the largest force of any step. All other values are those at the time of
+/// the row. All rows stay in memory as long as the Recorder exists.
 class Recorder {
 public:
     /// `every` is the time between rows, >= 0 [s]; with 0 every sample makes a row. If a probe needs forces and the
@@ -148,11 +150,11 @@ public:
 
     /// Writes the rows recorded so far to a CSV file. From now on each new row is written as soon as it is recorded, so
     /// a run that is killed leaves a file of complete rows. An existing file is replaced as in write_csv. With
-    /// `keep_until` [s] the existing rows up to this time are kept at the beginning; the file must have the same
-    /// headings. Throws SceneError, here and in sample.
+    /// `keep_until` [s] the existing rows up to this time are kept at the beginning; the headings of the file must be
+    /// those of this Recorder. Throws SceneError if the file cannot be written; sample() then does so, too.
     void stream_csv(const std::filesystem::path& file, std::optional<Real> keep_until = {});
-    /// Writes a CSV file: headings with units in the first line, then numbers with all digits, "nan" for missing
-    /// values. An existing file is replaced completely or not at all. Throws SceneError.
+    /// Writes a CSV file: headings with units in the first line, then numbers with all digits, "nan" for values that
+    /// were not measured. An existing file is replaced completely or not at all. Throws SceneError.
     void write_csv(const std::filesystem::path& file) const;
     /// Writes an HDF5 file: a data set "/time" and, for each other column, a data set "/PROBE/QUANTITY" with the
     /// attribute "unit". An existing file is replaced completely or not at all. Throws SceneError.

@@ -7,13 +7,14 @@
 namespace skerry::mesh {
 
 /// Divides each tetrahedron into eight by new nodes at the midpoints of its edges: one part at each corner, and four
-/// around the shortest diagonal between midpoints. Repeated subdivision leaves the worst quality of the tetrahedra
-/// (MeshReport::min_quality) at about its value after the first one. Triangles of a mesh without tetrahedra are divided
-/// into four.
+/// around the shortest diagonal between midpoints. The first subdivision can lower the worst quality of the tetrahedra
+/// (MeshReport::min_quality); further ones hardly change it. Triangles of a mesh without tetrahedra are divided into
+/// four.
 ///
-/// The surface keeps its shape, also where the triangles approximate a curved one. The new nodes follow the present
-/// ones, which keep their numbers; in Mesh::file_number they get numbers after the largest one. Parts have the labels
-/// and vectors of the whole, and replace it in sets of faces and tetrahedra. A set of nodes gets the midpoints of
+/// The surface keeps its shape: new nodes stay on the flat triangles, even if these approximate a curved surface. The
+/// present nodes keep their numbers, and the new nodes are appended; in Mesh::file_number new nodes get numbers after
+/// the largest one. The parts of a tetrahedron have its label and vectors. In sets, the parts of a face or tetrahedron
+/// replace it. A set of nodes gets the midpoints of
 /// - all edges of faces whose three nodes are in the set,
 /// - edges with both ends in the set, if one of the ends belongs to no such face, as on a curve.
 ///

@@ -15,24 +15,26 @@ class World;
 
 /// Settings of relax().
 struct RelaxSettings {
-    // Largest out-of-balance force of a body at rest, relative to the sum of the forces that act on it, > 0 and < 1.
+    // Largest `RelaxReport::residual` in equilibrium, > 0 and < 1. It must hold in 10 successive steps, because the
+    // forces in a vibration balance for a moment only.
     Real tolerance = 1e-3;
-    int max_steps = 100000;  // largest number of steps for each share of the loads, >= 1
-    // 1: the loads act as a whole. More: forces, tractions and accelerations of loads and of World::set_loads, and
-    // prescribed pressures and tensions (of cables and fibres), grow from zero in this number of equal load steps, each
-    // of which ends in equilibrium. If a load step finds none, it is halved, at most six times.
+    int max_steps = 100000;  // largest number of steps for each load step, >= 1
+    // 1: the loads act in full from the start. More: forces, tractions and accelerations of loads and of
+    // World::set_loads, and prescribed pressures and tensions (of cables and fibres), grow from zero in this number of
+    // equal load steps, each of which ends in equilibrium. Weight and drag act in full. If a load step finds no
+    // equilibrium, it is halved, at most six times.
     int load_steps = 1;
 };
 
 /// Result of relax(): whether an equilibrium was found, and the body that is farthest from it.
 struct RelaxReport {
     bool converged = false;  // whether all bodies are in equilibrium
-    Real load = 0;           // share of the loads in the last equilibrium that was found: 1 if converged
-    // The largest out-of-balance force of a body in the last step, relative to the sum of the magnitudes of the
-    // weights, loads and contact forces on its nodes.
+    Real load = 0;           // share of the loads in the last equilibrium found: 1 if converged, 0 if none was found
+    // Out-of-balance forces of the body `worst` in the last step: sum of their magnitudes over its nodes, divided by
+    // the sum of the magnitudes of the weights, loads and contact forces on its nodes.
     Real residual = 0;
-    std::optional<BodyHandle> worst{};  // the body with the force `residual`; missing if no body can move
-    std::string worst_name;             // name of this body
+    std::optional<BodyHandle> worst{};  // the body with the largest residual; missing if no body can move
+    std::string worst_name;             // name of the body `worst`
     Real speed = 0;                     // largest speed of a node of the body `worst` in the last step [m/s]
     int steps = 0;                      // number of steps
     Real seconds = 0;                   // sum of the step lengths [s]
@@ -40,15 +42,16 @@ struct RelaxReport {
 };
 
 /// Moves the bodies of a world to a static equilibrium by dynamic relaxation with kinetic damping (Day 1965; Cundall
-/// 1976): ordinary steps, in which a body loses its velocities each time its kinetic energy has passed a maximum.
-/// Contacts and friction are those of the steps. All bodies start without velocities, and end without them. The result
-/// may depend on the path of this motion, where friction or bistable shapes permit several equilibria.
+/// 1976): ordinary steps, with contact and friction, after which the velocities of a body are set to zero each time its
+/// kinetic energy has passed a maximum. Joined bodies are stopped together. All bodies start and end without
+/// velocities. Friction or bistable shapes can permit several equilibria; the motion during the steps then decides
+/// which one is found.
 ///
 /// Time does not advance: values over time and prescribed motions stay at their present values, colliders and
-/// attachments do not move, gas does not flow, cables driven by a rate keep their greatest length, ties do not break,
-/// and the report of the run does not count the steps. Viscous stress is fully relaxed at the end. If the residual
-/// stays above the tolerance, for example of a sliding body, or if a step cannot be completed, the world does not
-/// change. Throws the errors of World::settle_start(), and SceneError if a setting is out of range.
+/// attachments do not move, gas does not flow, cables with a prescribed rate are not drawn in, ties do not break, and
+/// the report of the run does not count the steps. Viscous stress is fully relaxed at the end. The world does not
+/// change if the residual stays above the tolerance, for example because a body slides, or if a step cannot be
+/// completed. Throws the errors of World::settle_start(), and SceneError if a setting is out of range.
 ///
 /// Calls `go_on`, if given, with the report so far after each step; if it returns false, the relaxation ends and the
 /// world does not change.

@@ -17,7 +17,7 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Result of a call of World::advance. With all values but `ok` and `stopped`, a step was refused.
+/// Result of a call of World::advance. All values but `ok` and `stopped` mean that the last step was refused.
 enum class StepStatus {
     ok,          // all steps were taken
     not_finite,  // a velocity would not be finite
@@ -33,15 +33,15 @@ enum class ContactMotion {
     stick,  // the objects press on each other without sliding
     slide,  // the objects press on each other and slide
 };
-/// The condition that limits the length of a step (docs/step_length.md). The speed limit is computed before a step.
+/// The condition that limits the length of a step (docs/step_length.md). The limit `speed` is computed before a step.
 /// Inversions, crossings and sudden impacts are found during an attempt at a step, which is then discarded. After such
 /// an attempt, each step is at most a fifth longer than the last.
 enum class StepLimit {
     setting,  // Settings::step_size
     rest,     // the stable step of a body in its rest shape
-    strain,   // the stable step of a deformed body, or Newton's method failed for a longer step of an implicit body
-    // The deformation gradient of an element would change by more than 0.2 in a step (Frobenius norm), or a body with a
-    // joint would rotate by more than 0.1 rad.
+    strain,   // deformation shortened the stable step of a body, or Newton's method failed for a longer step
+    // In a longer step, the deformation gradient of an element would change by more than 0.2 (Frobenius norm), or a
+    // body with a joint or tie would rotate by more than 0.1 rad.
     speed,
     inversion,  // an element would turn inside out
     crossing,   // surfaces would pass through each other
@@ -60,8 +60,8 @@ struct EnumNames<StepLimit> {
 };
 
 /// A contact of the last step, or a contact between sleeping bodies. A contact between sleeping bodies is shown as in
-/// the last step before the bodies fell asleep. Its impulse is the contact force of that step, multiplied by the
-/// duration of the forces in the last step.
+/// the last step before the bodies fell asleep. Its impulse is scaled to the present `seconds`, so that force() returns
+/// the contact force of that step.
 struct Contact {
     // Body of the contact point (point on a triangle) or of the first edge (edge on an edge). A stale handle if this
     // point or edge belongs to a mesh collider.
@@ -83,17 +83,16 @@ struct Contact {
     // and `friction_across` is the coefficient of sliding across it.
     Real static_friction = 0, dynamic_friction = 0, friction_across = 0;
     Vec3 friction_direction = Vec3::Zero();  // unit tangent; zero: friction is the same in all directions
-    Vec3 slip = Vec3::Zero();                // tangential relative velocity after the step [m/s]
+    Vec3 slip = Vec3::Zero();                // tangential velocity of the first body relative to the other [m/s]
     Vec3 impulse = Vec3::Zero();             // impulse on the first body [N s]
     // Duration of the forces in this step [s], by which force() divides the impulse: the time from the middle of the
     // previous step to the middle of this step. It equals the step length if both steps are equally long, with
-    // leapfrog, and for contacts of implicit bodies alone.
+    // leapfrog, and if only implicit bodies (and colliders) touch.
     Real seconds = 0;
     ContactMotion motion = ContactMotion::open;  // motion after the step
     Index region = -1;  // region number; -1 if no node of the contact can move, or if its bodies sleep
 
-    /// Mean force on the first body during the step [N]. The forces on a sleeping body balance its weight and loads,
-    /// whatever the step lengths were.
+    /// Mean force on the first body during the step [N].
     Vec3 force() const { return seconds > 0 ? Vec3(impulse / seconds) : Vec3(Vec3::Zero()); }
 };
 
@@ -108,9 +107,9 @@ struct StageReport {
 /// Energies of a world.
 struct Energy {
     Real kinetic = 0;     // energy of the motion of all bodies [J]
-    Real elastic = 0;     // energy stored by deformation [J]
+    Real elastic = 0;     // energy stored by deformation of bodies, fibres and springs [J]
     Real potential = 0;   // energy of the weight, relative to the origin [J]
-    Real dissipated = 0;  // energy lost since the start to contacts, damping, material losses and plastic flow [J]
+    Real dissipated = 0;  // energy lost since the start; see RunCounters::dissipated [J]
 };
 
 /// Report of one call of `advance`. Filling the report allocates no memory unless an error is reported.
@@ -118,15 +117,15 @@ class StepReport {
 public:
     /// False if a step could not be completed, or if the call was asked to stop.
     bool ok() const { return status == StepStatus::ok; }
-    /// Describes the failure: the body and the reason. Empty if ok().
+    /// Describes the failure (the body and the reason), or states that the call was asked to stop. Empty if ok().
     std::string message() const;
 
-    /// Names the body that is unstable at step_size of the settings, the longest step that this body allowed, and the
-    /// first element that turned inside out. Empty if there is neither such a body nor such an element.
+    /// Warns if a body is unstable at Settings::step_size (`limited` > 0) or if an element turned inside out
+    /// (`inverted` > 0). Otherwise empty.
     std::string warning() const;
 
     StepStatus status = StepStatus::ok;  // result of the call
-    BodyHandle body;                     // the body that caused the failure, if not ok
+    BodyHandle body;                     // the body that caused the failure; a stale handle if there is none
     Index node = -1;                     // number of the node within the body, if a node caused the failure
     // Number of the element within the body, if an element caused the failure; `node` is one of its corners
     Index element = -1;
@@ -141,20 +140,21 @@ public:
     // Number of attempts at a step that were repeated because surfaces crossed. The repeated attempt treats the
     // crossings as contacts.
     int retried = 0;
-    // Number of steps shorter than step_size, because the body `limited_by` is unstable at step_size.
+    // Number of steps that were shorter than Settings::step_size because a body is unstable at that length. The next
+    // two members describe the last of these steps.
     int limited = 0;
     Real limited_step = 0;       // longest step that the body `limited_by` allowed [s]
-    std::string limited_by;      // name of the body `limited_by`, which is unstable at step_size
+    std::string limited_by;      // name of the body that limited the step
     Index contacts = 0;          // number of contacts of the last step, without contacts between sleeping bodies
     Index regions = 0;           // number of regions of the last step
     Index largest_region = 0;    // number of contacts of the largest region of the last step
-    Index unconverged = 0;       // number of regions that the solver did not converge in, summed over the steps
+    Index unconverged = 0;       // number of regions in which the solver did not converge, summed over the steps
     Real worst_error = 0;        // largest relative solver error of a region in any step
     Index worst_region = 0;      // number of contacts of the region with worst_error
     Real max_penetration = 0;    // largest overlap of surfaces in any step [m]
     Real max_gap_violation = 0;  // largest penetration into the contact distance in any step [m]
-    // Largest overlap of surfaces that no contact can move in any step: held nodes inside a collider, or inside another
-    // held body [m].
+    // Largest overlap, in any step, between surfaces that no contact can move: held nodes inside a collider or inside
+    // another held body [m].
     Real held_penetration = 0;
     Index inverted = 0;          // number of elements that turned inside out, including those in discarded attempts
     BodyHandle inverted_body{};  // body of the first element that turned inside out
@@ -164,7 +164,7 @@ public:
     // Number of crossings (a node through a triangle, or an edge through an edge) that no attempt at the step could
     // prevent.
     Index crossed = 0;
-    std::string body_name;  // name of `body`, if not ok
+    std::string body_name;  // name of `body`; empty if there is none
 };
 
 /// Statistics of the steps whose length one particular cause has limited, since the world was made.
@@ -183,8 +183,8 @@ enum class DynamicsReason : std::uint8_t {
     self_contact,  // explicit, because implicit bodies have no self-contact
     losses,        // explicit, because a material of the body sets a loss factor above 0
     plasticity,    // explicit, because a material of the body yields
-    strain,        // explicit, because the body may deform by more than the limit for implicit bodies
-    cost,          // implicit if implicit steps are predicted to cost less than half as much as explicit ones
+    strain,        // explicit, because the expected strain is above 2 %, the limit for implicit bodies
+    cost,          // explicit or implicit by predicted cost: implicit if this costs less than half as much
 };
 template <>
 struct EnumNames<DynamicsReason> {
@@ -206,13 +206,14 @@ struct DynamicsEstimate {
     // Step length for the deformation of the body if it is implicit [s]: the larger of the member implicit_step and
     // Settings::implicit_step.
     Real deforming_step = 0;
-    // Computing time per simulated second on one core [s], for the elements of the world and for the solves of this
-    // body.
+    // Predicted computing time per simulated second on one core [s] if the body is explicit or implicit. It includes
+    // the elements of all bodies, and the contacts and solves of this body.
     Real explicit_cost = 0, implicit_cost = 0;
-    // Largest strain that weight, the body's speed and a fall from ten times the body's size may cause.
+    // Largest strain that may be caused by the weight, or by an impact at the initial speed after a fall from ten times
+    // the size of the body.
     Real strain = 0;
-    // Frequency above which steps of the length deforming_step damp vibrations instead of resolving them [Hz]: there
-    // the angular frequency times the step length is above 1/2. 0: steps damp no vibrations.
+    // Frequency above which steps of the length deforming_step damp vibrations instead of resolving them [Hz]: 1/(4 pi
+    // deforming_step), at which the angular frequency times the step length is 1/2. 0: steps damp no vibrations.
     Real damped_above = 0;
 };
 
@@ -228,14 +229,16 @@ struct DynamicsChoice {
     std::string message() const;
 };
 
-/// Two bodies, or a body and a collider, that overlapped when the first step began after one of them was added or moved
-/// by the user. Surfaces that only touch, or are closer than the contact distance, do not overlap.
+/// Two bodies, or a body and a collider, that overlapped before a step. A pair is checked before the first step after
+/// the user added or moved one of the two. Surfaces that only touch, or are closer than the contact distance, do not
+/// overlap.
 struct StartOverlap {
-    BodyHandle first{};                        // the body that `depth` and `direction` refer to
-    BodyHandle second{};                       // the other body; a stale handle if the partner is a collider
-    ColliderHandle collider{};                 // the collider; a stale handle if both partners are bodies
-    std::string first_name, second_name;       // names of the two partners when the overlap was found
-    OverlapKind kind = OverlapKind::crossing;  // position of the surfaces to each other
+    BodyHandle first{};                   // the body that `depth` and `direction` refer to
+    BodyHandle second{};                  // the other body; a stale handle if the partner is a collider
+    ColliderHandle collider{};            // the collider; a stale handle if both partners are bodies
+    std::string first_name, second_name;  // names of the two partners when the overlap was found
+    // kind of the overlap, for example `inside`: `first` is inside the partner
+    OverlapKind kind = OverlapKind::crossing;
     // Approximate length of the shortest translation of `first` that ends the overlap [m].
     Real depth = 0;
     Vec3 direction = Vec3::Zero();  // unit direction of the translation of `first` that ends the overlap
@@ -246,7 +249,7 @@ struct StartOverlap {
     std::string message() const;
 };
 
-/// A body that was moved before its first step, so that it overlaps no other object.
+/// A body that was moved before its first step, because it overlapped another object.
 struct StartMove {
     BodyHandle body{};                // the moved body
     std::string name;                 // name of the body when it was moved
@@ -261,9 +264,9 @@ struct SelfCrossing {
     // true if the body's setting self_contact was on when the crossing was last found
     bool self_contact = false;
     Real first_time = 0, last_time = 0;  // times of the first and of the last check that found a crossing [s]
-    // Number of places where an edge passes through a triangle. last_places: at the last check of this surface, 0 if
-    // that check found none. most_places: largest number of all checks. Places whose features are at most one mean edge
-    // length apart in the rest shape do not count, because crushed elements cause such places.
+    // Number of places where an edge passes through a triangle. last_places: in the last check of this surface, even if
+    // it found none. most_places: in the check with most places. Places do not count if edge and triangle are at most
+    // one mean edge length apart in the rest shape, because crushed elements cause such places.
     Index last_places = 0, most_places = 0;
 
     /// Returns a text such as "the surface of body 'knot' crosses itself in up to 312 places, first found at 0.41 s and
@@ -279,45 +282,51 @@ struct RunCounters {
     std::uint64_t resting_steps = 0;  // number of steps in which all bodies are asleep and nothing moves; no stage runs
     // Number of bodies whose elements are skipped because they fly freely and undeformed, summed over all steps.
     std::uint64_t unstrained = 0;
-    std::uint64_t shortened = 0;   // number of attempts at a step that were repeated with a shorter step
-    std::uint64_t retried = 0;     // number of attempts that were repeated with the crossings as contacts
+    std::uint64_t shortened = 0;  // number of attempts at a step that were repeated with a shorter step
+    // number of attempts that were repeated because surfaces crossed; the repeated attempt treats crossings as contacts
+    std::uint64_t retried = 0;
     std::uint64_t limited = 0;     // number of steps shorter than step_size, because a body is unstable at step_size
     std::uint64_t inversions = 0;  // number of times that an element turned inside out
-    // number of contacts and number of solver sweeps over all regions, summed over the steps
+    // number of contacts; number of solver sweeps, summed over regions; both summed over the steps
     std::uint64_t contact_sum = 0, iteration_sum = 0;
     std::uint64_t solved = 0;       // number of solved regions, summed over the steps
     std::uint64_t unconverged = 0;  // number of regions that reached the iteration limit
     std::uint64_t certified = 0;  // number of regions whose warm start was accurate enough, so that no sweep was needed
     std::uint64_t closed_form = 0;    // number of regions of one contact, solved in closed form
     std::uint64_t separating = 0;     // number of regions whose contacts all separate, so that no impulse acts
-    std::uint64_t frictionless = 0;   // number of regions without friction, solved with one row per contact
+    std::uint64_t frictionless = 0;   // number of regions without friction, solved with one unknown per contact
     std::uint64_t in_lanes = 0;       // number of regions solved in parallel in the lanes of vector instructions
     std::uint64_t contact_steps = 0;  // sum of (contacts times sweeps) over all regions that needed sweeps
     std::uint64_t swept = 0;          // number of regions that needed sweeps
-    // number of steps of implicit bodies of large strain that Newton's method solved
+    // number of steps that Newton's method solved, summed over the implicit bodies at large strain
     std::uint64_t large_strain_steps = 0;
-    // Number of Newton steps, and of factorisations of the tangent stiffness, for implicit bodies of large strain.
+    // Number of Newton iterations, and of factorisations of the tangent stiffness, for implicit bodies at large strain.
     std::uint64_t newton_steps = 0, tangent_factors = 0;
     // Largest number of contacts and of regions in any step, and of contacts in any region.
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
     Real worst_error = 0;    // largest relative solver error of a region in any step
     Index worst_region = 0;  // number of contacts of the region with worst_error
-    Real dissipated = 0;     // dissipated by contacts, damping, material losses and plastic flow [J]
-    Real plastic_work = 0;   // part of `dissipated`: plastic flow of elements in steps [J]
+    // dissipated by contacts, dampers of springs, friction of cables, damping, material losses and plastic flow, and
+    // lost when bodies fall asleep [J]. Losses in joints are not included.
+    Real dissipated = 0;
+    Real plastic_work = 0;                            // part of `dissipated`: by plastic flow of elements in steps [J]
     Real max_penetration = 0, max_gap_violation = 0;  // largest values in any step; see StepReport [m]
     // Values of max_penetration and max_gap_violation in the first step alone [m].
     Real start_penetration = 0, start_gap_violation = 0;
 };
 
-/// Relative error of the contact impulses of a region above which the results of a run are not to be trusted.
+/// If the contact impulses of a region had a larger relative error than this, the results of the run are not to be
+/// trusted.
 inline constexpr Real largest_trusted_error = 0.5;
 
-/// The counters of the run, and measures of the present state. Computing these measures takes a pass over all tables.
+/// The counters of the run, and measures of the present state. To compute these measures, World::report() passes over
+/// all data of the world once.
 struct WorldReport : RunCounters {
-    Real time = 0;                                                   // simulated time [s]
-    std::size_t asleep = 0;                                          // number of bodies that are asleep now
-    std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;  // numbers of objects now
-    // Stable step of the stiffest body now [s]. If no body limits the step: the step that advance() takes.
+    Real time = 0;           // simulated time [s]
+    std::size_t asleep = 0;  // number of bodies that are asleep now
+    // numbers of objects now; `elements` counts tetrahedra
+    std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;
+    // Stable step of the stiffest body now [s]. If no body limits the step: the step length that advance() uses.
     Real stable_step = 0;
     std::string stable_step_body;  // name of the stiffest body; empty if no body limits the step
     // Number of clusters, number of nodes in clusters, and number of implicit elements in clusters. A cluster is a
@@ -325,7 +334,7 @@ struct WorldReport : RunCounters {
     std::size_t clusters = 0, cluster_nodes = 0, implicit_elements = 0;
     // Number of tetrahedra in clusters that have an inversion barrier (docs/methods/elasticity.md 7.7).
     std::size_t guards = 0;
-    // automatic choices for bodies added as `automatic`, in the order added
+    // choices between explicit and implicit for bodies added as `automatic`, in the order added
     std::vector<DynamicsChoice> dynamics_choices;
     // Overlaps found by the last check, and bodies that were moved to resolve them. The check runs before the first
     // step after an object was added or moved by the user.
@@ -337,16 +346,18 @@ struct WorldReport : RunCounters {
     std::vector<StageReport> stages;           // stages in the order of the step
     // Averages: contacts per step, regions per step, and sweeps per solved region.
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;
-    // `candidates`: number of pairs of features in all candidate lists now
+    // Number of searches for pairs of near bodies, number of searches for pairs of near features (both since the
+    // start), and number of feature pairs that the last searches found.
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
     // Sums over the run:
-    // - tests of fast candidates for crossings, where a candidate is a pair of a node and a triangle, of two edges, or
-    //   of a feature and a collider;
+    // - tests whether a fast candidate crosses; a candidate is a node and a triangle, two edges, or a feature and a
+    //   collider;
     // - crossings found in discarded attempts;
     // - crossings that no attempt at a step could prevent.
     std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;
-    // Largest overlap of surfaces that no contact can move, in any step [m], and the names of the two objects: a body
-    // with held nodes, and a collider or another body. The names are empty if one of the objects was removed.
+    // Largest overlap, in any step, between surfaces that no contact can move [m]. held_body: name of the body whose
+    // held nodes overlap. held_in: name of the collider or body that they overlap. Both are empty if one of the objects
+    // was removed.
     Real held_penetration = 0;
     std::string held_body, held_in;        // see held_penetration
     Energy energy;                         // present energies of the world
@@ -363,22 +374,23 @@ struct WorldReport : RunCounters {
     // Number of steps since the balances were restarted by the last change from outside, such as an added body.
     std::uint64_t balanced_steps = 0;
     Real worst_volume_ratio = 1;    // smallest det F (volume ratio) of a tetrahedron now; negative if inverted
-    std::string worst_volume_body;  // name of its body
+    std::string worst_volume_body;  // name of the body with this tetrahedron
     // Number of the tetrahedron with worst_volume_ratio, in the mesh of its body.
     Index worst_volume_element = -1;
     Index near_inversion = 0;  // number of tetrahedra with det F (volume ratio) below 0.1
-    // Number of smoothed elements below a fifth of their rest volume. Tetrahedra around an edge can stay folded against
-    // each other although none of them is inverted. `folded_body` is the first body with such elements,
-    // `folded_element` a tetrahedron of the most compressed element of this body.
+    // Number of smoothed elements (unions of parts of tetrahedra around an edge or a node) with less than a fifth of
+    // their rest volume. Tetrahedra around an edge can stay folded against each other although none of them is
+    // inverted. `folded_body` is the first body with such elements, `folded_element` a tetrahedron of the most
+    // compressed element of this body.
     Index folded = 0;
     std::string folded_body;    // see folded
     Index folded_element = -1;  // see folded
     Index inverted = 0;         // number of tetrahedra with det F (volume ratio) below 0
-    // Rotation of the fastest rotating collider during the longest step allowed now [rad]. Contacts assume that the
-    // collider's surface moves straight within a step. The position error is half the square of this angle times the
+    // Angle by which the fastest rotating collider turns during the longest step allowed now [rad]. Contacts assume
+    // that the collider's surface moves straight within a step. This causes a position error of angle^2/2 times the
     // distance from the axis of rotation.
     Real collider_turn = 0;
-    std::string turning_collider;  // name of this collider
+    std::string turning_collider;  // name of the collider of collider_turn
 
     /// Describes why positions, forces and energies of the run cannot be trusted: surfaces passed through each other,
     /// or a contact region kept an error above largest_trusted_error. Empty if neither happened.

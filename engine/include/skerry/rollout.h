@@ -15,59 +15,61 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Moves a collider or an attachment, so that it reaches a pose at the end of the interval (World::move_to). Numbers:
-/// position [m] and rotation vector [rad].
+/// Moves a collider or an attachment, so that it reaches a pose at the end of the interval (World::move_to). Values per
+/// interval (RolloutControl::values): position [m] and rotation vector [rad].
 struct PoseControl {
     std::variant<ColliderHandle, AttachmentHandle> object{};  // the moved object
 };
-/// Moves a collider or an attachment at constant velocities (World::set_velocity). Numbers: velocity [m/s] and angular
-/// velocity [rad/s].
+/// Moves a collider or an attachment at constant velocities (World::set_velocity). Values per interval: velocity [m/s]
+/// and angular velocity [rad/s].
 struct VelocityControl {
     std::variant<ColliderHandle, AttachmentHandle> object{};  // the moved object
 };
 /// Sets the target speed of the motor of a hinge or slider. The joint must have a motor, which keeps its `strength`.
-/// Numbers: the speed [rad/s or m/s].
+/// Value per interval: the speed [rad/s or m/s].
 struct MotorSpeedControl {
     JointHandle joint{};  // joint with the motor
 };
 /// Sets the target coordinate of the motor of a hinge or slider. The joint must have a motor, which keeps its
-/// `strength` and `fastest`. Numbers: the coordinate [rad or m].
+/// `strength` and `fastest`. Value per interval: the coordinate [rad or m].
 struct MotorPositionControl {
     JointHandle joint{};  // joint with the motor
 };
-/// Sets the external forces on all nodes of a body (World::set_loads). Numbers: three per node [N].
+/// Sets the external forces on all nodes of a body (World::set_loads). Values per interval: three per node [N].
 struct NodeForceControl {
     BodyHandle body{};  // body of the nodes
 };
-/// Sets an external force on a body. The force is distributed over the nodes in proportion to their masses, so that it
-/// acts at the centre of mass. Numbers: three [N].
+/// Sets an external force on a body, in place of the forces of World::set_loads(). It is distributed over the nodes in
+/// proportion to their masses, so that it acts at the centre of mass. Values per interval: three [N].
 struct BodyForceControl {
     BodyHandle body{};  // body on which the force acts
 };
-/// Sets the acceleration of gravity. Numbers: three [m/s^2].
+/// Sets the acceleration of gravity. Values per interval: three [m/s^2].
 struct GravityControl {};
-/// Sets the value that an object has as a TimeTable. Numbers: tension [N], length [m] or rate [m/s] of a cable,
-/// whichever is prescribed; pressure [Pa], inflow [kg/s] or liquid volume [m^3] of a cavity; pressure of the reservoir
-/// of a pipe [Pa]; rest length of a spring [m]; scale of a load; active tension of fibres [Pa].
+/// Sets the value that the settings of an object give as a TimeTable. Value per interval: tension [N], length [m] or
+/// rate [m/s] of a cable, whichever is prescribed; pressure [Pa], inflow [kg/s] or liquid volume [m^3] of a cavity;
+/// pressure of the reservoir of a pipe [Pa]; rest length of a spring [m]; scale of a load; active tension of fibres
+/// [Pa].
 struct ValueControl {
     // object whose value is set
     std::variant<CableHandle, CavityHandle, PipeHandle, SpringHandle, LoadHandle, FibreHandle> object{};
 };
 
-/// One controlled quantity. An object may have only one control. Each value applies from the start of its interval.
+/// One controlled quantity. Two controls must not name one object. The values of an interval are set at its start.
 struct RolloutControl {
     std::variant<PoseControl, VelocityControl, MotorSpeedControl, MotorPositionControl, NodeForceControl,
                  BodyForceControl, GravityControl, ValueControl>
         what;  // the controlled object and quantity
-    // Values in the order (world, interval, number), or in the order (interval, number) for all worlds. The values are
-    // not copied and must exist until rollout() returns.
+    // The values of the control for each interval of the first world, then for each interval of the second world, and
+    // so on. If the values of only one world are given, they apply to all worlds. The values are not copied and must
+    // exist until rollout() returns.
     std::span<const Real> values;
 };
 
 /// Progress of a rollout, for RolloutSettings::go_on.
 struct RolloutProgress {
-    std::size_t worlds_done = 0, worlds = 0;  // number of completed worlds, and of all worlds
-    std::size_t intervals_done = 0;           // number of completed intervals of all worlds
+    std::size_t worlds_done = 0, worlds = 0;  // numbers of completed worlds and of all worlds
+    std::size_t intervals_done = 0;           // number of completed intervals, summed over the worlds
 };
 
 /// Settings of rollout(): number and duration of the intervals, the controls, and the recorded quantities.
@@ -78,12 +80,13 @@ struct RolloutSettings {
     std::vector<RecordedProbe> record{};     // quantities that are recorded at the end of each interval
     int threads = 0;                         // number of threads of the rollout; 0: the number of cores
     bool keep_worlds = false;                // true: the result contains the worlds at the end of the rollout
-    // If given, called with each copy of a world and its number before the first interval, to change materials, poses
-    // and the like. The calls come from several threads at once. They must not remove objects that controls or probes
-    // name. An exception ends the rollout, which rethrows the exception of the lowest number.
+    // If given, called before the first interval with each copy and the number of its world in the argument `worlds`,
+    // for example to change materials or poses. Several threads call it at once. It must not remove objects that
+    // controls or probes name. If it throws, the rollout ends and rethrows the exception of the world with the lowest
+    // number.
     std::function<void(World& copy, std::size_t number)> prepare{};
     // If given, called about every 20 ms on the thread that called rollout(). If it returns false or throws, all worlds
-    // stop before their next step. An exception is rethrown.
+    // stop before their next step, and rollout() returns or rethrows the exception.
     std::function<bool(const RolloutProgress&)> go_on{};
 };
 
@@ -91,11 +94,11 @@ struct RolloutSettings {
 struct RolloutSeries {
     std::string name;                   // name of the probe
     std::vector<SeriesColumn> columns;  // without the time
-    // values in the order (world, interval, column); NaN in intervals that were not completed
+    // values by world, then interval, then column; NaN in intervals that were not completed
     std::vector<Real> values;
 };
 
-/// End of the rollout of one world.
+/// Outcome of the rollout of one world.
 struct RolloutStatus {
     std::size_t intervals = 0;  // number of completed intervals
     StepReport report{};        // report of the last call of advance; `stopped` if go_on ended the rollout
@@ -111,26 +114,26 @@ struct RolloutStatus {
 
 /// Result of rollout(). The rows of a world that stopped early end with NaN; `status` gives the reason.
 struct RolloutResult {
-    std::vector<Real> time;  // simulated time at the end of each interval, in the order (world, interval) [s]
+    std::vector<Real> time;             // simulated time at the end of each interval, by world, then interval [s]
     std::vector<RolloutSeries> series;  // one entry for each entry of RolloutSettings::record
-    std::vector<RolloutStatus> status;  // by world
+    std::vector<RolloutStatus> status;  // one entry for each world
     // Worlds at the end of the rollout, if keep_worlds is set. Empty if go_on ended the rollout.
     std::vector<World> worlds;
 };
 
-/// Advances a copy of each world through all intervals, several worlds at once. The worlds do not change: no other
-/// thread may use them during the call, and go_on may only read them. Worlds may occur several times, but all must be
-/// copies of one world, so that the handles of controls and probes are valid in each of them.
+/// Advances a copy of each world through all intervals, several worlds at once. The given worlds do not change. During
+/// the call no other thread may use them, and go_on may only read them. A world may be listed several times. All must
+/// be clones of one world, so that the handles of controls and probes are valid in each of them.
 ///
 /// The results are bitwise those of a loop that clones each world, applies the controls of an interval, calls
 /// advance(dt) and samples a Recorder, on any number of threads. A world whose step is refused stops, and the others
 /// continue. If there are fewer worlds than threads, each world gets an equal number of threads.
 ///
-/// Each thread of the rollout has one copy of a world at a time. With keep_worlds all copies remain, each with the
-/// number of threads with which it was advanced. The results need 8 bytes per value. To continue a rollout, keep the
-/// worlds and pass them to the next call. To start again from the same states, pass the same worlds again. There is no
-/// need to keep copies and reset them: World::reset takes as long as a new copy, about 0.4 ms for a world of 4,000
-/// tetrahedra.
+/// Memory: each thread of the rollout has one copy of a world at a time, and the results need 8 bytes per value. With
+/// keep_worlds all copies remain; each keeps the number of threads with which it was advanced. To continue a rollout,
+/// keep the worlds and pass them to the next call. To start again from the same states, pass the same worlds again.
+/// There is no need to keep copies and reset them: World::reset takes as long as a new copy, about 0.4 ms for a world
+/// of 4,000 tetrahedra.
 ///
 /// Throws SceneError before any world runs if a setting, a handle or a value is invalid.
 RolloutResult rollout(std::span<const World* const> worlds, const RolloutSettings& settings);

@@ -26,14 +26,15 @@ struct SceneOverrides {
     std::optional<StartOverlaps> start_overlaps{};    // Settings::start_overlaps
     std::optional<Real> step_size{};                  // Settings::step_size [s]
     std::optional<ElementKind> element{};  // element kind for all bodies, in place of the kinds in the scene file
-    // Assignments PLACE=VALUE, such as bodies[0].position=[0,0,1]. They are applied to the scene file itself, not to
-    // the files that it includes, in the given order and before all members above. PLACE has the form used in error
-    // messages. VALUE is read as JSON; if it is not valid JSON, it is taken as a text.
+    // Assignments PLACE=VALUE, such as bodies[0].position=[0,0,1]. They are applied in the given order, and before the
+    // other members of this struct, to the scene file itself, not to the files that it includes. PLACE has the form
+    // that error messages use for a place in the file. VALUE is read as JSON; if it is not valid JSON, it is taken as a
+    // text.
     std::vector<std::string> assignments{};
     std::string fill_python{};  // Python interpreter for filling surfaces; see mesh::FillSettings::python
 };
 
-/// A set of nodes of a body whose contacts a run reports, such as the feet of a table.
+/// Some nodes of a body, such as the feet of a table. A run reports the contacts of these nodes.
 struct Probe {
     std::string name;          // name in the report
     BodyHandle body;           // body of the nodes
@@ -52,13 +53,15 @@ struct Scene {
     std::vector<RecordedProbe> recorded;  // probes for a Recorder, in the order of the file
     // Time between two samples of `probes`, or between two recorded rows of `recorded` [s].
     Real probe_step = 1.0 / 60;
-    std::vector<Slider> sliders{};     // values that a user of the live view changes
-    std::vector<std::string> notes{};  // corrections and warnings of the reading, for example of filled surfaces
+    std::vector<Slider> sliders{};  // values that a user of the live view can change
+    // corrections and warnings from reading the file, for example about filled surfaces
+    std::vector<std::string> notes{};
 };
 
 /// Reads a scene file and builds its world. Relative paths of mesh files start at the folder of the scene file. Throws
-/// SceneError for any invalid input; for an unknown key the message names the nearest known key. `progress`: receives
-/// the current activity many times a second while a surface is filled. An exception ends the reading.
+/// SceneError for any invalid input; for an unknown key the message names the nearest known key. `progress`: called
+/// many times a second while a surface is filled, with a text on the current activity. If it throws, load_scene() ends
+/// with this exception.
 Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {},
                  const std::function<void(const std::string&)>& progress = {});
 

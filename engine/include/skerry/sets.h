@@ -16,21 +16,22 @@ namespace skerry {
 class World;
 
 /// A view of the named sets of the bodies of a world. It is valid until the world is moved or destroyed. A new body has
-/// the sets of its mesh (Mesh::sets). Sets are saved and cloned, and steps do not depend on them. All numbers are local
-/// to the body. Functions throw SceneError if a handle is stale or a body has no set of the given name; the message
-/// lists the sets that the body has.
+/// the sets of its mesh (Mesh::sets). Sets are saved and cloned, and steps do not depend on them. Nodes and tetrahedra
+/// are numbered within the body. Functions throw SceneError if a handle is stale or a body has no set of the given
+/// name; the message lists the sets that the body has.
 class Sets {
 public:
     /// `world` must exist as long as the view.
     explicit Sets(World& world) : world_(&world) {}
 
     std::vector<std::string> names(BodyHandle body) const;  // in alphabetical order
-    /// Nodes, faces and tetrahedra of a set as they were listed. The reference is valid until sets or bodies change.
+    /// Nodes, faces and tetrahedra that a set lists, without those that they imply (see nodes()). The reference is
+    /// valid until sets or bodies change.
     const MeshSet& get(BodyHandle body, const std::string& name) const;
     /// Adds a set. Sorts the numbers and drops repeated ones. Throws SceneError if the body already has a set of this
     /// name, if the set or its name is empty, or if a number is out of range.
     void add(BodyHandle body, const std::string& name, MeshSet set);
-    /// Removes a set. Objects that were made from its numbers do not change.
+    /// Removes a set. Objects that were made from it, such as attachments and loads, do not change.
     void remove(BodyHandle body, const std::string& name);
 
     /// Numbers of the nodes, faces and tetrahedra of a set, as mesh::nodes_of, faces_of and tetrahedra_of find them.

@@ -52,7 +52,8 @@ struct MaterialSettings {
     std::optional<Real> dynamic_friction{};  // friction coefficient of sliding contacts, >= 0
     // Rebound speed over impact speed of a surface point (not of the whole body), from 0 to 1.
     Real restitution = 0;
-    // Decay rate of velocities relative to the rigid motion of the body, >= 0 [1/s]. Momentum is conserved.
+    // Decay rate of velocities relative to the rigid motion of the body, >= 0 [1/s]. Momentum is conserved. In a body
+    // with held nodes, velocities relative to the world decay.
     Real damping = 0;
     // Tangent of the phase angle between stress and strain, nearly constant over the natural frequencies of a body. In
     // each period a free vibration loses about the fraction 2 pi loss_factor of its energy. Typical values: rubber 0.05
@@ -66,8 +67,8 @@ struct MaterialSettings {
     MaterialModel model = MaterialModel::stable_neo_hookean;  // elastic law
     // Terms of the law `ogden`, whose shares sum to 1. ogden() and mooney_rivlin() of materials.h set them from moduli.
     std::array<StretchTerm, 3> terms{{{1, 2}, {}, {}}};
-    // Elastic constants of the law `orthotropic`. This law replaces young_modulus and poisson_ratio by those of an
-    // isotropic material that is nowhere stiffer; they serve losses and estimates.
+    // Elastic constants of the law `orthotropic`. With this law, losses and estimates use an isotropic material that is
+    // not stiffer in any direction; young_modulus and poisson_ratio are replaced by its values.
     OrthotropicModuli orthotropic{};
     std::optional<Plasticity> plasticity{};  // only with the law `hencky`; explicit bodies alone yield
 };
@@ -79,13 +80,13 @@ enum class BodyDynamics : std::uint8_t {
     // only density, friction and restitution (docs/methods/rigid_bodies.md).
     rigid,
     // The body deforms by backward Euler (see Settings::theta), which is stable at any step length. This suits stiff
-    // bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by Newton's method
-    // (docs/methods/implicit_bodies.md).
+    // bodies. At small strain, elasticity is linear in the frame that moves with the body. At large strain it follows
+    // the material law, and Newton's method solves each step (docs/methods/implicit_bodies.md).
     implicit_elastic,
     // The body becomes implicit if this more than halves the predicted cost and the expected strain is at most 2 %,
-    // otherwise explicit. The choice is made when the body is added, for the step length that the other bodies then
-    // allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a body that is added later requires short
-    // steps, an implicit body becomes explicit where this costs less, as by World::set_dynamics().
+    // otherwise explicit. The choice is made when the body is added, for the step length that the bodies added before
+    // it allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a body that is added later requires
+    // short steps, an implicit body becomes explicit where this costs less, as by World::set_dynamics().
     automatic,
 };
 template <>
@@ -100,8 +101,8 @@ struct EnumNames<BodyDynamics> {
 
 /// Settings of a body. The mesh is first rotated about its origin, then moved by `position`.
 struct BodySettings {
-    // Material of all tetrahedra whose label is not in `materials`. The whole body has the friction, restitution and
-    // damping of this material, even where tetrahedra at the surface have another one.
+    // Material of all tetrahedra to which `materials` and `materials_of_sets` give none. The whole body has the
+    // friction, restitution and damping of this material, even where tetrahedra at the surface have another one.
     MaterialHandle material{};
     // Materials of tetrahedra by label (Mesh::label). These materials determine elasticity, density and losses of the
     // tetrahedra. Each label must occur in the mesh.
@@ -115,11 +116,11 @@ struct BodySettings {
     Vec3 angular_velocity = Vec3::Zero();  // initial angular velocity about the centre of mass [rad/s]
     // contact distance, >= 0; default: 2 % of the mean edge length of the surface [m]
     std::optional<Real> contact_distance{};
-    bool self_contact = false;                        // true: the body may touch itself
+    bool self_contact = false;                        // true: contacts act between parts of the surface of the body
     BodyDynamics dynamics = BodyDynamics::automatic;  // how the body moves
     // Mass properties of a rigid body. If none are given, they follow from the shape and the densities. `mass` alone
-    // scales the densities. `center_of_mass` and `inertia` require each other and `mass`. They are in the frame of the
-    // mesh, and the inertia tensor is about the centre of mass.
+    // scales the densities. If `center_of_mass` or `inertia` is given, all three must be given. Both are in the frame
+    // of the mesh, and the inertia tensor is about the centre of mass.
     std::optional<Real> mass{};            // mass of the body, > 0 [kg]
     std::optional<Vec3> center_of_mass{};  // centre of mass in the frame of the mesh [m]
     std::optional<Mat3> inertia{};         // inertia tensor, symmetric and positive definite [kg m^2]
@@ -162,16 +163,16 @@ struct Bucket {
 /// The shape of a collider.
 using Shape = std::variant<Plane, Sphere, Box, Capsule, Cylinder, Bucket, SurfaceMesh>;
 
-/// One keyframe of a scripted motion. Between keyframes the position moves linearly and the rotation is about a fixed
-/// axis.
+/// One keyframe of a scripted motion. Between keyframes the velocity is constant, and the rotation is about a fixed
+/// axis at constant speed.
 struct MotionKey {
     Real time = 0;                 // time, which must increase from key to key [s]
     Vec3 position = Vec3::Zero();  // [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
 };
 
-/// A scripted motion: either constant velocities from now on, or keyframes at absolute times. With keyframes both
-/// velocities must be zero.
+/// A scripted motion: either constant velocities from the time at which it is given, or keyframes at absolute times.
+/// With keyframes both velocities must be zero.
 struct Motion {
     Vec3 velocity = Vec3::Zero();          // [m/s]
     Vec3 angular_velocity = Vec3::Zero();  // [rad/s]
@@ -190,16 +191,17 @@ struct ColliderSettings {
     Vec3 position = Vec3::Zero();  // [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
     // Keys are poses of the collider itself, as World::pose returns them, and replace `position` and `rotation`. For a
-    // plane they also replace Plane::point and normal. If no key has a rotation, the collider keeps its own.
+    // plane they also replace Plane::point and normal. If no key has a rotation, `rotation` (for a plane: the normal)
+    // stays.
     Motion motion{};
     // Friction coefficient. If given, a contact uses the geometric mean of this value and the value of the body. If not
     // given, it uses the value of the body.
     std::optional<Real> friction{};
-    std::optional<Real> static_friction{}, dynamic_friction{};  // default of each: `friction`
+    std::optional<Real> static_friction{}, dynamic_friction{};  // see MaterialSettings; default of each: `friction`
     // Coefficient of restitution. If given, a contact uses the larger of this value and the value of the body. If not
     // given, it uses the value of the body.
     std::optional<Real> restitution{};
-    Real contact_distance = 0;                   // thickness of the contact shell of a mesh collider [m]
+    Real contact_distance = 0;                   // contact distance of a mesh collider, >= 0 [m]
     std::uint32_t collision_group = 1;           // see BodySettings::collision_group
     std::uint32_t collision_mask = 0xffffffffu;  // see BodySettings::collision_group
     std::string name{};                          // name of the collider in messages and output
@@ -224,15 +226,15 @@ struct Settings {
     Real implicit_step = 0;
     // Time integrator (docs/step_length.md). Change it to leapfrog when smooth motion must be exact to second order.
     Integrator integrator = Integrator::symplectic_euler;
-    // If true, the few elements that would make all steps several times shorter are integrated implicitly, in clusters
-    // of the nodes around them (docs/methods/clusters.md). Change it when all elements of explicit bodies must be
-    // integrated explicitly.
+    // If true, elements of explicit bodies whose stable step is much shorter than that of the others are integrated
+    // implicitly, together with the nodes around them: a cluster (docs/methods/clusters.md). Change it when all
+    // elements of explicit bodies must be integrated explicitly.
     bool clusters = true;
     // Thread library. `automatic` selects the first library of this build, which is tbb unless tbb was left out. Change
     // it when your program already uses another library.
     Backend backend = Backend::automatic;
-    // Number of threads; 0: the number of threads of the caller's task arena. Change it when other work shares the
-    // processor.
+    // Number of threads. 0: with tbb as many as the caller's tbb::task_arena has, otherwise one per core. Change it
+    // when other work shares the processor.
     int threads = 0;
     // Division of contacts into regions. With `separate`, contacts that do not influence each other are solved
     // separately. Change it to `global` when you compare solvers on one large problem.
@@ -241,22 +243,23 @@ struct Settings {
     SolverMethod method = SolverMethod::automatic;
     // Friction law. Change it to pyramid when you compare with Lazarevych et al. (2010), who use this approximation.
     Friction friction = Friction::cone;
-    // Relative error of the contact impulses of a region that the solver accepts (docs/architecture.md). Change it when
-    // contact forces must be more exact, or when larger errors are fine and speed matters.
+    // The solver accepts the contact impulses of a region if their relative error is at most this value
+    // (docs/methods/errors.md). Change it when contact forces must be more exact, or when larger errors are fine and
+    // speed matters.
     Real tolerance = 1e-3;
     // Largest number of solver sweeps over the contacts of a region. Change it when a run reports unconverged regions.
     int max_iterations = 200;
-    // Largest speed at which surfaces that overlap or are closer than the contact distance are pushed apart, > 0 [m/s].
+    // Surfaces that overlap or are closer than the contact distance are pushed apart, at most at this speed, > 0 [m/s].
     // Change it when bodies are so small or so slow that this speed disturbs them.
     Real recovery_speed = 0.5;
-    // Treatment of bodies that overlap other bodies or colliders when they are added. Bodies that are attached or have
-    // already made a step are never moved. Change it when no body may be moved at the start.
+    // Treatment of bodies that overlap other bodies or colliders after one of both was added or moved by you. Bodies
+    // that are attached or have already made a step are never moved. Change it when no body may be moved at the start.
     StartOverlaps start_overlaps = StartOverlaps::resolve;
-    // If true, a body that has been still for sleep_time falls asleep together with all bodies that it touches. Steps
-    // leave sleeping bodies and their contacts unchanged, until something presses on such a body or changes it. A body
-    // is still if it hardly moves and its motion neither grows nor continues steadily. Its distance from equilibrium is
-    // then at most a thousandth of its deflection (docs/methods/skipping.md 3.1). Change it when you study motion below
-    // these limits.
+    // If true, bodies that touch or are joined fall asleep together when each of them has been still for sleep_time.
+    // Steps leave sleeping bodies and their contacts unchanged, until another object presses on such a body, or you
+    // change it. A body is still if it hardly moves and its motion neither grows nor continues steadily. Its distance
+    // from equilibrium is then at most a thousandth of its deflection (docs/methods/skipping.md 3.1). Change it when
+    // you study motion below these limits.
     bool sleep = true;
     // Time for which a body must be still before it falls asleep, >= 0 [s]. Change it when bodies fall asleep too early
     // or too late.

@@ -10,7 +10,7 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Controls that a slider can have.
+/// Kinds of control that a slider can drive.
 using SliderControl = std::variant<PoseControl, MotorSpeedControl, MotorPositionControl, ValueControl>;
 
 /// An object that a slider moves or drives.
@@ -19,16 +19,17 @@ struct SliderTarget {
     Pose start{};           // for a PoseControl: pose of the object at the value 0
 };
 
-/// A value within bounds that drives one object or several equal ones. For a PoseControl the value is a displacement
-/// along `along` or an angle about `about` through the origin of the object. For other controls it is the number that
-/// the control sets. Handles stay valid in clones of the world.
+/// A value within bounds that drives one object, or several objects in the same way. For a PoseControl the value is a
+/// displacement along `along` [m], or an angle about the axis `about` through the origin of the object [rad]. For other
+/// controls it is the value that the control sets. A slider also drives clones of the world, in which its handles are
+/// valid.
 struct Slider {
     std::string name;                     // unique in its scene
     std::string unit;                     // SI unit of the value; 1 for factors
     Real low = 0, high = 0;               // bounds of the value, low < high
-    Real fastest = 0;                     // greatest rate of change, > 0 [unit per s]
-    Vec3 along = Vec3::Zero();            // unit vector in the world, or zero
-    Vec3 about = Vec3::Zero();            // unit vector in the world, or zero
+    Real fastest = 0;                     // greatest rate of change of the value, > 0 [`unit` per s]
+    Vec3 along = Vec3::Zero();            // direction of the displacement: unit vector in the world, or zero
+    Vec3 about = Vec3::Zero();            // axis of the rotation: unit vector in the world, or zero
     std::vector<SliderTarget> targets{};  // at least one
 };
 

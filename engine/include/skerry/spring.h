@@ -20,9 +20,9 @@ struct SpringSettings {
     Anchor second{};                         // the other end
     Real stiffness = 0;                      // force per elongation, >= 0 [N/m]
     Real damping = 0;                        // force per rate of the length, >= 0 [N s/m]
-    std::optional<TimeTable> rest_length{};  // each value >= 0; default: the present length [m]
-    SpringSide only = SpringSide::both;      // side on which the spring and its damper act
-    Real strength = infinity;                // largest force, > 0; a longer spring keeps this force [N]
+    std::optional<TimeTable> rest_length{};  // each value >= 0; default: the length when the spring is added [m]
+    SpringSide only = SpringSide::both;      // whether they act in tension, in compression or both
+    Real strength = infinity;  // largest force, > 0 [N]; if stretched further, the spring keeps this force
 };
 
 /// Present state of a spring. Before the first step `force` is zero.
@@ -47,11 +47,11 @@ public:
     SpringHandle add(const SpringSettings& spring);
     /// Ends, length and force of a spring after the last step.
     SpringState state(SpringHandle spring) const;
-    /// Settings of an equal spring that is added now: anchors have their present positions.
+    /// Settings with which add() would make an equal spring now: anchors have their present positions.
     SpringSettings settings(SpringHandle spring) const;
 
-    /// Moves the second anchor of a spring. The rest length does not change. With `strength`, this drags a body to a
-    /// point that moves, for example with a mouse.
+    /// Moves the second anchor of a spring. The rest length does not change. Call this repeatedly to drag a body, for
+    /// example with a mouse; `strength` then limits the force.
     void set_second(SpringHandle spring, const Anchor& anchor);
     /// Sets the rest length [m].
     void set_rest_length(SpringHandle spring, const TimeTable& rest_length);

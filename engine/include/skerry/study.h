@@ -17,13 +17,14 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Difference of a run from the scene as it is.
+/// Changes of a run to the scene as it is, which is the scene file with StudySettings::assignments.
 struct StudyVariant {
-    int refine = 0;      // level of the meshes: each level halves the edges, negative levels double them
+    // mesh level: 0 is the mesh of the scene, each level up halves the edges, each level down doubles them
+    int refine = 0;
     Real step = 1;       // ratio of the step length to the mean step of the unchanged scene; 1: the scene's own steps
     Real tolerance = 1;  // ratio of the solver's tolerance to that of the scene
     std::optional<ElementKind> element{};  // element kind of all bodies; empty: the kinds of the scene
-    int draw = 0;                          // number of the perturbation of the start, from 1; 0: none
+    int draw = 0;  // seed of the random shifts of the start positions, up to 1e-12 m; 0: no shifts
 
     /// True for the scene as it is.
     bool is_scene() const { return refine == 0 && step == 1 && tolerance == 1 && !element && draw == 0; }
@@ -32,9 +33,9 @@ struct StudyVariant {
 
 /// Outcome of a run of a study.
 enum class StudyRunStatus {
-    ok,       // the run reached its end
-    failed,   // a step was refused
-    refused,  // the scene cannot be built with these settings, or the run records other columns than the scene as it is
+    ok,        // the run reached its end
+    failed,    // a step was refused
+    refused,   // the scene cannot be built with these settings, or its columns differ from those of the first run
     left_out,  // the run was not made: it did not fit into the budget, or the scene does not allow this change
 };
 template <>
@@ -50,19 +51,19 @@ struct EnumNames<StudyRunStatus> {
 /// A time series of a run.
 struct StudyColumn {
     SeriesColumn what;  // probe, quantity and unit
-    // diagonal of the bounding box at the start: of the body of the column, or of all bodies if the column has no body
-    // [m]
+    // Diagonal of the bounding box at the start [m]. The box contains the body of the column, or all bodies if the
+    // column belongs to none.
     Real size = 0;
     // False for a column that gets no error bar of its own, such as the position of one of many bodies.
     bool reported = true;
     // true for a mean, least or largest value of all bodies, which is meaningful also in a chaotic run
     bool is_statistic = false;
-    std::vector<Real> values{};  // one per time; NaN if unknown
-    // For a column of a largest stress: number within the body of the node that had the largest value of the run. Else
+    std::vector<Real> values{};  // one for each time in StudyRun::time; NaN if unknown
+    // For a column of a largest stress: node with the largest value in the run, numbered within its body. Else
     // no_index.
     Index node = no_index;
     Vec3 place = Vec3::Zero();  // position of `node` at the start [m]
-    // Relative error of the values because flat faces approximate a curved surface.
+    // Relative error of the values that finer meshes keep, because their flat faces approximate a curved surface.
     Real shape_error = 0;
 };
 
@@ -73,10 +74,12 @@ struct StudyLoad {
     bool operator==(const StudyLoad&) const = default;
 };
 
-/// A run of a study. `skerry run SCENE` with the assignments as --set repeats the run, except for its perturbation.
+/// A run of a study. `skerry run SCENE` with `assignments` as --set repeats the run, without the shifts of
+/// StudyVariant::draw.
 struct StudyRun {
-    StudyVariant variant;                        // difference from the scene as it is
-    std::vector<std::string> assignments;        // the same difference, as SceneOverrides::assignments
+    StudyVariant variant;  // difference from the scene as it is
+    // assignments of StudySettings, then those of `variant`; see SceneOverrides::assignments
+    std::vector<std::string> assignments;
     StudyRunStatus status = StudyRunStatus::ok;  // outcome
     std::string message{};                       // reason, unless the status is ok
     std::vector<std::string> warnings{};         // reasons not to rely on the run
@@ -93,8 +96,9 @@ struct StudyRun {
 
 /// Reliability of a quantity.
 enum class StudyVerdict {
-    known,         // the error bar follows from runs whose differences behave as the theory says
-    irregular,     // the differences do not follow the theory; the error bar is a multiple of the largest difference
+    known,  // the differences between runs decrease as the theory says; the error bar follows from them
+    // the differences do not follow the theory, or there is another doubt; StudyQuantity::sentence tells the reason
+    irregular,
     singular,      // the largest stress grows without limit as the mesh is refined; `error` is infinite
     chaotic,       // differences of 1e-12 m at the start change the value; see StudyQuantity::agree_until
     zero,          // the value is an error of the contact solver or of the steps; `error` bounds its absolute value
@@ -114,18 +118,21 @@ struct EnumNames<StudyVerdict> {
 
 /// A number with its error bar. Values that were not measured are NaN.
 struct StudyQuantity {
-    std::string name;  // name as in the table of a sweep without its unit, for example tip.displacement_z_end
-    std::string unit;  // SI unit; 1 for counts and ratios
+    // PROBE.QUANTITY_FIGURE, for example tip.displacement_z_end; figures: end, max, min, mean, agreed
+    std::string name;
+    std::string unit;                                     // SI unit; 1 for counts and ratios
     Real value = std::numeric_limits<Real>::quiet_NaN();  // value of the scene as it is
-    // Value extrapolated to vanishing edges, steps and tolerance, and its error.
+    // Value extrapolated to edge length, step length and tolerance 0, and half width of the error bar of this value.
     Real best = std::numeric_limits<Real>::quiet_NaN(), best_error = std::numeric_limits<Real>::quiet_NaN();
     Real error = std::numeric_limits<Real>::quiet_NaN();  // half width of the error bar of `value`
-    // Part of `error` from the mesh. Each part is 0 if the study has no runs for it.
+    // Part of `error` from the mesh. A part is 0 if the study plans no runs for it, for example the mesh of rigid
+    // bodies.
     Real mesh = std::numeric_limits<Real>::quiet_NaN();
     Real step = std::numeric_limits<Real>::quiet_NaN();     // part of `error` from the step length
     Real contact = std::numeric_limits<Real>::quiet_NaN();  // part of `error` from the tolerance of the contact solver
     Real noise = std::numeric_limits<Real>::quiet_NaN();    // part of `error` from differences of 1e-12 m at the start
-    // Scale to which relative errors refer, for example the largest absolute value over the run.
+    // Scale to which relative errors refer: the largest absolute value over the run; for lengths and energies, the
+    // largest change from the start.
     Real scale = std::numeric_limits<Real>::quiet_NaN();
     // Observed order of convergence: the part `mesh` is proportional to this power of the edge length.
     Real mesh_order = std::numeric_limits<Real>::quiet_NaN();
@@ -136,7 +143,7 @@ struct StudyQuantity {
     Real expected_step_order = std::numeric_limits<Real>::quiet_NaN();
     StudyVerdict verdict = StudyVerdict::not_measured;  // reliability
     std::string sentence{};                             // verdict in words
-    Real agree_until = infinity;  // time until which perturbed runs agree on the column of the quantity [s]
+    Real agree_until = infinity;  // time until which runs with shifted starts agree on its column [s]
     // Value of each run and half width of its error bar, in the order of StudyResult::runs; NaN if unknown.
     std::vector<Real> run_values{}, run_errors{};
 };
@@ -144,8 +151,8 @@ struct StudyQuantity {
 /// The cheapest settings whose predicted errors are at most the wanted error.
 struct CheapestSettings {
     StudyVariant variant;    // difference from the scene as it is
-    bool reaches = false;    // false: no settings reach the wanted error, and these come nearest
-    double error = 0;        // predicted largest relative error of all quantities with a known error
+    bool reaches = false;    // false: no settings reach the wanted error; these come within 10 % of the smallest
+    double error = 0;        // largest predicted relative error; only quantities that are known or irregular count
     double cpu_seconds = 0;  // predicted CPU time [s]
     std::string sentence{};  // the quantity with the largest error, or why no settings reach the wanted error
     std::vector<std::string> assignments{};  // for `skerry run --set`; filled in by study()
@@ -154,17 +161,17 @@ struct CheapestSettings {
 /// Error bars of the quantities of a scene, and the runs that they come from.
 struct StudyResult {
     std::string scene;                      // name of the scene
-    std::vector<StudyRun> runs;             // the first is the scene as it is
+    std::vector<StudyRun> runs;             // runs[0] is the run of the scene as it is
     std::vector<StudyQuantity> quantities;  // values and error bars of all reported columns
     double wanted_error = 0;                // StudySettings::error
-    // Half width of the error bar of each value of each column of the first run; empty for columns that are not
-    // reported.
+    // Half widths of the error bars of the values in runs[0].columns, by column and row. Columns that are not reported
+    // are empty, and rows after agree_until of the column are NaN.
     std::vector<std::vector<Real>> bands;
-    std::optional<CheapestSettings> cheapest;  // empty if no quantity has a known error
-    Real agree_until = infinity;               // time until which perturbed runs agree on all columns [s]
-    Real growth_rate = 0;                // rate at which small differences of the start grow; 0 if they do not [1/s]
+    std::optional<CheapestSettings> cheapest;  // empty if no quantity is known or irregular
+    Real agree_until = infinity;               // time until which runs with shifted starts agree on all positions [s]
+    Real growth_rate = 0;                // exponential growth rate of small differences of the start; 0: none [1/s]
     std::vector<std::string> sentences;  // remarks on the study as a whole
-    bool stopped = false;                // true if go_on ended the study; quantities are then empty
+    bool stopped = false;                // true if go_on ended the study; runs and quantities are then empty
 };
 
 /// Progress of a study, for StudySettings::go_on.
@@ -175,17 +182,20 @@ struct StudyProgress {
     double share = 0;      // share of the predicted CPU time that is done, from 0 to 1
 };
 
-/// Extent of a study, and its stopping.
+/// Settings of a study.
 struct StudySettings {
-    double error = 0.01;                // wanted relative error, for the choice of the cheapest settings, > 0
-    std::vector<std::string> probes{};  // names NAME or NAME.QUANTITY of the probes; empty: all and the default ones
-    std::optional<Real> seconds{};      // duration of the runs; empty: that of the scene [s]
+    double error = 0.01;  // wanted relative error for the cheapest settings, > 0 and < 1
+    // reported probes, as NAME or NAME.QUANTITY; empty: those of the scene and default ones
+    std::vector<std::string> probes{};
+    std::optional<Real> seconds{};           // duration of the runs; empty: that of the scene [s]
     std::vector<std::string> assignments{};  // changes of the scene, as SceneOverrides::assignments
     int threads = 0;                         // number of threads of the study; 0: the number of cores
-    // Largest wall time of the study, divided by that of one run of the scene with one thread, > 0. Less important runs
-    // that do not fit are left out. Empty: 15, or more as long as the study takes less than 5 s.
+    // Largest wall time of the study, divided by that of one run of the scene with one thread, > 0. Runs that do not
+    // fit are left out, the least important first. Empty: 15, or 5 s divided by the CPU time of that run if this is
+    // more.
     std::optional<double> budget{};
-    // Folder that keeps the results of the runs. A later study of the same scene continues with them. Empty: none.
+    // Folder in which each run is stored when it ends. A later study of the unchanged scene reads these runs instead of
+    // making them again. Empty: no folder.
     std::filesystem::path folder{};
     bool redo = false;          // true: the runs in the folder are removed and made again
     std::string fill_python{};  // see SceneOverrides::fill_python
@@ -196,26 +206,27 @@ struct StudySettings {
 
 /// Runs a scene with several meshes, steps, tolerances and element kinds, and determines the error of each probe. The
 /// runs and their order of importance are listed in docs/study.md. The numbers do not depend on the number of threads,
-/// except through the budget, which decides which runs fit. A run that fails is a result, and the study continues.
+/// except through the budget, which decides which runs fit. If a variant fails, the study continues. If the scene as it
+/// is fails in a step, the study ends without quantities, and StudyResult::sentences contains the reason.
 ///
-/// Throws SceneError if the scene cannot be run as it is, a setting or the name of a probe is invalid, or the folder
-/// holds runs of another scene.
+/// Throws SceneError if the scene cannot be read or built, a setting or the name of a probe is invalid, the folder
+/// holds runs of another scene or of other settings, or a file of the scene changes meanwhile.
 StudyResult study(const std::filesystem::path& scene, const StudySettings& settings = {});
 
 /// Returns one line per quantity with its error bar, the verdicts, the runs that are missing, and the cheapest
-/// settings. Long lists are cut; the page has them all.
+/// settings. Long lists are cut; study_page() has all entries.
 std::string study_text(const StudyResult& result);
 
 /// Returns a web page with a plot of error against CPU time, the time series with their error bars, and tables of all
 /// quantities and runs. The page is one file that needs no other files.
 std::string study_page(const StudyResult& result);
 
-/// Returns a JSON document with all numbers except the time series of the runs. The key `bands` has the error bars of
-/// the rows of the first run. A number that is not finite becomes null.
+/// Returns a JSON document with all numbers except the time series of the runs. The key `bands` has StudyResult::bands.
+/// A number that is not finite becomes null.
 std::string study_json(const StudyResult& result);
 
-/// Writes the scene with the cheapest settings. Paths in the new file lead to the files of the scene. Throws
-/// SceneError, also if no settings reach the wanted error.
+/// Writes the scene with the cheapest settings to `file`. Paths in it lead to the files of the original scene. Throws
+/// SceneError if no settings reach the wanted error, or if the file cannot be written.
 void write_cheapest_scene(const std::filesystem::path& scene, const StudyResult& result,
                           const std::filesystem::path& file);
 

@@ -15,8 +15,8 @@ namespace skerry {
 
 class World;
 
-/// Surface properties of contacts between two materials. A property that is not given follows the general rule: the
-/// geometric mean of both friction coefficients, and the larger restitution.
+/// Surface properties of contacts between two materials. A property that `surface` does not give follows the general
+/// rule: the geometric mean of the friction coefficients of both objects, and the larger of their restitutions.
 struct MaterialPair {
     MaterialHandle first{}, second{};  // may be the same
     SurfaceSettings surface{};         // properties of the pair
@@ -31,11 +31,11 @@ public:
     /// `world` must exist as long as the view.
     explicit SurfacePairs(World& world) : world_(&world) {}
 
-    /// Sets the properties of contacts between two materials, and wakes the bodies that have one of them. A body has
-    /// one material for this purpose, BodySettings::material. Contacts of the pair ignore friction and restitution of
-    /// single bodies and colliders, but not those of surface sets.
+    /// Sets the properties of contacts between two materials, and wakes the bodies that have one of them. For this
+    /// purpose a body has one material, BodySettings::material, even where its tetrahedra have others. Contacts of the
+    /// pair ignore friction and restitution of single bodies and colliders, but not those of surface sets.
     void set(MaterialHandle first, MaterialHandle second, const SurfaceSettings& surface);
-    /// Removes the properties of a pair. Without such properties, does nothing.
+    /// Removes the properties of a pair. Does nothing if the pair has none.
     void remove(MaterialHandle first, MaterialHandle second);
     /// Properties of a pair, in either order; empty if none were set.
     std::optional<SurfaceSettings> surface(MaterialHandle first, MaterialHandle second) const;
@@ -56,14 +56,14 @@ private:
 using SurfaceSetHandle = Handle<struct SurfaceSetTag>;
 
 /// A part of the surface of a body with its own friction and restitution. It consists of the given faces with their
-/// edges and nodes, and of the given nodes with the edges and faces between them.
+/// edges and nodes, of the given nodes, and of all edges and faces whose nodes are all given.
 struct SurfaceSetSettings {
     BodyHandle body{};                          // a body with faces: not a sphere, capsule or cylinder
     std::vector<Index> nodes{};                 // numbers in the mesh; nodes inside the body have no effect
-    std::vector<std::array<Index, 3>> faces{};  // boundary faces by their nodes, in any order
+    std::vector<std::array<Index, 3>> faces{};  // boundary faces, each by its three nodes in any order
     SurfaceSettings surface{};                  // missing properties are those of the body
-    // Friction coefficient of sliding contacts across `direction`, > 0; static friction changes in the same ratio. The
-    // friction in `surface`, which must be given, then applies along `direction`.
+    // Friction coefficient for sliding perpendicular to `direction`, > 0. The friction in `surface`, which must then be
+    // given, applies to sliding along `direction`. The ratio of both values also applies to static friction.
     std::optional<Real> friction_across{};
     // Direction in the frame of the mesh, carried along by the faces when the body moves and deforms. Required for
     // friction_across.
@@ -77,14 +77,15 @@ class SurfaceSets : public ObjectView<SurfaceSetHandle> {
 public:
     using ObjectView::ObjectView;
 
-    /// Adds a set. It is removed with its body. Where sets overlap, the set that was added last applies. A property of
-    /// a set takes precedence over that of the pair of materials; it is combined with the property of the other surface
-    /// like the property of a body. For two surfaces with directions, the geometric mean of both friction tensors
-    /// applies.
+    /// Adds a set. It is removed with its body. Where sets overlap, the set that was added last applies. At a contact,
+    /// a property of a set replaces that of the body and that of the pair of materials. It is combined with the
+    /// property of the other object by the general rule, see MaterialPair. For two surfaces with directions, the
+    /// geometric mean of both friction tensors applies.
     SurfaceSetHandle add(const SurfaceSetSettings& set);
     /// Settings of a set.
     SurfaceSetSettings settings(SurfaceSetHandle set) const;
-    /// Changes the properties of a set, and wakes its body. `friction_across` needs a set with a direction.
+    /// Replaces the properties of a set, and wakes its body. Without `friction_across` the friction no longer depends
+    /// on the direction. With it, throws SceneError if the set has no direction.
     void set_surface(SurfaceSetHandle set, const SurfaceSettings& surface, std::optional<Real> friction_across = {});
 };
 

@@ -14,7 +14,7 @@ namespace skerry {
 enum class SurfaceFaultKind {
     flat_triangles,       // two corners are one node after merging
     duplicate_triangles,  // the same three nodes as an earlier triangle
-    turned_triangles,     // orientation opposite to that of most triangles connected with it
+    turned_triangles,     // orientation opposite to that of most connected triangles
     inside_out_shells,    // closed shells that enclose a negative volume and lie in no other shell
     duplicate_shells,     // the same surface as an earlier shell
     holes,                // connected edges with only one triangle
@@ -25,8 +25,8 @@ enum class SurfaceFaultKind {
     shell_crossings,      // pairs of triangles of different shells that pass through each other
     overlaps,             // pairs of triangles that overlap in a common plane
     flat_shells,          // closed shells without volume
-    doubled_volumes,      // triangles behind which closed shells enclose the same volume twice
-    slivers,              // triangles of three different nodes with an altitude within the tolerance
+    doubled_volumes,      // triangles or edges behind which closed shells enclose a volume twice
+    slivers,              // triangles with an altitude up to the tolerance, which is here at least default_weld
     thin_walls,           // sampled places at which the wall is thinner than half the mean edge
     unlikely_size,        // a size above 20 m or below 1e-6 m, probably a wrong unit of length
 };
@@ -58,22 +58,23 @@ struct SurfaceFault {
     SurfaceFaultKind kind{};    // kind of the fault
     std::size_t count = 0;      // number of triangles, edges, nodes, pairs of triangles, holes, shells or places
     Index triangle = no_index;  // first triangle with the fault; for holes: a triangle at the longest hole
-    Index other = no_index;     // second triangle of the first pair, or first triangle of the other shell
+    // pairs: second triangle of the first pair; duplicate_shells: a triangle of the repeated shell
+    Index other = no_index;
     Vec3 place = Vec3::Zero();  // place of the first fault; for holes: centre of the longest hole [m]
     Real length = 0;            // holes: length of the edges around the longest hole; thin_walls: smallest thickness;
-                                // duplicate_shells: largest distance from shell to repeat; unlikely_size: diagonal [m]
+                                // duplicate_shells: largest distance to the repeated shell; unlikely_size: diagonal [m]
 };
 
-/// Part of a surface whose triangles are connected by common edges. At an edge of several closed shells, the triangles
-/// around the volume of one shell are connected.
+/// Part of a surface whose triangles are connected by common edges. Where several volumes meet at an edge, only
+/// triangles around the same volume are connected there.
 struct SurfaceShell {
     std::size_t triangles = 0;  // number of triangles
     Index triangle = no_index;  // first triangle, by its number in the given surface
-    bool closed = false;        // true if no edge is free
+    bool closed = false;        // true if it has no open edges and a consistent orientation
     // enclosed volume after the orientation is repaired; negative for a void in another shell; 0 if not closed [m^3]
     Real volume = 0;
-    // Row in SurfaceReport::shells of the smallest shell around this one; no_index: none. A shell inside another one
-    // bounds a void if its volume is negative, else a region of its own.
+    // Row in SurfaceReport::shells of the closed shell of least volume around this one; no_index: none. A shell inside
+    // another one bounds a void if its volume is negative, else a region of its own.
     Index around = no_index;
 };
 
@@ -91,8 +92,8 @@ struct SurfaceReport {
     // Welded surface without flat and duplicate triangles and duplicate shells. Connected triangles have the same
     // orientation, and closed shells that lie in no other shell enclose a positive volume. Holes and crossings remain.
     SurfaceMesh cleaned{};
-    std::vector<Index> number{};         // number in the given surface of each triangle of `cleaned`
-    std::vector<Index> shell{};          // row in `shells` of each triangle of `cleaned`
+    std::vector<Index> number{};         // for each triangle of `cleaned`: its number in the given surface
+    std::vector<Index> shell{};          // for each triangle of `cleaned`: its row in `shells`
     std::vector<SurfaceShell> shells{};  // shells in the order of their first triangles
 
     /// The faults of a kind; nullptr if there are none.
@@ -101,8 +102,8 @@ struct SurfaceReport {
             if (fault.kind == kind) return &fault;
         return nullptr;
     }
-    /// True if `cleaned` bounds volumes and can be filled with tetrahedra without moving it: every edge has two
-    /// triangles, no triangles cross or overlap, and there are no slivers.
+    /// True if `cleaned` bounds volumes that can be filled with tetrahedra without moving its nodes: `faults` has none
+    /// of the kinds from `holes` to `slivers`, except doubled_volumes.
     bool can_be_filled() const;
 };
 
@@ -114,16 +115,17 @@ inline constexpr Real default_weld = 1e-6;
 /// A tolerance with which no nodes are merged, not even equal ones.
 inline constexpr Real no_weld = -1;
 
-/// Checks a surface. Nodes up to `tolerance` * (diagonal of the bounding box) apart are first merged, also in chains; 0
-/// merges equal nodes only. Triangles cross if they overlap by more than this distance in every direction (at least
-/// default_weld times the diagonal). The order of the nodes and triangles does not change. Throws SceneError if a node
-/// is not finite or a triangle has a node that does not exist. The error uses `name` as the name of the surface.
+/// Checks a surface. Nodes up to d = `tolerance` * (diagonal of the bounding box) apart are first merged, and so are
+/// the ends of a chain of such nodes. With 0 only equal nodes are merged. Triangles cross if they overlap in every
+/// direction by more than d, or than default_weld times the diagonal if this is larger. The order of the nodes and
+/// triangles does not change. Throws SceneError if a node is not finite or a triangle has a node that does not exist.
+/// The error uses `name` as the name of the surface.
 SurfaceReport check_surface(const SurfaceMesh& surface, Real tolerance = default_weld,
                             const std::string& name = "surface");
 
 /// Merges nodes as `check_surface` does, and drops triangles left with fewer than three different nodes. `number`, if
-/// given, gets the number in the given surface of each remaining triangle. `distance`: largest distance of merged
-/// nodes [m].
+/// given, is filled with the number that each remaining triangle has in `surface`. Nodes up to `distance` apart are
+/// merged [m].
 SurfaceMesh weld(const SurfaceMesh& surface, Real distance, std::vector<Index>* number = nullptr);
 
 /// Describes the faults of a kind with their number and the first place, for example "2 holes, the longest 0.3 m around

@@ -12,9 +12,10 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// A tie between nodes of a deformable body and another object: a body of any kind, a collider, or the world if neither
-/// is given. Each node is tied in its present position to the nearest point of the other object, which must not be
-/// farther away than the mean edge length of the body. The tie of a single node acts like a ball joint.
+/// A tie between nodes of a deformable body and another object: the body `to_body`, which may be of any kind, the
+/// collider `to_collider`, or the world if neither is given. Each node is tied in its present position to the nearest
+/// surface point of the other object. Throws SceneError if this point is farther away than the mean edge length of the
+/// body's surface. The tie of a single node acts like a ball joint.
 ///
 /// The kind `ball` ties only the mean point of all nodes, weighted by their masses. This point may be at any distance
 /// from a rigid object when the tie is made, and then keeps its place on this object. The impulse of the tie acts on
@@ -22,15 +23,17 @@ namespace skerry {
 struct TieSettings {
     TieKind kind = TieKind::weld;  // motion that the tie permits
     BodyHandle body{};             // a deformable body
-    std::vector<Index> nodes{};    // numbers of its tied nodes in its mesh, each given once
+    std::vector<Index> nodes{};    // numbers of the tied nodes in the mesh of `body`, each given once
     // The other object, if it is a body. A tie of kind `slide` needs a body or a collider, since the world has no
     // surface.
     std::optional<BodyHandle> to_body{};
     std::optional<ColliderHandle> to_collider{};  // the other object, if it is a collider; not together with `to_body`
-    // Force at which a node breaks off, > 0 [N]. It applies to each node: the node breaks off at the end of the first
-    // step in which its force is greater. For a ball it is the force of the tie. By default, a tie does not break.
+    // Force at which a node breaks off, > 0 [N]. Each node breaks off by itself, at the end of the first step in which
+    // its force is greater. A ball breaks as a whole, when the total force is greater. By default, a tie does not
+    // break.
     Real break_force = infinity;
-    // false: each node keeps its distance from the surface. true: the distance is closed at Settings::recovery_speed.
+    // false: each node keeps its initial distance from the surface. true: the distance is closed at
+    // Settings::recovery_speed.
     bool close_gap = false;
     // false: the body and the other object do not collide while at least one node is tied.
     bool bodies_touch = false;
@@ -45,18 +48,18 @@ struct TiedNode {
     std::optional<Real> broken{};  // time at which the node broke off [s]
 };
 
-/// State of a tie. Force and moment are those of the last step and act on the body whose nodes are tied.
+/// State of a tie after the last step. Force and moment act on the body whose nodes are tied.
 struct TieState {
     TieKind kind = TieKind::weld;                 // motion that the tie permits
     BodyHandle body{};                            // body of the tied nodes
     std::optional<BodyHandle> to_body{};          // the other object, if it is a body
     std::optional<ColliderHandle> to_collider{};  // the other object, if it is a collider
     Real break_force = infinity;                  // TieSettings::break_force [N]
-    Vec3 point = Vec3::Zero();      // mean position of the tied nodes, for a ball weighted by their masses [m]
+    Vec3 point = Vec3::Zero();      // mean position of all nodes, also broken ones; for a ball weighted by mass [m]
     Vec3 force = Vec3::Zero();      // force on `body` [N]
     Vec3 moment = Vec3::Zero();     // moment about `point` [N m]
     Real largest_force = 0;         // largest magnitude of `force` in a step since the tie was added [N]
-    Real error = 0;                 // largest error of a node that has not broken off [m]
+    Real error = 0;                 // largest TiedNode::error of the nodes that have not broken off [m]
     std::vector<TiedNode> nodes{};  // state of each node, in the order of the settings
 };
 

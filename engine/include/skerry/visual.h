@@ -41,17 +41,18 @@ struct VisualSurface {
 
 namespace mesh {
 
-/// Reads a visual surface from a file in one of the formats of `read_surface`. From Wavefront .obj files it also takes
-/// texture coordinates and materials: the lines newmtl, Kd, d, Tr and map_Kd of the files that `mtllib` names. `notes`,
-/// if given, gets a sentence for each such file and each material that does not exist. Throws SceneError.
+/// Reads a visual surface from a file in one of the formats of `read_surface`. From .ply and Wavefront .obj files it
+/// also takes texture coordinates. The line `mtllib` of an .obj file names .mtl files, from which it takes materials:
+/// the lines newmtl, Kd, d, Tr and map_Kd. `notes`, if given, gets a sentence for each missing .mtl file, and for each
+/// material that no file defines. Throws SceneError for invalid files.
 VisualSurface read_visual(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 }  // namespace mesh
 
-/// Position of a visual surface relative to its body, both at rest.
+/// Distances between a visual surface and its body, both in their rest shapes.
 struct VisualFit {
     std::size_t outside = 0;  // number of nodes of the visual surface outside of the body
-    Real farthest = 0;        // largest distance of these nodes from the body [m]
+    Real farthest = 0;        // largest distance of the nodes outside from the body [m]
     // Explains which distances or sizes are not plausible; empty if all are.
     std::string warning{};
 };
@@ -75,7 +76,7 @@ public:
     void remove(BodyHandle body);
     /// Visual surface of a body; nullptr if it has none. The pointer is valid until the surface is set or removed.
     const VisualSurface* get(BodyHandle body) const;
-    /// Position of the visual surface relative to its body. Throws SceneError if the body has no visual surface.
+    /// Distances between the visual surface and its body. Throws SceneError if the body has no visual surface.
     VisualFit fit(BodyHandle body) const;
     /// Present positions of the nodes of the visual surface [m]; empty if the body has none.
     std::vector<Vec3> positions(BodyHandle body) const;

@@ -29,8 +29,8 @@ namespace skerry {
 
 struct StepProblem;  // defined in problem.h
 
-/// Settings of a loaded world or of a clone that do not change its results. For a missing value, the value of the
-/// original world is used. If this build does not have the backend of the original world, `automatic` is used.
+/// Settings of a loaded world or of a clone. They do not change the results of steps. For a missing value, the value of
+/// the saved or cloned world is used. If this build does not have the backend of that world, `automatic` is used.
 struct LoadSettings {
     std::optional<Backend> backend{};  // library that manages the threads
     std::optional<int> threads{};      // number of threads, >= 0; a world with one thread starts no other thread
@@ -91,17 +91,17 @@ public:
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Prescribes the motion of some nodes of a body (numbers within the body). From now on the nodes stay in place or
     /// follow `motion`. Constant angular velocities rotate the nodes about `pivot`. Keys of a motion are poses at
-    /// absolute times; the nodes are attached to the pose that the keys have now. For a rigid or implicit body at least
-    /// three nodes that are not on one line are required. They hold the whole rigid body, or the frame of the implicit
-    /// body. A body that `automatic` made implicit first becomes explicit, as by set_dynamics().
+    /// absolute times; the nodes are attached to the pose that the keys give for the present time. For a rigid or
+    /// implicit body at least three nodes that are not on one line are required. They hold the whole rigid body, or the
+    /// frame of the implicit body. A body that `automatic` made implicit first becomes explicit, as by set_dynamics().
     ///
     /// `directions`: the nodes are held along these directions only, and are free normal to them (a roller support).
     /// Directions are fixed in the world, of any nonzero length, and perpendicular to each other. Empty: the nodes are
     /// held completely. Only for explicit bodies, and for velocities or keys without rotation. Several attachments can
     /// hold a node along directions that are perpendicular or equal; of equal ones the last attachment moves the node.
-    /// The contact solver treats these nodes as free. The part of a contact impulse along a held direction then acts on
-    /// the attachment instead of stopping the other object, so hold nodes completely where objects press on them along
-    /// a held direction (docs/methods/sets_and_rollers.md).
+    /// The contact solver treats nodes held along directions as free. The part of a contact impulse along a held
+    /// direction then acts on the attachment instead of stopping the other object, so hold nodes completely where
+    /// objects press on them along a held direction (docs/methods/sets_and_rollers.md).
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
                             const Vec3& pivot = Vec3::Zero(), const std::vector<Vec3>& directions = {});
     /// Removes an object, and with it the joints, ties and other objects that name it.
@@ -140,8 +140,8 @@ public:
     /// implicit: the step length that advance() uses.
     Real stable_step() const;
 
-    // State of a body. The spans are valid until bodies are added or removed. advance() changes the positions and
-    // velocities in the spans.
+    // State of a body. The spans are valid until bodies are added or removed, set_dynamics() changes a body, or
+    // reset(saved) is called. advance() changes the positions and velocities in the spans.
     std::span<const Vec3> positions(BodyHandle body) const;                   // positions of the nodes [m]
     std::span<const Vec3> velocities(BodyHandle body) const;                  // velocities of the nodes [m/s]
     std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // node numbers of boundary triangles
@@ -157,15 +157,16 @@ public:
     /// Stress at the given nodes, in the given order, computed from the elements around these nodes only. The values
     /// are bitwise those of node_stress(body). Throws SceneError if the body has no such node.
     std::vector<Mat3> node_stress(BodyHandle body, std::span<const Index> nodes) const;
-    /// Equivalent plastic strain, by tetrahedron. Strains of a material that yields are elastic strains.
+    /// Equivalent plastic strain, by tetrahedron. For a material that yields, strain() and node_strain() return the
+    /// elastic strain.
     std::vector<Real> plastic_strain(BodyHandle body) const;
     std::vector<Real> von_mises_stress(BodyHandle body) const;         // von Mises stress by tetrahedron [Pa]
     std::vector<Real> node_von_mises_stress(BodyHandle body) const;    // von Mises stress by node [Pa]
     std::vector<Vec3> node_principal_stresses(BodyHandle body) const;  // by node, the largest first [Pa]
     /// Step that each tetrahedron allows in the present shape of the body [s]: the stable step of the stiffest element
-    /// that covers the tetrahedron. The shortest of these steps is the stable step of the body; a strained body can
-    /// have a longer one, because elements at the same node share its mass. To lengthen the stable step, repair the
-    /// tetrahedra with the shortest step.
+    /// that covers the tetrahedron. The shortest of these steps is the stable step of an undeformed body. The stable
+    /// step of a strained body can be longer than the shortest, because elements at the same node share its mass. To
+    /// lengthen the stable step, repair the tetrahedra with the shortest step.
     std::vector<Real> tetrahedron_steps(BodyHandle body) const;
     /// Name of a body (BodySettings::name).
     const std::string& name(BodyHandle body) const;
@@ -186,7 +187,7 @@ public:
     bool asleep(BodyHandle body) const;            // true if the body is asleep, see Settings::sleep
     void wake(BodyHandle body);              // wakes a sleeping body; bodies that touch this body wake in later steps
     Real mean_edge(BodyHandle body) const;   // mean edge length of the surface of a body in its rest shape [m]
-    std::vector<BodyHandle> bodies() const;  // all bodies, in the order added (but see set_dynamics)
+    std::vector<BodyHandle> bodies() const;  // in the order added; after set_dynamics() a body counts as added last
     std::vector<ColliderHandle> colliders() const;  // all colliders, in the order added
     /// Present pose of a collider: position and rotation vector (axis times angle). For a plane it is the point of the
     /// plane and a rotation that takes +z to its normal.
@@ -209,13 +210,13 @@ public:
     Twist velocity(AttachmentHandle attachment) const;
 
     // Live control (docs/control.md); allowed between calls of advance. In callbacks of advance these functions throw
-    // SceneError. A change costs only the update of the changed object; data derived from the whole world stay valid.
+    // SceneError. A change updates only the changed object, so its cost does not depend on the size of the world.
     // Setting an equal value again changes no bit of the state. A refused value changes nothing, and the SceneError
     // names it.
     /// Sets the acceleration of gravity [m/s^2]. Sleeping bodies wake.
     void set_gravity(const Vec3& gravity);
-    /// Sets the velocities at which a collider, or the nodes of an attachment, move from now on [m/s, rad/s about the
-    /// origin of the pose]. They apply until they are set again. An earlier script or target is dropped.
+    /// Sets the velocities at which a collider, or the nodes of an attachment, move from now on [m/s, rad/s about
+    /// Pose::position]. They apply until the motion is set again. Earlier keys and targets are dropped.
     void set_velocity(ColliderHandle collider, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
     void set_velocity(AttachmentHandle attachment, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
     /// Moves to the given pose at constant velocities, so that the pose is reached after `duration` (> 0 [s]), and then
@@ -240,26 +241,27 @@ public:
     /// Gives all nodes the velocities of a rigid motion about the centre of mass [m/s, rad/s].
     void set_velocity(BodyHandle body, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
     /// Changes the kind of a body. Handle, name, settings and shape stay, and the body counts as added last. Centre of
-    /// mass, momentum and angular momentum stay the same up to rounding. Between explicit and implicit bodies,
-    /// velocities are taken over. A body that becomes rigid is frozen in its present shape; its vibration is lost. When
-    /// it becomes explicit or implicit again, its rest shape is still that of its mesh. A body that becomes explicit
-    /// starts with fully relaxed viscous stress, as if it had been in its shape for a long time. Throws SceneError for
-    /// `automatic`; for a body that is attached, has a joint or a given mass, has no tetrahedra, is a sphere, capsule
-    /// or cylinder, or has deformed plastically; for a body with self-contact that is to become rigid or implicit; for
-    /// a body with a set loss factor or plasticity that is to become implicit; and for a body with inverted tetrahedra
-    /// that is to become rigid.
+    /// mass, momentum and angular momentum stay the same up to rounding. A change between explicit and implicit keeps
+    /// the velocities of all nodes. A body that becomes rigid is frozen in its present shape; its vibration is lost.
+    /// When it becomes explicit or implicit again, its rest shape is still that of its mesh. A body that becomes
+    /// explicit starts with fully relaxed viscous stress, as if it had been in its shape for a long time. Throws
+    /// SceneError for `automatic`; for a body that is attached, has a joint or a given mass, has no tetrahedra, is a
+    /// sphere, capsule or cylinder, or has deformed plastically; for a body with self-contact that is to become rigid
+    /// or implicit; for a body with a set loss factor or plasticity that is to become implicit; and for a body with
+    /// inverted tetrahedra that is to become rigid.
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
     /// Puts a body back into its rest shape, without velocity, at the pose of its BodySettings or at the given pose of
-    /// its mesh. The body keeps no memory: plastic flow, strains of its losses, sleep, and the stored impulses of its
-    /// contacts and joints are reset. Attached nodes are held at their new positions; loads stay. A rigid body keeps
-    /// its shape, even if it was frozen in it. Settings::start_overlaps applies to new overlaps.
+    /// its mesh. Plastic flow, viscous strains, sleep, and the stored impulses of its contacts and joints are reset.
+    /// Attached nodes are held at their new positions; loads stay. A rigid body keeps its shape, even if it was frozen
+    /// in it. Settings::start_overlaps applies to new overlaps.
     void reset(BodyHandle body);
     void reset(BodyHandle body, const Pose& pose);
     /// Resets all bodies to the poses of their BodySettings. Time, colliders, attachments and loads do not change.
     void reset();
     /// Continues from the state of `saved`, which must be a clone() of this world. Handles of objects that `saved` has
-    /// stay valid; handles of objects that were added later become stale, unless objects were added to `saved`
-    /// as well. Threads and callbacks of this world stay. Whether forces are measured is taken from `saved`.
+    /// stay valid; handles of objects that were added to this world later become stale. However, if objects were added
+    /// to `saved` as well, such a handle may name one of those. Threads and callbacks of this world stay. Whether
+    /// forces are measured is taken from `saved`.
     void reset(const World& saved);
     /// Sets external forces on the nodes of a body [N]. These forces act until they are set again.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
@@ -273,7 +275,7 @@ public:
     void set_material(MaterialHandle material, const MaterialSettings& settings);
     std::vector<MaterialHandle> materials() const;   // handles in the order added
     MaterialHandle material(BodyHandle body) const;  // BodySettings::material
-    /// Returns the values that were set for the object. Other values are missing.
+    /// Returns the values that were set for the object itself. Values that were not set are empty.
     SurfaceSettings surface_properties(BodyHandle body) const;
     SurfaceSettings surface_properties(ColliderHandle collider) const;
     /// Replaces the surface properties that were set for an object. See SurfaceSettings for missing values.
@@ -325,8 +327,8 @@ public:
     /// Hash of all data on which the next step depends. It is equal on any number of threads and on every backend.
     std::uint64_t state_hash() const;
     /// From now on calls `take` with the contact problem of every step that has contacts and whose number is a multiple
-    /// of `every`. The call comes after the step, on the thread that advances. For such a step the velocities are
-    /// copied. Pass an empty function to end the calls.
+    /// of `every`. The call comes after the step, on the thread that advances. Each such step keeps copies of the
+    /// velocities, which takes some time. Pass an empty function to end the calls.
     void watch_contact_problems(std::function<void(const StepProblem&)> take, std::uint64_t every = 1);
     /// Starts or stops recording the activity of every worker.
     void set_tracing(bool on);

@@ -21,11 +21,12 @@ enum class Admission {
 };
 
 /// Admits the page at /, and the stream at /live?token=TOKEN. Both need the Host 127.0.0.1:PORT or localhost:PORT, so
-/// that a foreign name that resolves to this machine is refused. An Origin must belong to the same Host. The stream
-/// needs an Origin and the token. So neither pages of other sites nor other users of the machine can reach the run.
+/// that a foreign name that resolves to this machine is refused. An Origin header, if there is one, must name the same
+/// host. The stream needs an Origin and the token. Pages of other sites fail because of Host and Origin, and other
+/// users of the machine because of the token.
 Admission admission(const LiveRequest& request, int port, std::string_view token);
 
-/// Returns 128 random bits of the system as 32 hexadecimal digits.
+/// Returns 128 random bits from the operating system as 32 hexadecimal digits.
 std::string random_token();
 
 }  // namespace skerry

@@ -44,8 +44,8 @@ public:
         shutdown(socket_, SHUT_RDWR);
     }
 
-    /// Ends the connection if the browser has sent nothing for 30 s, because it has not answered several pings, or
-    /// because it stopped in the middle of a message, which suspends the pings.
+    /// Ends the connection if the browser has sent nothing for 30 s. It has then left several pings unanswered, or
+    /// stopped in the middle of a message, during which the library sends no pings.
     void close_if_silent() const {
         constexpr std::uint32_t longest_silence = 30'000;  // [ms]
         tcp_info info{};
@@ -60,7 +60,7 @@ private:
     /// Sends a message. Returns false if only a part was sent, because the time limit for requests was reached or the
     /// connection is broken. Nothing more can be sent then, as the browser would read it as the rest of the message.
     bool send(int opcode, std::string_view bytes) {
-        constexpr std::size_t header = 2;  // length of a message without data, for which the library returns it
+        constexpr std::size_t header = 2;  // result of the library for a message without data: the length of its header
         mg_lock_connection(connection_);   // a ping of the library must not follow a part of a message either
         const int sent = mg_websocket_write(connection_, opcode, bytes.data(), bytes.size());
         broken_ = sent < 0 || static_cast<std::size_t>(sent) != (bytes.empty() ? header : bytes.size());
@@ -103,7 +103,8 @@ LiveRequest request_of(const mg_request_info& info) {
     return request;
 }
 
-/// Returns the port of one end of a socket; 0 if it is not connected, or no socket.
+/// Returns the port of one end of a socket; 0 if `socket` is not connected or no socket. `call`: getsockname for this
+/// end, getpeername for the other end.
 template <class Call>
 int port_of(int socket, Call&& call) {
     sockaddr_in place{};
@@ -115,7 +116,7 @@ int port_of(int socket, Call&& call) {
 /// Returns the socket of a connection, for which the library has no function; -1 if it is not found. `port`: port of
 /// the server.
 int socket_of(const mg_connection* connection, int port) {
-    constexpr long most_sockets = 1 << 16;  // numbers that are tried
+    constexpr long most_sockets = 1 << 16;  // socket numbers that are tried
     const long limit = sysconf(_SC_OPEN_MAX);
     const int end = static_cast<int>(limit > 0 ? std::min(limit, most_sockets) : most_sockets);
     const int remote = mg_get_request_info(connection)->remote_port;
@@ -179,7 +180,7 @@ void LiveServer::Impl::close_silent_links() {
     for (const SocketLink* link : links) link->close_if_silent();
 }
 
-/// Returns 0 for a WebSocket, with which the library then continues, and the status of the answer otherwise.
+/// Answers a request and returns the status of the answer. For a WebSocket returns 0, and the library continues.
 int LiveServer::Impl::begin_request(mg_connection* connection) {
     constexpr int ok = 200, forbidden = 403;
     return guarded(forbidden, [&] {
@@ -217,7 +218,7 @@ void LiveServer::Impl::ready(mg_connection* connection, void*) {
         }
         mg_set_user_connection_data(connection, link.release());
         const std::lock_guard lock(server.links_mutex);
-        server.links.merge(joined);  // cannot fail
+        server.links.merge(joined);  // moves the node of `joined`, so it allocates nothing and cannot throw
         return true;
     });
 }

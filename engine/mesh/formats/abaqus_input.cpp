@@ -9,7 +9,8 @@ bool is_comment(std::string_view line) {
     return line.empty() || line.starts_with("**");
 }
 
-/// Adds the fields of a line to `fields`. Returns true if the line ends with a comma, behind which the row continues.
+/// Adds the fields of a line to `fields`. Returns true if the line ends with a comma: the row may then continue in the
+/// next line.
 bool add_fields(std::string_view line, std::vector<std::string>& fields) {
     for (std::size_t begin = 0; begin < line.size();) {
         const std::size_t end = std::min(line.find(',', begin), line.size());
@@ -24,7 +25,7 @@ std::string without_quotes(std::string_view text) {
     return std::string(text);
 }
 
-/// Makes a block of the fields of a keyword line.
+/// Makes a block from the fields of a keyword line. The first field is the keyword, the others are parameters.
 AbaqusBlock block_of(const std::vector<std::string>& fields) {
     AbaqusBlock block;
     for (const std::string& field : fields) {

@@ -12,7 +12,7 @@ struct AbaqusBlock {
     std::string keyword;                           // upper case, without the asterisk
     std::map<std::string, std::string> parameter;  // by its name in upper case; empty for a parameter without a value
     std::size_t place = 0;                         // position of the keyword line in the file [bytes]
-    std::size_t first = 0, end = 0;                // positions of the data lines in the file [bytes]
+    std::size_t first = 0, end = 0;                // begin and end of its data lines in the file [bytes]
 
     bool has(const char* name) const { return parameter.contains(name); }
     /// Value of the parameter `name`; empty if the parameter is missing or has none.

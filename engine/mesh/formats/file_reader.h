@@ -84,8 +84,8 @@ public:
         return value;
     }
     void skip_bytes(std::size_t count, const char* field);
-    /// Moves the position behind the next occurrence of `mark` at the end of a word. No line end is needed between
-    /// binary numbers and `mark`. Returns false and does not move if there is no such occurrence.
+    /// Continues behind the next occurrence of `mark` that white space or the end of the file follows. Binary numbers
+    /// may precede `mark` directly. Returns false and stays if there is no such occurrence.
     bool skip_behind(std::string_view mark);
 
     // Numbers of formats that have a text form and a binary form.
@@ -102,8 +102,8 @@ public:
     // -----------------------------------------------------------------------------------------------------------------
 
     /// Checks a number of rows that was read from the file: it must not be negative, and that many rows of at least
-    /// `bytes` bytes must fit into the rest of the file. A wrong count therefore cannot cause the allocation of more
-    /// than a small multiple of the file size.
+    /// `bytes` bytes must fit into the rest of the file. The count must also be below 2^29. With this check a wrong
+    /// count cannot make the program allocate more than a small multiple of the file size.
     std::size_t checked_count(std::int64_t count, std::size_t bytes, const char* field) const;
     /// Throws SceneError unless the number is finite.
     Real finite(Real value, const char* field) const;

@@ -16,11 +16,11 @@
 
 namespace skerry::mesh {
 
-// Corners of the edges of a tetrahedron, in the order of its nodes of second order. The first three are those of a
-// triangle.
+// Both corners of each edge of a tetrahedron, in the order in which RawMesh::middle lists the nodes in the middle of
+// the edges. The first three entries are also the edges of a triangle.
 constexpr std::array<std::array<std::size_t, 2>, 6> second_order_edges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-// Rows of RawMesh::middle and RawMesh::triangle_middle of linear elements.
+// Rows that stand for a linear element in RawMesh::middle and RawMesh::triangle_middle.
 constexpr std::array<Index, 6> linear_tetrahedron{no_index, no_index, no_index, no_index, no_index, no_index};
 constexpr std::array<Index, 3> linear_triangle{no_index, no_index, no_index};
 
@@ -28,15 +28,15 @@ constexpr std::array<Index, 3> linear_triangle{no_index, no_index, no_index};
 struct RawMesh {
     std::vector<Vec3> nodes;
     std::vector<std::array<Index, 4>> tetrahedra;
-    // Nodes of second-order tetrahedra in the middle of `second_order_edges`. The list may be shorter than
-    // `tetrahedra`; the remaining ones are linear.
+    // Middle nodes of each tetrahedron, in the order of `second_order_edges`; `linear_tetrahedron` if it is linear. The
+    // list may be shorter than `tetrahedra`; the remaining tetrahedra are linear.
     std::vector<std::array<Index, 6>> middle;
     std::vector<int> label;  // label of each tetrahedron; empty: no labels
     std::vector<std::array<Index, 3>> triangles;
     std::vector<std::array<Index, 3>> triangle_middle;  // like `middle`, for the triangles
     std::size_t curved_triangles = 0;                   // number of triangles of third or higher order
-    std::map<std::string, MeshSet> sets;                // faces are the corners of triangles of any order
-    std::map<std::string, std::vector<Vec3>> vectors;   // by name: a vector for each tetrahedron
+    std::map<std::string, MeshSet> sets;                // faces have 3 corners, also those of second order
+    std::map<std::string, std::vector<Vec3>> vectors;   // by name; one vector for each tetrahedron
     // for an .obj or .ply file: texture coordinates, names of materials, and their indices by triangle
     VisualSurface visual;
     std::size_t flat_triangles = 0;  // number of triangles of an .obj or .ply file that were dropped, as they use a
@@ -76,17 +76,18 @@ void take_tetrahedron(std::span<const Index> nodes, const FileReader& reader, Ra
 /// Adds a triangle of first order (3 nodes) or second order (6 nodes). Throws SceneError if a node occurs twice.
 void take_triangle(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
 
-/// Makes all elements of a mesh of linear elements second-order elements. The new nodes follow the present ones.
+/// Converts a mesh of linear elements to second order. The new nodes are appended to `nodes`.
 void add_middle_nodes(RawMesh& mesh);
 
-/// Divides each tetrahedron of second order into eight linear ones and each triangle of second order into four, which
-/// together use all nodes. Parts have the labels, vectors and sets of the whole. Adds a note.
+/// Divides each tetrahedron of second order into eight linear ones, and each triangle of second order into four. These
+/// parts use all nodes, and have the labels, vectors and sets of the divided element. Adds a sentence to `notes`.
 void divide_second_order(RawMesh& mesh);
 
 /// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
 void add_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
 /// Adds a polygon of a file that has only a surface. Like add_polygon, but triangles that use a node twice are left out
-/// and counted in the mesh. Returns the positions in `nodes` of the second corner of each triangle that was added.
+/// and counted in the mesh. Returns, for each triangle that was added, the index i in `nodes` of its second corner; its
+/// third corner is nodes[i + 1].
 std::vector<std::size_t> add_surface_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
 
 // Readers of the mesh file formats. All of them throw SceneError for invalid files.

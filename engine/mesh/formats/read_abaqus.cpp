@@ -43,25 +43,26 @@ AbaqusKind kind_of(const std::string& type) {
     return {.name = "elements of type " + type};
 }
 
-/// A part of the file with its own numbers of nodes and elements: an instance, a part without instance, or the rest.
+/// A section of the file with its own numbering of nodes and elements: an instance, a part if the file has no
+/// instances, or everything outside of these.
 struct AbaqusScope {
     std::string prefix{};  // first part of the names of its sets, for example "Part-1-1."
     std::size_t first_node = 0;
-    NodeNumbers nodes{};                                      // rows count from first_node
-    std::unordered_map<std::int64_t, std::size_t> element{};  // index of each element by its number
+    NodeNumbers nodes{};  // a row of NodeNumbers plus first_node is an index in mesh_.nodes
+    std::unordered_map<std::int64_t, std::size_t> element{};  // index in elements_ by the number in the file
 };
 
 struct AbaqusElement {
     std::size_t nodes;       // 4, 10, 3, 6, or 0 if the element is not read
-    Index row;               // row of the tetrahedron or triangle
-    std::size_t first, end;  // range of its nodes in the list of the nodes of all elements
+    Index row;               // index in mesh_.tetrahedra or mesh_.triangles
+    std::size_t first, end;  // range of its nodes in element_nodes_
 };
 
 /// A set of nodes or of elements.
 struct AbaqusSet {
     std::string name{};
-    bool internal = false;               // made by a program for its own use
-    std::vector<std::size_t> members{};  // rows of nodes, or indices of elements
+    bool internal = false;               // has the parameter INTERNAL; the mesh does not get it
+    std::vector<std::size_t> members{};  // indices in mesh_.nodes, or in elements_
 };
 
 class AbaqusReader {
@@ -81,11 +82,11 @@ public:
     }
 
 private:
-    /// Blocks of a part or of the file outside of parts (a scope), and the motion by which *INSTANCE places its nodes.
+    /// Blocks of one scope, see AbaqusScope, and the block *INSTANCE whose motion moves the nodes of the scope.
     struct Instance {
         std::string prefix{};
         std::vector<const AbaqusBlock*> blocks{};
-        const AbaqusBlock* pose = nullptr;  // block *INSTANCE with the numbers of the motion
+        const AbaqusBlock* pose = nullptr;  // null: the nodes are not moved
     };
 
     /// Refuses keywords that create nodes or elements by other means than by listing them.
@@ -247,8 +248,8 @@ private:
         return set;
     }
 
-    /// Returns the row of the node with a number, or the index of the element, depending on `sets`. Throws SceneError
-    /// if there is none.
+    /// Converts a number in the file to the index of a node in mesh_.nodes if `sets` is node_sets_, otherwise to the
+    /// index of an element in elements_. Throws SceneError if there is none.
     std::size_t member(const std::string& number, const AbaqusScope& scope, const Sets& sets) {
         if (&sets == &node_sets_)
             return scope.first_node +
@@ -319,7 +320,8 @@ private:
         set.members.insert(set.members.end(), members.begin(), members.end());
     }
 
-    /// Adds the members with the numbers of a row of three: the first number, the last, and the step.
+    /// Adds the members whose numbers a row of *NSET or *ELSET with GENERATE describes: first number, last number, and
+    /// increment (1 if it is missing).
     void add_range(const std::vector<std::string>& row, const AbaqusScope& scope, const Sets& sets,
                    std::vector<std::size_t>& to) {
         if (row.size() < 2 || row.size() > 3)
@@ -365,7 +367,8 @@ private:
         });
     }
 
-    /// Adds a face of an element to a surface. A tetrahedron without a face label is added as a whole.
+    /// Adds a face of an element to a surface. `label`: S1 to S4 for a face of a tetrahedron. A tetrahedron without a
+    /// label is listed as a whole, and take_surfaces() selects its faces.
     void add_face(const AbaqusElement& element, const std::string& label, MeshSet& surface) {
         constexpr std::array<std::array<std::size_t, 3>, 4> faces{{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
         const auto row = static_cast<std::size_t>(element.row);
@@ -411,8 +414,8 @@ private:
             if (!set.internal) mesh_.sets[set.name].nodes.assign(set.members.begin(), set.members.end());
     }
 
-    /// Adds the sets of elements to the mesh. If a set of nodes has the same name and is not just the nodes of the
-    /// elements, the set of elements gets another name.
+    /// Adds the sets of elements to the mesh. If a set of other nodes than those of the elements has the same name,
+    /// "_elements" is appended to the name.
     void take_element_sets() {
         for (const auto& [key, set] : element_sets_) {
             if (set.internal) continue;

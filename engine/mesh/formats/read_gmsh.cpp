@@ -7,8 +7,8 @@
 namespace skerry::mesh {
 namespace {
 
-// Number of nodes of each Gmsh element type; 0 for type 0, which does not exist. The types are lines, triangles,
-// quadrangles, tetrahedra, hexahedra, prisms, pyramids and points.
+// Number of nodes of a Gmsh element, by the code of its type ("MSH file format" in the manual). The code 0 does not
+// exist.
 constexpr std::array<std::size_t, 32> nodes_of_type{0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                                     8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
 
@@ -147,8 +147,8 @@ void require_end(FileReader& reader, const std::string& mark) {
                         "if the section has more rows than its header announces, correct the count in the header");
 }
 
-/// Sets the labels of the tetrahedra: the physical groups, which users number. If no tetrahedron is in a physical
-/// group, the labels are the numbers of the geometric volumes.
+/// Sets the labels of the tetrahedra to the numbers of their physical groups, which users choose. If no tetrahedron is
+/// in a group, the labels are the numbers of the geometric volumes. Sets no labels if a number exceeds 32 bits.
 void label(GmshMesh& mesh) {
     const bool grouped = std::ranges::any_of(mesh.tags, [](const GmshTags& tags) { return tags.physical != 0; });
     std::vector<int> labels;
@@ -162,8 +162,8 @@ void label(GmshMesh& mesh) {
     mesh.label = std::move(labels);
 }
 
-/// Names the physical groups. A group without a name is called after its dimension and number. A volume without a name
-/// gives no set, because its number is a label.
+/// Adds the physical groups and GmshMesh::flagged to the sets of the mesh. A group without a name is called after its
+/// dimension and number. A volume without a name gives no set, because its number is a label.
 void name_groups(GmshMesh& mesh) {
     constexpr std::array<const char*, 3> kinds{"point_", "curve_", "surface_"};
     for (auto& [group, set] : mesh.groups) {

@@ -8,8 +8,8 @@
 
 namespace skerry::mesh {
 
-/// Group numbers of an element: its physical group (0: none) and its elementary (geometric) entity. `number`: number of
-/// the element in the file.
+/// Numbers in the file: of the physical group of an element (0: none), of its elementary (geometric) entity, and of the
+/// element itself.
 struct GmshTags {
     std::int64_t physical = 0, elementary = 0, number = 0;
 };
@@ -25,14 +25,15 @@ struct GmshMesh : RawMesh {
     std::vector<GmshTags> tags;
     std::map<GmshEntity, MeshSet> groups;           // elements of each physical group
     std::map<GmshEntity, std::string> group_names;  // names of physical groups that have one
-    // numbers of elements by the name of a view of element data in which they have the value 1 and all others 0
+    // by name of a view of element data with values 0 and 1 only: numbers of the elements with the value 1
     std::map<std::string, std::vector<std::int64_t>> flagged;
     std::vector<Index> element_rows;  // nodes of the element that is being read
 };
 
 /// Reads the section $PhysicalNames, which is text in every file.
 void read_gmsh_names(FileReader& reader, GmshMesh& mesh);
-/// Reads the section $ElementData of a text file. Views with other values than 0 and 1 are ignored.
+/// Reads a section $ElementData (a view) of a text file into GmshMesh::flagged. Views with other values than 0 and 1
+/// are ignored.
 void read_gmsh_element_data(FileReader& reader, GmshMesh& mesh);
 
 /// These functions read the sections $Nodes ($NOD in version 1) and $Elements ($ELM in version 1) of versions 1 and 2.
@@ -52,9 +53,9 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
 /// higher order.
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader);
 
-/// Adds a tetrahedron or triangle to the mesh. Elements of other types are only counted. The nodes of the element must
-/// exist in either case. Adds the element to its physical groups, the numbers of which are `groups`. A tetrahedron that
-/// repeats the last one for another group is not added again.
+/// Adds a tetrahedron or triangle to the mesh. Elements of other types are only counted. In either case, adds the
+/// element to the physical groups with the numbers `groups`, and throws SceneError if one of its nodes does not exist.
+/// A tetrahedron that repeats the last one for another group is not added again.
 void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const GmshTags& tags,
                        std::span<const std::int64_t> groups, const NodeNumbers& numbers, const FileReader& reader,
                        GmshMesh& mesh);

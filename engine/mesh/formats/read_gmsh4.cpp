@@ -77,7 +77,9 @@ void require_total(const FileReader& reader, std::size_t found, std::int64_t ann
                         "the blocks of this section announce that many rows in total; the header must agree");
 }
 
-/// Reads a block of nodes: first the numbers of all its nodes, then their positions.
+/// Reads a block of `rows` nodes: first their numbers, by which `range` is extended, then their positions. Each
+/// position is followed by `parameters` parametric coordinates, which are skipped. `total`: number of nodes of the
+/// file.
 void read_node_block(FileReader& reader, bool binary, std::size_t rows, std::size_t parameters, std::size_t total,
                      NodeNumbers& numbers, std::array<std::int64_t, 2>& range, GmshMesh& mesh) {
     const std::size_t first = mesh.nodes.size();

@@ -8,8 +8,8 @@
 namespace skerry::mesh {
 namespace {
 
-/// Reads the number of a node or of a texture point. Negative numbers count from the last of the `count` rows read so
-/// far, which is -1.
+/// Reads the number of a node or of a texture point, and returns its index. `rows`: number of nodes or texture points
+/// so far. Number 1 is the first of them, -1 the last.
 Index parse_number(const FileReader& reader, std::string_view text, const char* field, std::size_t rows) {
     const std::int64_t number = reader.parse_integer(text, field);
     const auto count = static_cast<std::int64_t>(rows);
@@ -41,7 +41,7 @@ std::array<Real, N> parse_reals(const FileReader& reader, const std::vector<std:
     return values;
 }
 
-/// The text of a line behind its first word, such as a name with spaces.
+/// The text of a line behind its first word `key`, such as a name with spaces.
 std::string rest_of(std::string_view line, std::string_view key) {
     line.remove_prefix(key.size());
     const std::size_t begin = line.find_first_not_of(" \t");
@@ -62,7 +62,7 @@ void read_face(const FileReader& reader, const std::vector<std::string_view>& wo
     std::vector<Index> corners, texture;
     for (std::size_t i = 1; i < words.size(); ++i) {
         corners.push_back(parse_number(reader, words[i].substr(0, words[i].find('/')), "node", mesh.nodes.size()));
-        // A file may use texture points that it does not define. Such numbers are ignored.
+        // Some files number texture points without defining any. These numbers are ignored.
         if (const std::string_view part = texture_part(words[i]); !part.empty() && !visual.texture_points.empty())
             texture.push_back(parse_number(reader, part, "texture point", visual.texture_points.size()));
     }

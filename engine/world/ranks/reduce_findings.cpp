@@ -12,10 +12,10 @@ namespace skerry {
 
 namespace {
 
-/// Columns that convert rows of this rank to the numbers that all ranks use, and that describe the bodies for the next
-/// step.
+/// Columns that convert rows of this rank's tables to numbers that mean the same on all ranks, and columns that tell
+/// whether a body moves or may be too far from the origin in the next step.
 struct NamedBodies {
-    std::span<const Index> place;         // RankState
+    std::span<const Index> place;         // by body: its row in the undivided world
     std::span<const std::int32_t> owner;  // RankState
     std::span<const Range> nodes;         // BodyTable
     std::span<const Range> tetrahedron_blocks;
@@ -47,7 +47,8 @@ struct NamedBodies {
     bool moves(std::size_t body) const {
         return (kind[body] == BodyKind::deformable && !asleep[body]) || max_speed[body] != 0;
     }
-    /// True if the body may be too far from the origin after two steps of length `h` (check_distance) [s].
+    /// True if the first node of the body may be too far from the origin (check_distance) after two steps of length `h`
+    /// [s]. The outer factor 2 is a safety margin. NaN counts as too far.
     bool may_be_far(std::size_t body, Real h) const {
         if (nodes[body].size() == 0) return false;
         const Real distance = position[static_cast<std::size_t>(nodes[body].begin)].cwiseAbs().maxCoeff();
@@ -56,7 +57,7 @@ struct NamedBodies {
     }
 };
 
-/// Findings of the stages of this rank, which the combined findings replace.
+/// Findings of the stages of this rank. take_findings replaces the mutable ones by the findings of all ranks.
 struct StageFindings {
     const ContactMeasures& measures;
     const Index& unstrained;
@@ -80,7 +81,8 @@ struct StageFindings {
     }
 };
 
-/// Counts the inversions of the bodies that this rank owns.
+/// Counts the inverted tetrahedra of bodies that this rank owns, and names the first one. The owners of ghosts count
+/// theirs.
 void note_inversions(const NamedBodies& bodies, const StageFindings& found, RankFindings& mine) {
     mine.inverts_first = found.inversions.first;
     for (const InversionPart& part : found.inversion_parts) {
@@ -93,7 +95,8 @@ void note_inversions(const NamedBodies& bodies, const StageFindings& found, Rank
     }
 }
 
-/// Adds the findings of the stages to those of this rank.
+/// Copies the findings of the stages to `mine`, with numbers of bodies, nodes and tetrahedra that are valid on all
+/// ranks.
 void note_findings(const NamedBodies& bodies, const StageFindings& found, Real h, RankFindings& mine) {
     const StepVerdict& verdict = found.verdict;
     mine.fault = verdict.fault;
@@ -128,8 +131,8 @@ void take_findings(const RankFindings& all, const StageFindings& found) {
                      .fastest = {all.strain_rate, or_none(all.strained_body)}};
     if (all.fault == StepFault::not_finite) found.verdict.fastest = {};
     found.strained.unsolved = or_none(all.unsolved_body);
-    // The findings must equal those of a process that simulates the whole world. It tests for inversions and crossings
-    // only if no body has a fault, and for crossings only if no candidate list is too short.
+    // The findings must equal those of a process that simulates the whole world. That process tests for inversions and
+    // crossings only if no body has a fault, and for crossings only if no candidate list is too short.
     const bool tested = all.fault == StepFault::none;
     found.inversions =
         tested ? Inversions{all.inversions, or_none(all.inverted_body), all.inverted_tetrahedron, all.inverts_first}
@@ -137,7 +140,8 @@ void take_findings(const RankFindings& all, const StageFindings& found) {
     found.table.beyond_lists = tested && all.beyond_lists;
     found.crossings = tested ? all.crossings : 0;
     if (!tested || all.beyond_lists || all.again_over_ranks()) found.table.found_count = 0;
-    // With a positive number of crossings, the stages that commit the step do nothing.
+    // A nonzero number of crossings keeps the stages that commit the step from running. judge() does not read it,
+    // because it returns again_over_ranks first.
     if (all.again_over_ranks()) found.crossings = 1;
 }
 

@@ -8,7 +8,8 @@ namespace skerry {
 
 namespace {
 
-/// Limits by the bodies that this rank owns. Model::of_ranks must have its initial value, which limits nothing.
+/// Limits that follow from the tables of this rank. Model::of_ranks must have its initial value, because stable_step()
+/// also applies the limits in it.
 LimitsOfRanks limits_of_rank(const WorldState& world) {
     const Model& model = world.model;
     LimitsOfRanks limits;
@@ -75,7 +76,8 @@ void reduce_limits(WorldState& world) {
     for (Index* place : {&limits.stiffest, &limits.spinning})
         if (*place == RankFindings::nobody) *place = no_index;
     model.of_ranks = limits;
-    // Force elements anywhere in the world change the rounding of all bodies, so all ranks must know of them.
+    // If any rank has force elements, all ranks add applied forces to all nodes, as an undivided world does. Code with
+    // and without these forces rounds differently.
     model.forced |= limits.forced;
     if (limits.clusters_grew) world.ranks.pieces_before.clear();
     model.clusters_grew = false;

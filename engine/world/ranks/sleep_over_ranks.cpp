@@ -1,6 +1,6 @@
-// Sleep of bodies with several holders. Each rank knows only the contacts that it owns. A set of touching bodies is
-// therefore joined from the sets of all ranks, and a body wakes on all its holders if one rank wakes it. Both are rare:
-// the reduction of findings shows whether any rank needs them.
+// Sleep of bodies that several ranks hold. Each rank stores only the contacts of its own pairs. A set of touching
+// bodies is therefore joined from the sets of all ranks, and a body wakes on all its ranks if one of them wakes it. The
+// ranks exchange such data only if reduce_findings shows that one of them needs it, which is rare.
 #include <algorithm>
 #include <cstddef>
 #include <span>
@@ -15,7 +15,7 @@ namespace {
 
 /// Bodies, with the ranks that hold them.
 struct HeldBodies {
-    std::span<const Index> place;                  // RankState
+    std::span<const Index> place;                  // by body: its row in the undivided world
     const std::vector<std::vector<int>>& holders;  // RankState
     std::span<const BodyKind> kind;                // BodyTable
     std::span<const std::uint8_t> asleep;
@@ -47,8 +47,9 @@ void copy(std::span<const Row> from, Column<Row>& to) {
     std::ranges::copy(from, to.begin());
 }
 
-/// Lists the sleeping bodies with several holders that this rank wakes. Bodies that are joined to awake ones are left
-/// out, because all holders find them. Also notes whether a body with several holders may fall asleep in this step.
+/// Lists the sleeping bodies with several holders that this rank wakes. Bodies that wake because a link, such as a
+/// joint, connects them to an awake body are left out: every holder finds these itself. Also notes whether a body with
+/// several holders may fall asleep in this step.
 void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                 std::span<const std::uint8_t> driven, const AttachmentTable& attachments, const SleepStep& step,
                 RankSleep& memory, RankFindings& mine) {
@@ -68,7 +69,7 @@ void find_wakes(const HeldBodies& bodies, const TouchInputs& touches, std::span<
     mine.wakes = !memory.woken.empty();
 }
 
-/// Marks in `pressed` the bodies that other ranks wake.
+/// Marks in `pressed` the bodies that any rank wakes, so that wake_bodies wakes them here.
 void join_wakes(const HeldBodies& bodies, const RankSleep& memory, Column<std::uint8_t>& pressed,
                 RankChannel& channel) {
     pressed.resize(bodies.place.size(), 0);
@@ -88,7 +89,7 @@ void join_sets(const HeldBodies& bodies, SleepMemory& sets, RankSleep& memory, R
     }
     const std::span<const SetMember> mine = memory.members;
     const std::vector<RankMessage> all = channel.ranks->gather_everywhere(std::as_bytes(mine));
-    // The nodes of `joined` are the members of all messages, in order.
+    // Entry k of the union-find `joined` stands for the k-th member in the messages of all ranks.
     Index count = 0, last_place = -1;
     for (const RankMessage& message : all)
         MailReader(message).take_all<SetMember>([&](const SetMember& member) {

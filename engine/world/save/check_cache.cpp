@@ -86,7 +86,8 @@ bool inside(Index row, Range range) {
     return row >= range.begin && row < range.end;
 }
 
-/// True if a candidate consists of a feature of body `a` and of a part or a point of a collider.
+/// True if a candidate consists of a feature of body `a` and a part or a point of a collider. The keys of edge
+/// candidates are multiples of contacts_of_edge (edge_collider_feature).
 bool is_of_collider(const Candidate& candidate, const BodyTable& bodies, Index a, ColliderShape shape) {
     const Index parts = collider_part_count(shape), second = second_local(candidate.feature);
     if (is_edge_edge(candidate.feature))
@@ -98,7 +99,8 @@ bool is_of_collider(const Candidate& candidate, const BodyTable& bodies, Index a
     return inside(candidate.first, bodies.vertices[a]) && second < parts;
 }
 
-/// Throws SceneError if a leaf is not in the tree of its body. The first row is the root of the tree.
+/// Throws SceneError unless the rows of LeafPairTable::listed are leaves in the tree of the body. The first row must be
+/// the root, which stands for all pairs of leaves that are not listed. Only self-contacts may have rows.
 void check_leaf_pairs(const SavedFile& file, const Model& model, const PairTable& pairs, std::size_t p) {
     const Range tree = model.bodies.bvh_nodes[pairs.first[p]];
     const auto is_leaf = [&](Index row) {

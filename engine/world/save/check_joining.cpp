@@ -135,7 +135,7 @@ struct AnchorNames {
     std::string collider, point;
 };
 
-/// Checks anchors of a table.
+/// Checks that anchors on bodies name existing nodes and no collider. Anchors without a body are not checked here.
 void check_anchors(const SavedFile& file, const Model& model, const AnchorNames& names, const AnchorColumns& anchors) {
     for (std::size_t row = 0; row < anchors.body.size(); ++row) {
         const Index body = anchors.body[row];

@@ -34,7 +34,7 @@ void check_sizes(const SavedFile& file, Model& model) {
     expect_size(file, "attachments/anchor", model.attachments.anchor.size(), model.attachments.node.size());
 }
 
-/// Checks that each row has a handle, and that each handle in use has a row.
+/// Checks that each row with a slot has a handle, and that each handle in use has a row.
 template <class Handle>
 void check_handles(const SavedFile& file, const std::string& name, HandleMap<Handle>& map,
                    const std::vector<std::uint32_t>& slot_of_row) {
@@ -225,7 +225,7 @@ void check_moved(const SavedFile& file, const Model& model) {
     expect_partition(file, "attachments/nodes", attachments.nodes, attachments.node.size());
     for (std::size_t a = 0; a < attachments.slot.size(); ++a) {
         const Mat3& held = attachments.held[a];
-        const Mat3 products = held.transpose() * held;  // diagonal if the columns are orthonormal or zero
+        const Mat3 products = held.transpose() * held;  // diagonal if the columns are orthogonal or zero
         const Vec3 lengths = products.diagonal();
         const bool unit = ((lengths.array() - 1).abs() < 1e-9 || lengths.array() == 0).all() && lengths.maxCoeff() > 0;
         if (!unit || !(products - Mat3(lengths.asDiagonal())).isZero(1e-9))
@@ -257,8 +257,8 @@ void check_disabled_pairs(const SavedFile& file, const Model& model) {
     }
 }
 
-/// Checks the data for evaluating stable steps in parallel with the steps. Empty columns mean that no evaluation has
-/// started yet.
+/// Checks the progress of the stable-step checks, which are spread over many steps. Empty columns mean that no check
+/// has started yet.
 void check_watch(const SavedFile& file, const Model& model) {
     const StepWatch& watch = model.watch;
     const std::size_t rows = watch.step.size(), nodes = watch.position.size();

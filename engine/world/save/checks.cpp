@@ -12,7 +12,8 @@ namespace skerry {
 
 namespace {
 
-/// True for columns that may contain infinity. Infinity means that there is no bound, or that the lane is unused.
+/// True for columns that may contain infinity. Infinity means that there is no bound, or that a lane of an element
+/// block is unused.
 bool may_be_infinite(std::string_view path) {
     constexpr std::array<std::string_view, 21> paths{"watch/step",
                                                      "watch/look/in_frame",

@@ -18,7 +18,7 @@ namespace skerry {
 
 /// Checks sizes, links, ranges and handles of the model. Must be called before any data are derived from the tables.
 void check_model(const SavedFile& file, Model& model);
-/// Checks node masses, and the surfaces of bodies without tetrahedra. Must be called after records were restored.
+/// Checks node masses, and the surfaces of rigid bodies without tetrahedra. Must be called after put_records.
 void check_masses(const SavedFile& file, const Model& model);
 /// Checks the tables whose rows join bodies or act on them, such as joints. Bodies must have been checked.
 void check_joining_tables(const SavedFile& file, Model& model);
@@ -50,19 +50,20 @@ struct WrongReal {
 std::optional<WrongReal> find_wrong_real(std::string_view path, const RowType& type, const std::byte* rows,
                                          std::size_t stride, std::size_t count);
 
-/// Checks that a column has the expected number of rows.
+/// Throws SceneError unless `found`, the number of rows of a column, is `expected`.
 void expect_size(const SavedFile& file, std::string_view path, std::size_t found, std::size_t expected);
 
 /// Checks that all saved columns of a table have `rows` rows, and resizes the unsaved columns to this size. Columns
 /// that contain lists may have any size.
 void expect_one_size(const SavedFile& file, const char* name, AnyTable table, std::size_t rows);
 
-/// Checks that offsets, at least one, ascend from 0 to the number of items. `of`: text after the found value in the
-/// message.
+/// Checks the offsets of a list of lists: there is at least one, and they ascend from 0 to `items`. `of`: text after
+/// the found value in the message.
 void expect_all_offsets(const SavedFile& file, const std::string& path, std::span<const Index> offset,
                         std::size_t items, const std::string& of = {});
 
-/// Checks that every entry is a row number of a table with `count` rows. If `none` is true, no_index is accepted too.
+/// Checks that every entry of `rows` is a row number of a table with `count` rows. If `none` is true, no_index is
+/// accepted too.
 void expect_rows_of(const SavedFile& file, std::string_view path, std::span<const Index> rows, std::size_t count,
                     bool none = false);
 

@@ -87,7 +87,7 @@ void list_watch(StepWatch& watch, Archive& archive) {
 
 void list_model(Model& model, SavedRows& saved, Archive& archive) {
     for (const AnyTable& table : model.tables()) {
-        // rest positions are saved elsewhere: the file contains them once for each mesh
+        // rest positions are not saved by node but once for each mesh (meshes/nodes), which several bodies may share
         const void* const of_meshes = &model.nodes.rest_position;
         list_table(std::string(table.name()) + "/", table, archive, of_meshes);
     }
@@ -157,7 +157,7 @@ void list_run(WorldState& world, SavedRows& saved, Archive& archive) {
     archive.column("run/self_crossings/time", crossings.time);
     archive.column("run/self_crossings/places", crossings.places);
     archive.value("last_step/kick", world.scratch.parameters.kick);
-    // these contacts belong to one step only, but users can read them until the next step
+    // saved because users can read the contacts of the last step until the next step
     const AnyTable contacts(saved.contacts);
     for (const ColumnInfo& info : contacts.columns())
         archive.column(std::string("last_step/contacts/") + info.name, contacts.column(info));

@@ -95,8 +95,8 @@ private:
     std::map<std::string, SavedArray> unread_;
 };
 
-/// Makes a world with the saved settings. The caller may replace the backend and the number of threads of the saved
-/// world.
+/// Makes a world with the saved settings. `wanted` may replace the backend and the number of threads. A saved backend
+/// that this program lacks becomes `automatic`.
 World world_of(const SavedFile& file, const LoadSettings& wanted, Reader& reader, SavedRows& saved) {
     Settings settings;
     Tuning tuning;
@@ -127,7 +127,8 @@ void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
     model.rebuild_outlines();
     model.derive_all();
     find_holders(model);
-    // assumed at first, because the last force may have been removed just before saving; note_forces corrects it
+    // If the last force element was removed just before saving, the next step still counts the work of its last forces.
+    // note_forces finds this out only if `forced` was true before, so it is set here.
     model.forced = true;
     note_forces(model);
     model.links_open = true;

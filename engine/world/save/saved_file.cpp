@@ -16,7 +16,8 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t length_bytes = sizeof(std::uint64_t);  // size of the length of the header [bytes]
+// size of the number that is the length of the header [bytes]
+constexpr std::size_t length_bytes = sizeof(std::uint64_t);
 constexpr std::size_t checksum_digits = 16;
 constexpr std::string_view file_title = "Skerry world, version ";
 constexpr std::string_view metadata = "__metadata__";
@@ -62,7 +63,7 @@ std::size_t utf8_length(std::string_view text) {
     const std::size_t length = first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
     for (std::size_t i = 1; i < length; ++i)
         if (byte(i) < 0x80 || byte(i) >= 0xc0) return 0;
-    // too long forms, surrogates, and numbers above U+10FFFF
+    // refused: characters encoded with more bytes than needed, surrogates, and numbers above U+10FFFF
     const bool refused = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
                          (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90);
     return refused ? 0 : length;
@@ -245,7 +246,8 @@ void require_file_start(const std::string& name, std::span<const std::byte> star
     const std::size_t end = checksum_begin() + checksum_digits;
     const std::string_view behind = text.substr(std::min(end, text.size()));
     std::uint64_t data_bytes = 0;
-    constexpr std::uint64_t most = std::uint64_t{1} << 62;  // so that the sum below does not overflow
+    // so that the sum of the three lengths below does not overflow
+    constexpr std::uint64_t most = std::uint64_t{1} << 62;
     if (!text.substr(length_bytes).starts_with(header_opening()) || !behind.starts_with(behind_checksum) ||
         std::from_chars(behind.data() + behind_checksum.size(), text.data() + text.size(), data_bytes).ec !=
             std::errc() ||

@@ -34,7 +34,8 @@ struct ArraySource {
 /// Returns the bytes of a saved world. Arrays of long numbers come first, so that all numbers are aligned.
 std::vector<std::byte> saved_bytes(std::vector<ArraySource> arrays, const SavedTexts& texts);
 
-/// Writes the checksum of the present bytes into the header of a saved world.
+/// Writes the checksum of the present bytes into the header of a saved world. Tests need it after they have changed
+/// bytes.
 void renew_checksum(std::span<std::byte> file);
 
 /// An array in a saved world: rows of `width` numbers each.
@@ -64,7 +65,7 @@ private:
     SavedTexts texts_;
 };
 
-/// Number of bytes that require_file_start() needs.
+/// Number of bytes from the start of a file that require_file_start() needs. A shorter file is passed completely.
 inline constexpr std::size_t start_bytes = 512;
 /// Checks the first bytes of a file of `size` bytes. Throws SceneError unless they belong to a saved world of the
 /// present version and of this size.

@@ -14,8 +14,8 @@
 
 namespace skerry {
 
-/// Members of StepWatch that are saved with this list. The columns and the member `evaluation` are saved separately.
-/// All other members are computed before each step.
+/// Members of StepWatch that are saved with this list. The columns `position`, `stiffness_sum` and `step` and the
+/// member `evaluation` are saved separately. All other members are derived.
 template <>
 struct MembersOf<StepWatch> {
     static auto list() {

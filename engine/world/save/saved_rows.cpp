@@ -14,7 +14,7 @@ namespace skerry {
 
 namespace {
 
-/// All data in which two meshes may differ. A mesh is stored only once if another mesh equals it in all these data.
+/// All data in which two meshes may differ. A mesh that equals an earlier one in all these data is not stored again.
 struct MeshParts {
     std::span<const Vec3> nodes;
     std::span<const std::array<Index, 4>> tetrahedra;
@@ -139,7 +139,8 @@ void check_mesh(const SavedMeshes& meshes, std::size_t m, const SavedFile& file)
     }
 }
 
-/// Checks the lists of tetrahedra that the elements of a body cover.
+/// Checks the lists of tetrahedra that the elements of a body cover. `places`: number of lists, one for each lane of
+/// the element blocks of the body.
 void check_cover(const MeshParts& parts, std::size_t places, const std::string& body, const SavedFile& file) {
     const std::span<const Index> offset = parts.covered_offset;
     if (offset.size() != places + 1)
@@ -176,7 +177,7 @@ RigidPose pose_of(const std::array<Real, 12>& numbers, const std::string& body, 
     return {Eigen::Map<const Vec3>(numbers.data()), rotation_of(numbers.data() + 3, "records/body_start", body, file)};
 }
 
-/// Reads the shape of the mesh of a body that is frozen in another shape. The list is empty for all other bodies.
+/// Restores BodyRecord::mesh_shape. The list `shape` is empty unless the body became rigid in a deformed shape.
 void put_mesh_shape(std::span<const Vec3> shape, std::size_t body, const SavedFile& file, Model& model) {
     BodyRecord& record = model.body_records[body];
     if (shape.empty()) return;

@@ -18,7 +18,7 @@ struct SavedMeshes {
     Ragged<Vec3> nodes;                       // rest positions [m]
     Ragged<std::array<Index, 4>> tetrahedra;  // corners as node numbers within the mesh
     Ragged<std::array<Index, 3>> surface;
-    // parts of BodyRecord::element_tetrahedra
+    // offsets and items of BodyRecord::element_tetrahedra
     Ragged<Index> covered_offset, covered_item;
 };
 
@@ -63,11 +63,11 @@ struct SavedRows {
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
     // names of the objects of each table that for_each_joining visits, by name of the table; empty: no name was given
     std::map<std::string, Ragged<std::uint8_t>> object_name;
-    Column<ColliderShape> shape_kind;  // alternative of Shape
+    Column<ColliderShape> shape_kind;  // by collider: index of the alternative of Shape
     // members of the shape in the order of their declaration, filled up with zeros
     Column<std::array<Real, 6>> shape_size;
     Ragged<Candidate> candidates;  // contact candidates of each pair
-    Column<Real> asleep_until;     // by candidate [m]
+    Column<Real> asleep_until;     // PairTable::asleep_until, by candidate [m]
     Ragged<LeafPair> leaf_pairs;   // LeafPairTable::listed of each pair
     Column<StepLimit> limit;
     Column<std::uint32_t> limit_slot, limit_generation;
@@ -84,7 +84,8 @@ SavedRows rows_to_save(WorldState& world);
 // The following functions throw SceneError with the name of `file` if saved data are inconsistent with each other or
 // with the columns of the world.
 
-/// Restores meshes and names of bodies and colliders. Must be called after the ranges of the bodies were checked.
+/// Restores the meshes and the records of bodies and colliders, and the names of joints and other objects. Must be
+/// called after the ranges of the bodies were checked.
 void put_records(const SavedRows& saved, const SavedFile& file, Model& model);
 /// Restores the contact candidates of pairs. Must be called after the surfaces were built.
 void put_candidates(const SavedRows& saved, const SavedFile& file, const Model& model, PairTable& pairs);

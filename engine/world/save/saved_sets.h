@@ -28,7 +28,7 @@ inline std::string text_of_row(std::span<const std::uint8_t> row) {
     return {row.begin(), row.end()};
 }
 
-/// Checks the number of rows of a column, which is the number of the objects `of`.
+/// Checks that a column has one row for each of the `expected` objects. `of`: name of the objects in the message.
 void expect_rows(const SavedFile& file, const std::string& path, std::size_t found, std::size_t expected,
                  const char* of);
 /// Checks the offsets of a list of lists, and the number of its rows. Without rows, offsets may be missing.

@@ -12,7 +12,7 @@ namespace skerry {
 
 namespace {
 
-/// Reads one visual surface. `first_material`: row of its first material among those of all surfaces.
+/// Reads one visual surface. `first_material`: row of its first material in SavedVisuals::material_name and texture.
 VisualSurface surface_of(const SavedVisuals& saved, std::size_t row, std::size_t first_material) {
     const auto list = [row](const auto& rows) { return std::vector(rows[row].begin(), rows[row].end()); };
     VisualSurface surface{.nodes = list(saved.nodes),
@@ -77,7 +77,7 @@ void put_visuals(const SavedVisuals& saved, const SavedFile& file, Model& model)
     expect_ragged(file, "visuals/color", saved.color, count, "visual surfaces");
     expect_ragged(file, "visuals/material_name", saved.material_name, materials, "materials of visual surfaces");
     expect_ragged(file, "visuals/texture", saved.texture, materials, "materials of visual surfaces");
-    std::map<Index, std::size_t> first_body;  // by row of a visual surface
+    std::map<Index, std::size_t> first_body;  // by row of a visual surface: first body that has it
     for (std::size_t b = 0; b < bodies; ++b) {
         const Index row = saved.of_body[b];
         if (row == no_index) continue;

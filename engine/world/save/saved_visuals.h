@@ -1,4 +1,5 @@
-// Visual surfaces of bodies, in the form in which files contain them. Bindings are computed again after reading.
+// Visual surfaces of bodies (surfaces that are drawn in place of the meshes), in the form in which files contain them.
+// The binding of their points to the meshes is computed again after reading.
 #pragma once
 
 #include <array>
@@ -18,7 +19,7 @@ struct SavedVisuals {
     Ragged<std::array<Real, 2>> texture_points;
     Ragged<Index> material;
     Ragged<std::uint8_t> file;
-    Ragged<std::array<Real, 4>> color;            // by material of the surface: colour and opacity
+    Ragged<std::array<Real, 4>> color;            // by material of the surface: red, green, blue and opacity
     Ragged<std::uint8_t> material_name, texture;  // one row per material of all surfaces
 };
 

@@ -1,5 +1,5 @@
-// Finds overlaps before the first step after objects were added. Depending on the settings, overlaps are resolved,
-// refused or left unchanged.
+// Before the first step after objects were added, finds overlaps of these objects. Depending on the setting
+// start_overlaps, overlaps are resolved, refused or left unchanged.
 #include <algorithm>
 #include <map>
 
@@ -129,10 +129,10 @@ private:
         return pair.is_analytic ? first : first - direction.dot(search_.shift(pair.second));
     }
 
-    /// Adds the gap that an overlap requires to the list of its pair. Replaces earlier gaps of the pair in nearly the
-    /// same direction. A body in a corner needs gaps in several directions.
+    /// Adds the gap that an overlap requires to the list of its pair, in place of earlier gaps in nearly the same
+    /// direction. A pair has a list because a body in a corner of another object needs gaps in several directions.
     void ask_for(const PairOverlap& found) {
-        constexpr Real about_the_same = 0.9;  // cosine
+        constexpr Real about_the_same = 0.9;  // cosine of the angle between two directions
         const Vec3& direction = found.overlap.direction;
         const Gap gap{direction, shift_along(found.pair, direction) + found.overlap.depth + search_.margin(found.pair)};
         std::vector<Gap>& gaps = gaps_[found.pair];
@@ -162,7 +162,7 @@ private:
 
     const Model& model_;
     StartSearch& search_;
-    std::map<StartPair, std::vector<Gap>> gaps_;  // sorted by rows
+    std::map<StartPair, std::vector<Gap>> gaps_;  // the order of the pairs decides the order of the shifts
     std::size_t others_ = 0;  // number of overlaps in addition to the one that an error message describes
 };
 

@@ -1,4 +1,4 @@
-// Messages about overlaps at the start, and the error that refuses an overlap.
+// The error that refuses an overlap at the start.
 #pragma once
 
 #include <cstddef>

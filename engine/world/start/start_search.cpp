@@ -21,7 +21,7 @@ constexpr Real largest_margin = 0.02;
 // Rounding errors of positions, as a fraction of the mean edge length.
 constexpr Real rounding_of_edges = 1e-9;
 
-/// True if a part of the box lies on the inner side of the plane.
+/// True if a part of the box lies behind a plane collider, on the side opposite to its normal.
 bool reaches_behind(const Aabb& box, const RigidMotion& plane) {
     const Vec3 normal = plane.rotation.col(2);
     const Vec3 lowest = (normal.array() > 0).select(box.lower, box.upper);
@@ -100,7 +100,7 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
 
 std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
     const std::optional<Overlap> overlap = pair.is_analytic ? overlap_with_collider(pair) : overlap_of_bodies(pair);
-    // A smaller overlap counts as touching, as it does in a step.
+    // An overlap below this fraction of the margin counts as touching, as in a step (contact_reach.h).
     if (overlap && overlap->depth > touching_fraction * margin(pair)) return overlap;
     if (pair.is_analytic || model_.bodies.kind[pair.second] != BodyKind::kinematic || has_inside(pair.second))
         return std::nullopt;

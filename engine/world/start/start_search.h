@@ -50,8 +50,8 @@ public:
     /// Gap that remains between two objects after they are moved apart [m]: their contact distance, but at most a
     /// fraction of the mean edge length.
     Real margin(const StartPair& pair) const;
-    /// True if a body has a closed surface or tetrahedra. Another body that is pushed half through such a body may come
-    /// out on the wrong side.
+    /// True if a body has a closed surface or tetrahedra, and therefore a thickness. A body that overlaps it by more
+    /// than half of the thickness may be moved out on the wrong side.
     bool has_inside(Index body) { return solid(body).closed; }
 
 private:
@@ -72,7 +72,7 @@ private:
     std::vector<RigidMotion> collider_;  // poses of the colliders
     std::vector<Aabb> box_;              // bounding boxes of bodies before their shifts [m]
     std::vector<Vec3> shift_;
-    std::vector<std::unique_ptr<Solid>> solid_;  // surfaces by body; null until the body is searched
+    std::vector<std::unique_ptr<Solid>> solid_;  // surfaces by body; null until solid() builds them
 };
 
 }  // namespace skerry

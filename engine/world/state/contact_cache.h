@@ -16,8 +16,9 @@ struct ContactCache {
     SearchState search;
     CrossingTable crossings;
 
-    /// Deletes the stored distances of all pairs of an object that was moved between steps. For a body these include
-    /// the distances between its own parts. The next step searches only these pairs again.
+    /// Must be called for an object that was moved between steps. Its distances to other objects, and those between
+    /// parts of a moved body, count as unknown until the next step has searched its pairs. Other pairs are not searched
+    /// again. A moved body also loses its marks as unstrained and not inverted.
     void forget_body(Model& model, std::size_t body);
     void forget_collider(const Model& model, std::size_t collider);
     /// Adds rows for new bodies and colliders, whose distances to other objects are still unknown.

@@ -11,7 +11,7 @@ namespace skerry {
 struct FieldCache::Data {
     Lock lock;
     std::shared_ptr<const OwnElements> elements;
-    std::vector<std::shared_ptr<const RecoveryPlan>> plans;  // the latest last
+    std::vector<std::shared_ptr<const RecoveryPlan>> plans;  // in the order of their last use
 };
 
 FieldCache::FieldCache() : data_(std::make_unique<Data>()) {}
@@ -32,7 +32,8 @@ std::shared_ptr<const OwnElements> FieldCache::elements(const std::function<OwnE
 
 std::shared_ptr<const RecoveryPlan> FieldCache::plan(std::span<const Index> nodes,
                                                      const std::function<RecoveryPlan()>& build) const {
-    // Each probe of a body may have its own list. The limit bounds the memory if lists change from call to call.
+    // Each probe of a body may have its own list of nodes. The limit bounds the memory if lists change from call to
+    // call.
     constexpr std::size_t most_plans = 64;
     const auto held = data_->lock.hold();
     auto& plans = data_->plans;

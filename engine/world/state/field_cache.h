@@ -22,9 +22,9 @@ struct OwnElements {
     Ragged<Index> covered;
 };
 
-/// Keeps the data that depend only on the mesh, the materials of the tetrahedra, the element kind and the rotation with
-/// which the elements of one body were built. These do not change during the life of a BodyRecord. Data are built when
-/// they are first needed, and several threads may ask for them. A copy of a cache is empty.
+/// Cache of one body for data that depend only on its mesh, the materials of its tetrahedra, its element kind and
+/// BodyRecord::built. None of these changes during the life of a BodyRecord. Data are built when they are first needed.
+/// Several threads may request them at the same time. A copy of a cache is empty.
 class FieldCache {
 public:
     FieldCache();
@@ -35,7 +35,7 @@ public:
     ~FieldCache();
 
     std::shared_ptr<const OwnElements> elements(const std::function<OwnElements()>& build) const;
-    /// Plan for some nodes of the body. Plans for the latest 64 lists of nodes are kept.
+    /// Plan for some nodes of the body. Plans for the 64 lists of nodes that were used last are kept.
     std::shared_ptr<const RecoveryPlan> plan(std::span<const Index> nodes,
                                              const std::function<RecoveryPlan()>& build) const;
 

@@ -1,4 +1,4 @@
-// Overlap of surfaces that no contact can move.
+// Overlap of surfaces whose motion is prescribed.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ struct HeldDepth {
     static constexpr std::uint64_t no_pair = ~std::uint64_t{0};
 
     Real depth = 0;                // [m]
-    std::uint64_t pair = no_pair;  // ContactKey::pair of the overlapping objects; no_pair if one of them was removed
+    std::uint64_t pair = no_pair;  // ContactKey::pair of the two objects; no_pair: no overlap, or an object was removed
 
     void take(const HeldDepth& other) {
         if (other.depth > depth) *this = other;

@@ -11,8 +11,8 @@
 namespace skerry {
 
 /// Order, mass shares and relaxation of the elements of a body, and the stable step of its mesh. These data depend only
-/// on mesh, materials and element kind. The entry is deleted when pending changes of the world are completed or rows of
-/// bodies move.
+/// on mesh, materials and element kind. The entry is deleted when pending changes of the world are completed
+/// (WorldState::settle) or rows of bodies move.
 struct KnownElements {
     Index body;           // row of a body with this mesh and these materials
     ElementKind element;  // element kind requested by the user

@@ -52,7 +52,7 @@ namespace skerry {
 
 struct BoundVisual;  // engine/mesh/visual/bound_visual.h
 
-/// Slot of the attachments that move mesh colliders. Users have no handles to these attachments.
+/// Slot of rows for which users have no handle, such as the attachments that move mesh colliders.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;
 
 /// Mass properties of a body that its settings give: none, only the mass, or the mass, its centre and the inertia.
@@ -63,16 +63,16 @@ inline constexpr std::uint64_t value_count<GivenMass> = 3;
 /// Data of a body that are not stored in tables. They serve users and files.
 struct BodyRecord {
     std::string name;
-    ElementKind element;  // element kind in use, never `smoothed`
+    ElementKind element;  // element kind in use; never `smoothed`, which stands for one of two others
     ElementKind
         requested_element;  // element kind requested by the user; used again when the dynamics of the body change
-    std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
-    std::vector<std::array<Index, 3>> surface;     // local nodes
+    std::vector<std::array<Index, 4>> tetrahedra;  // corners: node numbers within the body
+    std::vector<std::array<Index, 3>> surface;     // corners: node numbers within the body
     // Material of each tetrahedron, as row of MaterialTable. If the column is empty, all tetrahedra have the material
     // of the body.
     std::vector<Index> tetrahedron_material;
     std::vector<int> label{};               // Mesh::label
-    std::map<std::string, MeshSet> sets{};  // sets by name, in local numbers
+    std::map<std::string, MeshSet> sets{};  // sets by name; nodes and tetrahedra numbered within the body
     // Surface that is drawn in place of the body; nullptr if there is none. Bodies with the same mesh may share it.
     std::shared_ptr<const BoundVisual> visual{};
     // Tetrahedra covered by each element, in the order of the lanes in the element blocks of the body. An unused lane
@@ -80,7 +80,8 @@ struct BodyRecord {
     Ragged<Index> element_tetrahedra;
     bool settled = false;                             // true if the body was checked for overlaps
     RigidPose start{Vec3::Zero(), Mat3::Identity()};  // pose at which the body was added
-    // Rotation that the elements have at rest: that of the body when it was added, or when its dynamics changed.
+    // Rotation of the body when its elements were built: when it was added, or when its dynamics last changed. At rest
+    // the elements have this rotation.
     Mat3 built = Mat3::Identity();
     // For a rigid body that is frozen in a deformed shape: node positions of the mesh, in the frame of the mesh [m].
     // NodeTable::rest_position contains the frozen shape. For all other bodies the list is empty.
@@ -103,22 +104,23 @@ struct NamedHandles : HandleMap<HandleType> {
 };
 
 /// Properties of the bodies of all ranks on which the length of a step depends, as of the last reduction
-/// (reduce_limits). Without ranks it limits nothing.
+/// (reduce_limits). Without ranks the initial values remain, which limit nothing.
 struct LimitsOfRanks {
     Real stable_step = infinity;   // shortest stable step [s]
     Index stiffest = no_index;     // row in the undivided world of the body with this stable step
     bool strained = false;         // true if strain has shortened this stable step (is_strained)
     Real rest_step = infinity;     // shortest stable step at rest of a body with elements [s]
-    Real spin = 0;                 // greatest angular speed of a body with a joint or tie [rad/s]
+    Real spin = 0;                 // greatest angular speed of a rigid or implicit body with a joint or tie [rad/s]
     Index spinning = no_index;     // row in the undivided world of the body with this speed
     bool has_frames = false;       // true if some body is rigid or implicit
     bool has_implicit = false;     // true if some body is implicit
     bool has_clusters = false;     // true if some body has clusters
-    bool forced = false;           // Model::forced
-    bool follow_implicit = false;  // true if forces act on implicit bodies (forces_follow_implicit_bodies)
-    bool clusters_grew = false;    // Model::clusters_grew
-    std::uint64_t element_blocks = 0, cluster_entries = 0;  // number of rows; number of entries of cluster matrices
-    // true if stable steps depend on positions, or joints or ties limit rotation, so that each step needs a reduction
+    bool forced = false;           // true if Model::forced is true on some rank
+    bool follow_implicit = false;  // true if forces that depend on motion act on implicit bodies
+    bool clusters_grew = false;    // true if Model::clusters_grew is true on some rank
+    std::uint64_t element_blocks = 0, cluster_entries = 0;  // element blocks and entries of cluster matrices, all ranks
+    // true if stable steps depend on positions, or if joints or ties limit the rotation in a step: each step then needs
+    // a reduction
     bool moves = false;
 };
 
@@ -178,7 +180,7 @@ struct Model {
     std::vector<KnownElements> known_elements;     // results for meshes that were added since the last call of settle()
 
     Column<Real> body_mass;  // mass of all nodes of each body, including held nodes [kg]; computed by extend_derived
-    // True if the implicit elements must be chosen again, because bodies, colliders or settings have changed.
+    // True if the implicit elements must be chosen again, because bodies, materials or attachments have changed.
     bool clusters_open = true;
     bool clusters_grew = false;  // true if elements became implicit at the last evaluation of stable steps
     bool settled = true;         // true if all bodies and colliders were checked for overlaps
@@ -187,10 +189,11 @@ struct Model {
     // For each body: sum of the bounds that ForceElement::add_rate adds for all force elements [1/s^2]. If the column
     // is empty, all sums are zero. Computed by note_forces.
     Column<Real> force_rate;
-    // Memory in which the rates of cavities sum over the faces at each node of a body: areas [m^2] and edges [m].
+    // Working memory of add_cavity_rate. For each node of a body, sums over its faces: a third of the area vector
+    // [m^2], and the longest edge [m].
     Column<Vec3> face_areas;
     Column<Real> face_edges;
-    // True if the bounds depend on positions, so that they must be computed again before each step. Computed by
+    // True if `force_rate` depends on positions, so that it must be computed again before each step. Computed by
     // note_forces.
     bool force_rate_moves = false;
     // For each body: rates that ForceElement::bound_damping and add_drag find [1/s]. If a column is empty, all its
@@ -221,24 +224,25 @@ struct Model {
 
     /// All elements, including the elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
-    /// The elements of all bodies that are neither asleep nor marked as unstrained.
+    /// The elements that steps compute: those of bodies that are neither asleep, nor led ghosts, nor marked as
+    /// unstrained.
     ElementInputs awake_elements() const;
     Range all_blocks() const { return {0, static_cast<Index>(elements.first.size())}; }
-    /// Returns the number of a tetrahedron in the mesh given by the user. `place`: position of the tetrahedron in the
-    /// table, counted in lanes.
+    /// Returns the number of a tetrahedron in the mesh given by the user. `place`: row of the block of the tetrahedron
+    /// times element_lanes, plus its lane.
     Index user_tetrahedron(std::size_t body, Index place) const;
 
     /// Wakes one body, or all bodies.
     void wake(std::size_t body);
     void wake_all();
-    /// Must be called before a step: sets any_asleep, any_idle and BodyTable::idle. Returns the mass of all bodies that
-    /// are awake and no ghosts [kg].
+    /// Must be called before a step: sets any_asleep, any_idle and BodyTable::idle. Returns the mass of all awake
+    /// bodies that are not ghosts [kg].
     Real note_rest();
     /// Must be called after the loads of a body were set. Updates loaded_bodies. `before`: true if the body already had
     /// loads.
     void note_loads(std::size_t body, bool before);
     bool has_loads(std::size_t body) const;
-    /// Shape and pose of a round body, in the form in which colliders have them.
+    /// Shape and pose of a round body (a rigid sphere, capsule or cylinder), in the form in which colliders have them.
     struct RoundShape {
         ColliderGeometry geometry;
         RigidMotion motion;  // without velocities
@@ -265,7 +269,8 @@ struct Model {
     /// True for a rigid body whose nodes share its mass so that sums over node masses give its mass and centre of mass:
     /// a body without tetrahedra, or with given mass properties. Single nodes may then have masses <= 0.
     bool shares_mass(std::size_t body) const;
-    /// Mass of a node. If the nodes share the mass of a rigid body: an equal part of this mass, which is positive [kg].
+    /// Mass of a node [kg]. If the nodes share the mass of a rigid body (shares_mass), the mass of the body divided by
+    /// its number of nodes, because NodeTable::mass may then be <= 0.
     Real weight_of_node(std::size_t node) const;
     /// Inverse of weight_of_node; 0 for a node that belongs to no tetrahedron of its body. It is the inverse mass of a
     /// node that no attachment holds [1/kg].
@@ -280,8 +285,8 @@ struct Model {
     void stiffen(std::size_t body);
     /// Computes the derived columns of newly appended rows. Existing rows do not change.
     void extend_derived();
-    /// Computes the derived columns of all rows and counts the bodies with loads. Sets velocities to zero where steps
-    /// do not write them.
+    /// Computes the derived columns of all rows and counts the bodies with loads. Sets velocity_next and push_out of
+    /// all nodes to zero.
     void derive_all();
     /// Builds the clusters of all bodies, or of marked bodies, again after elements became implicit or explicit.
     void rebuild_clusters();
@@ -294,8 +299,8 @@ struct Model {
         if (const std::vector<Vec3>& kept = body_records[body].mesh_shape; !kept.empty()) return kept;
         return rows_of(nodes.rest_position, bodies.nodes[body]);
     }
-    /// Searches the last few bodies before row `end` for a body with the given mesh. Returns the last such body, or
-    /// no_index.
+    /// Searches the last few bodies before row `end` for a body that has the given mesh and is not round. Returns the
+    /// last such body, or no_index.
     Index body_of_mesh(std::size_t end, const RestMesh& mesh) const;
 
     /// Builds the surface and the bounding volume hierarchy of one body from its record and its rest shape. The body
@@ -305,8 +310,8 @@ struct Model {
     /// Copies surface and hierarchy from one of the last bodies with the same mesh. If there is no such body, returns
     /// false and does nothing.
     bool append_outline_again(std::size_t body);
-    /// For each face, given by local nodes in any order: the row of TriangleTable, or no_index if the surface of the
-    /// body has no such face.
+    /// For each face, given by its node numbers within the body in any order: the row of TriangleTable, or no_index if
+    /// the surface of the body has no such face.
     std::vector<Index> triangles_of(std::size_t body, std::span<const std::array<Index, 3>> faces) const;
     /// Computes set_of_feature. Where sets overlap, the last one counts.
     void index_surface_sets();

@@ -25,11 +25,11 @@ struct ProblemWatch {
 
 struct RunRecord {
     RunCounters counters;
-    std::vector<StartOverlap> start_overlaps;  // overlaps that the last check has found
+    std::vector<StartOverlap> start_overlaps;  // found by the last settle_start
     std::vector<StartMove> start_moves;
     std::vector<SelfCrossing> self_crossings;  // see WorldReport::self_crossings
     StepLimits limits;
-    HeldDepth held;  // largest overlap in any step of surfaces whose motion is prescribed
+    HeldDepth held;  // largest overlap so far of surfaces whose motion is prescribed
     Balance balance;
     Trace trace;
     bool tracing = false;
@@ -37,10 +37,11 @@ struct RunRecord {
     ForceLedger forces;
     std::function<void(const StepReport&)> step_watch;
     std::vector<Contact> contact_view;  // the contacts that World::contacts() returns
-    // for each entry of contact_view: row of the contact in its table; ~row for a contact of sleeping bodies
+    // by entry of contact_view: row of StepScratch::contacts; of sleeping bodies: ~row of ContactCache::resting
     Column<Index> contact_rows;
     bool contact_view_is_current = false;
-    bool balance_of_rest = false;  // true if nothing has moved since the last check of the balance
+    // true if the last check of the balance followed a skipped step (left_out), and nothing has moved since
+    bool balance_of_rest = false;
 };
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Counts of the causes that limited the length of the steps of a run.
+// Counts how often each cause limited the length of a step in a run.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@ namespace skerry {
 /// Counts steps and discarded attempts for each pair of cause and body. Counting for a known pair allocates no memory.
 class StepLimits {
 public:
-    /// Counts a committed step of length `h` whose length the given cause has limited [s].
+    /// Counts a committed step of length `h` [s] that the given cause has limited.
     void count_step(StepLimit limit, BodyHandle body, const std::string& name, Real h);
     /// Counts an attempt at a step that was given up for the given cause.
     void count_try(StepLimit limit, BodyHandle body, const std::string& name);
-    /// Returns all entries, starting with the entry of most steps.
+    /// Returns all entries, in descending order of their numbers of steps.
     std::vector<StepLimitReport> report() const;
     /// Returns all entries in the order of their first occurrence.
     const std::vector<StepLimitReport>& entries() const { return entries_; }

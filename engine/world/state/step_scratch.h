@@ -1,6 +1,6 @@
-// Data that the stages of one step pass to each other, and working memory of the stages. These data are not used after
-// the step, with two exceptions: contacts and regions can be read until the next step, and the data for estimating the
-// cost of the solver are not cleared.
+// Data that the stages of one step pass to each other, and working memory of the stages. Most of these data are not
+// used after the step. Exceptions: users can read contacts and regions until the next step, `solver_memory` keeps
+// estimates of the cost of the solver, and the next step reads ForceScratch::held_velocity.
 #pragma once
 
 #include "components/cable_table.h"
@@ -55,8 +55,8 @@ struct StepParameters {
     bool takes_long_steps = false;  // true if implicit bodies may take long steps
     SleepSettings sleep;
     bool let_invert = false;  // true if elements may turn inside out in this attempt at the step
-    // True if the elastic forces of the previous attempt at this step are still valid, because the previous attempt had
-    // the same length.
+    // True if the elastic forces of the previous attempt at this step are still valid, because both attempts have the
+    // same length.
     bool forces_known = false;
     bool problem_wanted = false;       // true if a user requested the contact problem of this step
     bool forces_wanted = false;        // true if a user requested forces of contacts and attachments
@@ -71,7 +71,8 @@ struct StepFindings {
     Index crossings = 0;  // number of crossings found in this attempt; if nonzero, the step is repeated
     ContactMeasures measures;
     ExternalWork external;
-    // impulse and work that hold nodes along single directions: before contacts, in the contact problem, and after it
+    // Impulse and work of holding nodes along single directions: by hold_axes (before contacts), by rows of the contact
+    // problem, and by hold_axes_again (after its solution).
     ExternalWork held, held_rows, held_again;
     TakenByRest rest;
     JointMeasures joints;
@@ -79,7 +80,7 @@ struct StepFindings {
     SpringWork springs;
     Real fibre_work = 0;  // work of the passive stress of fibres on the nodes [J]
     CableMeasures cables;
-    Index released_ties = 0;  // number of ties of which the last node has broken off in this step
+    Index released_ties = 0;  // number of ties whose last node has broken off in this step
     Index unstrained = 0;     // number of bodies whose elements are skipped, because they are undeformed in free flight
     Real plastic = 0;         // energy dissipated by plastic flow at the end of this step [J]
     Real relaxed = 0;         // energy dissipated by relaxation of the elements in this step [J]
@@ -104,14 +105,14 @@ inline bool can_be_taken(const StepVerdict& verdict, Index crossings, const Inve
 /// original.
 struct KeptVelocities {
     Column<Vec3> velocity;       // node velocities at the start of the step [m/s]
-    Column<Vec3> velocity_next;  // predicted [m/s]
-    // Positions of nodes and rigid bodies at the start of the step [m]. Stored only if there are rigid or implicit
-    // bodies.
+    Column<Vec3> velocity_next;  // node velocities at the end of the step as predicted without contacts [m/s]
+    // Positions of nodes, and centres of mass of rigid and implicit bodies, at the start of the step [m]. These and the
+    // next columns are stored only if there are such bodies.
     Column<Vec3> position, center;
-    // Orientations and principal axes of rigid bodies at the start of the step (RigidBodyTable). At large strain the
+    // `rotation` and `axes` of rigid and implicit bodies at the start of the step (RigidBodyTable). At large strain the
     // axes of an implicit body change in the step.
     Column<Mat3> rotation, axes;
-    Column<Vec3> angular_momentum;  // angular momentum of rigid bodies at the start of the step [kg m^2/s]
+    Column<Vec3> angular_momentum;  // of rigid and implicit bodies at the start of the step [kg m^2/s]
     // Deformation velocities of implicit bodies [m/s]: after the kick (before contacts are solved), and at the start of
     // the step.
     Column<Vec3> deforming, deforming_before;
@@ -119,11 +120,11 @@ struct KeptVelocities {
 
 /// Impulses of contacts and attachments in one step.
 struct ForceScratch {
-    Column<PairSums> pairs;              // result of sum_contact_impulses
-    Column<Vec3> held_impulse;           // impulse on each held node; result of sum_contact_impulses [N s]
-    Column<Vec3> node_impulse;           // result of measure_reactions
+    Column<PairSums> pairs;              // by pair with contacts: sums of impulses; result of sum_contact_impulses
+    Column<Vec3> held_impulse;           // by node: contact impulse on a held node (sum_contact_impulses) [N s]
+    Column<Vec3> node_impulse;           // by node: working memory of measure_reactions [N s]
     Column<ImpulseAndMoment> reactions;  // impulse and moment of each attachment; result of measure_reactions
-    Column<Vec3> held_velocity;          // velocity of each held node after the previous step [m/s]
+    Column<Vec3> held_velocity;          // by node: velocity of a held node after the previous step [m/s]
 };
 
 /// Returns the settings of the contact solver, taken from `settings` and `tuning`.
@@ -142,9 +143,9 @@ struct StepScratch {
     RegionTable regions;
     RankRegions rank_regions;  // empty if this process simulates the whole world
     RunCounters counters;      // counters of the last committed step alone (count_step)
-    Real awake_mass = 0;       // mass of bodies that are awake at the start of the step [kg]
+    Real awake_mass = 0;       // mass of bodies, except ghosts, that are awake at the start of the step [kg]
     bool ran_inline = false;   // true if all stages ran on the calling thread
-    bool left_out = false;     // true if no stage ran, since nothing moves
+    bool left_out = false;     // true if no stage ran in this step, because nothing moves (nothing_moves)
 
     SeparationMemory separation_memory;
     SolverMemory solver_memory;
@@ -152,19 +153,20 @@ struct StepScratch {
     KeptVelocities kept_velocities;
     ForceScratch forces;
     HeldRows held_rows;
-    Column<Vec3> axis_impulse;         // impulses that hold nodes along single directions, by held node [N s]
-    Column<Real> stiffness_sum;        // one entry per node; written by stable_step, read by find_mass_shares too
+    Column<Vec3> axis_impulse;   // by entry of AttachmentTable::node: impulse along single held directions [N s]
+    Column<Real> stiffness_sum;  // by node: sum of the stiffnesses of its elements (stable_step.h); working memory
     Column<std::uint8_t> beside_fast;  // one entry per node; working memory of check_state
-    Column<Vec3> cluster_kick;         // used by kick_clusters
+    Column<Vec3> cluster_kick;         // by item of clusters.nodes: impulse of the forces of this step [N s]
     Column<Real> cluster_work;         // used by kick_clusters
     ImplicitCoupling coupling;         // used by couple_implicit_bodies
     Column<StrainPart> strain_parts;   // used by strain_implicit_bodies
-    Column<std::uint8_t> pressed;      // for each body, nonzero if a contact presses on it
-    Column<ExternalWork> work_parts;   // used by measure_work
-    InversionMemory inversions;        // used by find_inversions
-    Column<WatchPart> watch_parts;     // used by watch_stable_steps
-    Column<Real> viscous_parts;        // used by measure_viscosity
-    Column<Real> plastic_parts;        // used by yield_elements
+    // by body: nonzero if a stored contact impulse acts on it (mark_pressed), or another rank wakes it
+    Column<std::uint8_t> pressed;
+    Column<ExternalWork> work_parts;  // used by measure_work
+    InversionMemory inversions;       // used by find_inversions
+    Column<WatchPart> watch_parts;    // used by watch_stable_steps
+    Column<Real> viscous_parts;       // used by measure_viscosity
+    Column<Real> plastic_parts;       // used by yield_elements
     // For each body, nonzero if a load, spring, cable, cavity, fibre, motor or tie that acts on it changes in this
     // step. Empty if there are none of these, or bodies cannot fall asleep.
     Column<std::uint8_t> driven;

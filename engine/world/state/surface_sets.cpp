@@ -8,7 +8,7 @@ namespace skerry {
 
 namespace {
 
-/// Sets the entries of the features of one body that belong to one set.
+/// Writes the row of one surface set into SetOfFeature, for all triangles, edges and vertices that belong to the set.
 class SetIndex {
 public:
     SetIndex(const Model& model, std::size_t set, SetOfFeature& of)

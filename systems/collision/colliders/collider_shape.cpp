@@ -11,7 +11,8 @@ namespace skerry {
 
 namespace {
 
-// Number of test points on a rim: one point that depends on the face, and four fixed points at right angles.
+// Number of test points on a rim: point 0 is the rim point furthest behind the plane of the face under test, points 1
+// to 4 are fixed and 90 degrees apart.
 constexpr Index points_of_rim = 5;
 
 struct Rim {
@@ -19,8 +20,8 @@ struct Rim {
     Real z;       // [m]
 };
 
-/// Returns one of the two convex rims of a cylinder or bucket. The inner rim of a bucket is not convex, so only edges
-/// of bodies can touch it.
+/// Returns one of the two outer rims of a cylinder or bucket. The inner rim of a bucket is left out: the solid
+/// surrounds it, so the interior of a face cannot touch it, only an edge can.
 Rim rim_of(const ColliderGeometry& geometry, Index rim) {
     const Vec3& size = geometry.size;
     if (geometry.shape == ColliderShape::bucket) return {size[0] + size[2], rim == 0 ? size[1] : -size[2]};
@@ -34,9 +35,11 @@ Vec3 rim_direction(Index point, const Vec3& normal) {
     return length > 0 ? Vec3(flat / length) : Vec3(Vec3::UnitX());
 }
 
-/// Distance that a point can move while a given flat side of the shape remains the nearest side [m]. `beside`: distance
-/// of the point from the border of the side, measured along the side. `above`: height above the side. `thickness`:
-/// distance of the opposite side.
+/// Distance that a point can move while it stays in the flat region (flat_place) of one side of the shape [m].
+/// `beside`: distance of the point from the border of the side, measured along the side. `above`: height above the
+/// side. `thickness`: distance of the opposite side. The region is bounded by three kinds of planes: those
+/// perpendicular to the side through its border (distance `beside`), those at 45 degrees through its border, below
+/// which another side is nearer (distance (beside + above) / sqrt(2)), and the plane halfway to the opposite side.
 Real within_side(Real beside, Real above, Real thickness) {
     return std::min({beside, (beside + above) * std::sqrt(Real(0.5)), above + thickness / 2});
 }
@@ -181,8 +184,8 @@ FaceContact face_contact(const ColliderGeometry& geometry, Index k, const LocalF
     const Real height = contact.normal.dot(contact.point.at - face[0]);
     contact.above = length > 0 && contact.closest.region == TriangleRegion::face;
     contact.distance = height - contact.point.radius;
-    // The rim point that depends on the face moves around the rim while the face rotates. A bound for this point must
-    // therefore hold for the complete collider.
+    // Point 0 of a rim moves around the rim while the face rotates. A bound for this point must therefore hold for the
+    // complete collider.
     contact.nearest = collider_point_follows(geometry.shape, k)
                           ? hull_distance(geometry, face)
                           : std::sqrt(contact.closest.distance_squared) - contact.point.radius;

@@ -22,17 +22,18 @@ struct ColliderPoint {
 Index collider_point_count(ColliderShape shape);
 
 /// Point k of a collider for a test against a face. `normal`: outward unit normal of the face in the frame of the
-/// collider. A rim has one point that depends on the face, because it is the rim point furthest behind the plane of the
-/// face, and four fixed points. Points of other shapes do not depend on the face.
+/// collider. A rim has five points: the first is the rim point furthest behind the plane of the face, and so depends on
+/// `normal`; the other four are fixed. The points of all other shapes are fixed.
 ColliderPoint collider_point(const ColliderGeometry& geometry, Index k, const Vec3& normal);
 
-/// True if the position of collider point k depends on the face.
+/// True if k is the first point of a rim, whose position depends on the face.
 bool collider_point_follows(ColliderShape shape, Index k);
 
 /// Index of the flat region of a shape in which `point` can move furthest, or no_index if the shape has no flat region.
-/// A flat region is a volume near a flat or hollow side of the shape. If a segment or triangle lies in this volume, one
-/// of its corners is nearest to the shape, so only nodes can touch. A plane has one region, a box one at each of its
-/// six faces, a cylinder one at each end, and a bucket one inside and one below.
+/// A flat region is a volume at a flat or hollow side of the shape, in which the signed distance is a linear or concave
+/// function. If a segment or triangle lies in this volume, one of its corners is therefore nearest to the shape, so
+/// only nodes can touch. A plane has one region, a box one at each of its six faces, a cylinder one at each end, and a
+/// bucket one inside and one below.
 Index flat_place(const ColliderGeometry& geometry, const Vec3& point);
 
 /// Distance that a point can move in the frame of the collider while it stays in the flat region `place` [m]. The
@@ -43,8 +44,8 @@ Real flat_reach(const ColliderGeometry& geometry, Index place, const Vec3& point
 /// all points.
 Real flat_reach(const ColliderGeometry& geometry, std::span<const Vec3> points);
 
-/// Tangent plane of the signed distance function of a convex shape. The plane touches the graph of the function at
-/// `at`, so it is a lower bound of the signed distance everywhere.
+/// Linear approximation of the signed distance from a convex shape at the point `at`. The signed distance is a convex
+/// function, so the approximation is a lower bound everywhere.
 struct HullTangent {
     Vec3 at, normal;
     Real distance;  // signed distance of the point `at` from the shape [m]
@@ -53,20 +54,20 @@ struct HullTangent {
     Real bound(const Vec3& point) const { return distance + normal.dot(point - at); }
 };
 
-/// Tangent plane at the point `at` for a convex shape that contains the collider. The convex shape is the collider
+/// HullTangent at the point `at` for a convex shape that contains the collider. The convex shape is the collider
 /// itself, except for a bucket.
 HullTangent hull_tangent(const ColliderGeometry& geometry, const Vec3& at);
 
-/// Lower bound of the distance between the shape and the convex hull of `points` [m]. The bound follows from the
-/// tangent plane at the mean of the points.
+/// Lower bound of the distance between the shape and the convex hull of `points` [m]. The bound is the least value of
+/// hull_tangent at the points, for `at` = mean of the points.
 Real hull_distance(const ColliderGeometry& geometry, std::span<const Vec3> points);
 
 /// Corners of a triangle in the frame of the collider, counter-clockwise as seen from outside the body.
 using LocalFace = std::array<Vec3, 3>;
 
 struct FaceContact {
-    // Lower bound of the distance between the face and the collider point [m]. If the position of the collider point
-    // depends on the face, this is a lower bound of the distance between the face and the complete collider.
+    // Lower bound of the distance between the face and the collider point with its ball [m]. For the first point of a
+    // rim: lower bound of the distance between the face and the complete collider.
     Real nearest;
     bool above;  // true: the projection of the collider point on the plane of the face is inside the face
     // Signed distance of the collider point (with its ball) from the plane of the face; negative behind the plane [m].

@@ -14,17 +14,20 @@ namespace {
 // such a derivative changes the distance by 1 % of the default contact distance (0.02 edge lengths).
 constexpr Real flat_slope = 2e-4;
 
-// A derivative of the distance along the edge above this value shows that the edge can only touch after a rotation.
+// Where the magnitude of the derivative of the distance along the edge exceeds this value, the edge is too far from the
+// collider to touch unless it rotates first. Such parts of the edge get no contact point.
 constexpr Real steep_slope = 0.05;
 
-// Accuracy of the position of a minimum or of an end of a flat stretch, as a fraction of the edge length.
+// Accuracy of the parameter of a minimum or of an end of a flat stretch (0 to 1 along the edge).
 constexpr Real place_tolerance = 1e-10;
 
-// Two points on an edge are merged if their distance is below this fraction of the edge length.
+// Contact points on an edge are at least this fraction of the edge length apart. A flat stretch that is shorter gets
+// one point.
 constexpr Real shortest_stretch = 0.1;
 
-// Number of intervals in which an edge near the wall of a bucket is searched. The wall is not convex: along an edge
-// across its rim, the distance has two minima.
+// Number of intervals in which an edge near the wall of a bucket is searched. The wall is not convex, so the distance
+// along an edge may have several minima, for example two if the edge lies across the rim. Each minimum must be in an
+// interval of its own.
 constexpr int wall_intervals = 16;
 
 /// An interval of the parameter along the edge. The interval contains the parameter to be found.
@@ -44,8 +47,9 @@ public:
     Real slope(const SurfacePoint& found) const { return found.normal.dot(edge_) / length_; }
     Real slope(Real s) const { return slope(at(s)); }
 
-    /// Returns the minimum of the distance in an interval. If the distance has a kink in the interval, the normals on
-    /// both sides of the kink are combined into a normal perpendicular to the edge.
+    /// Returns the midpoint of a very short interval that contains the minimum of the distance. If the distance has a
+    /// kink in the interval, the normals on both sides of the kink are combined into a normal perpendicular to the
+    /// edge.
     EdgePoint minimum(Real low, Real high) const {
         EdgePoint found{0, 0.5 * (low + high), at(0.5 * (low + high))};
         const SurfacePoint before = at(low), after = at(high);
@@ -57,8 +61,9 @@ public:
         return found;
     }
 
-    /// Calls visit(s) for the parameters s at which the edge crosses the planes of the sides of a box. Between two such
-    /// parameters, the nearest feature of the box stays the same, except inside the box.
+    /// For a box, calls visit(s) for the parameters s at which the edge crosses the planes of the sides. Between two
+    /// such parameters, the nearest feature of the box stays the same, except inside the box. Does nothing for other
+    /// shapes.
     void for_each_kink(auto&& visit) const {
         if (geometry_.shape != ColliderShape::box) return;
         for (int i = 0; i < 3; ++i)
@@ -67,14 +72,15 @@ public:
 
     /// Parameter s at which the derivative of the distance has the value `slope`, in closed form. For a box, the
     /// formula is valid as long as the nearest corner, edge or side of the box is the same as at s = `near`. Outside of
-    /// the shape, the distance is f(s) = sqrt(q^2 (s - s0)^2 + f0^2), where f0 is its minimum and s0 the parameter of
-    /// the minimum. The derivative is q^2 (s - s0) / (length f). The result is NaN if the derivative never has this
-    /// value or if the shape has no closed form.
+    /// the shape, the distance from the centre of the sphere or from the nearest feature of the box is f(s) = sqrt(q^2
+    /// (s - s0)^2 + f0^2), with q = |along|, the least value f0, and its parameter s0. The equation q^2 (s - s0) /
+    /// (length f) = slope has the solution s = s0 + r f0 / (q sqrt(q^2 - r^2)) with r = slope length. The result is NaN
+    /// if there is no solution, or for other shapes.
     Real place_of(Real slope, Real near) const {
         const bool is_box = geometry_.shape == ColliderShape::box;
         if (!is_box && geometry_.shape != ColliderShape::sphere) return std::numeric_limits<Real>::quiet_NaN();
-        // Edge relative to the nearest corner, edge or side of the box. Coordinates along which this feature extends
-        // are zero.
+        // Start and direction of the edge relative to the origin of a sphere, or to the nearest corner, edge or side of
+        // a box. For a box, coordinates along which the nearest feature extends are zero.
         Vec3 from = a_, along = edge_;
         for (int i = 0; i < 3 && is_box; ++i) {
             const Real at = a_[i] + near * edge_[i];
@@ -94,13 +100,14 @@ private:
 };
 
 /// Finds the parameter s along an edge at which the derivative of the distance passes the value `slope`. The search
-/// first tests the kinks and the position predicted by Along::place_of. Then it narrows the interval by regula falsi
+/// first tests the kinks and the parameter predicted by Along::place_of. Then it narrows the interval by regula falsi
 /// (Illinois variant). Every fourth iteration bisects, so that the search also converges at kinks and where the
 /// derivative is constant.
 class PlaceOfSlope {
 public:
     /// `below` and `above`: derivatives at the lower and upper end of the interval `on`. `itself_is_below`: true if a
-    /// derivative equal to `slope` counts as below `slope`.
+    /// derivative of exactly `slope` counts as below `slope`, so that the end of a stretch with this derivative is
+    /// found and not its start.
     PlaceOfSlope(const Along& along, Bracket on, Real below, Real above, Real slope, bool itself_is_below)
         : along_(along),
           on_(on),
@@ -126,7 +133,7 @@ public:
     }
 
 private:
-    // Test parameters are placed at this distance on both sides of a predicted position. If they enclose the position,
+    // Parameters are tested at this distance on both sides of the predicted parameter. If the two enclose the solution,
     // the interval is shorter than place_tolerance, and the search ends.
     static constexpr Real least_step = 0.45 * place_tolerance;
 
@@ -151,7 +158,8 @@ private:
     int same_side_ = 0;
 };
 
-/// Finds the possible contact points in an interval in which the derivative of the distance increases.
+/// Finds the contact points in an interval in which the derivative of the distance increases: the minimum or both ends
+/// of a flat stretch, and the points where the distance begins to rise (edge_contact.h).
 class Stretch {
 public:
     Stretch(const Along& along, Bracket interval, Index first_number, EdgeContact& contact)
@@ -180,9 +188,10 @@ public:
 private:
     bool passes(Real slope) const { return slope_low_ < slope && slope_high_ > slope; }
 
-    /// first_place: the parameter after which the distance falls by at most `slope` per length. last_place: the
-    /// parameter before which the distance rises by at most `slope` per length. At a kink both parameters are on the
-    /// flatter side, whose normal is valid along the flat stretch.
+    /// first_place: parameter from which on the derivative of the distance is at least -`slope`. last_place: parameter
+    /// up to which the derivative is at most `slope`. If the derivative jumps past the limit at a kink, the parameter
+    /// is on the side where the derivative is within the limit, because the normal of that side is valid along the flat
+    /// stretch.
     Real first_place(Real slope) const {
         return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, -slope, false).find().high;
     }
@@ -202,9 +211,9 @@ private:
             add(1, last);
         }
     }
-    /// add_before and add_behind add a second contact point, at least shortest_stretch before or behind the point
-    /// `other`. They add none if the distance is too steep at all points there. One evaluation shows this, because the
-    /// derivative increases along the edge.
+    /// add_before and add_behind add one more contact point, at least shortest_stretch before or behind the contact
+    /// point at `other`. They add none if the distance is steeper than steep_slope at all points that far away. One
+    /// evaluation at this least distance shows this, because the derivative increases along the edge.
     void add_before(Real other) {
         const Real last = other - shortest_stretch;
         if (last <= interval_.low || (last < interval_.high && along_.slope(last) < -steep_slope)) return;
@@ -239,8 +248,8 @@ Real scan(const Along& along, bool convex, auto&& visit) {
         const Real high = static_cast<Real>(i) / intervals;
         const SurfacePoint after = along.at(high);
         const Real falls = along.slope(before), rises = along.slope(after), length = along.length() / intervals;
-        // Lower bound of the distance in the interval. For a convex part it follows from the tangents at both ends, for
-        // other parts from the distances at both ends and the length of the interval.
+        // Lower bound of the distance in the interval. For a convex part it follows from the tangents at both ends. For
+        // other parts it is (d0 + d1 - length) / 2, because the distance changes by at most 1 per length.
         const Real bound = convex ? std::max(before.distance + std::min(Real(0), falls) * length,
                                              after.distance - std::max(Real(0), rises) * length)
                                   : 0.5 * (before.distance + after.distance - length);

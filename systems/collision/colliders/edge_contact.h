@@ -16,7 +16,7 @@ bool is_convex_part(const ColliderGeometry& geometry, Index part);
 /// the collider.
 Real edge_distance(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b);
 
-/// A point of an edge where the edge may touch the collider first.
+/// A point between the ends of an edge at which a contact may be needed.
 struct EdgePoint {
     Index number;     // number that identifies the point on the edge across steps; below crossing_of_edge
     Real s;           // position along the edge: 0 at the first end, 1 at the second end; 0 < s < 1
@@ -32,9 +32,10 @@ struct EdgeContact {
 /// Finds the points between the ends of an edge at which the distance between the edge and a part of a collider has a
 /// minimum. `a`, `b`: ends of the edge in the frame of the collider.
 ///
-/// If the distance is nearly constant on a stretch of the edge, for example along a side of a box, the two ends of this
-/// stretch are found. The position where the distance begins to rise is found, too. So an edge that extends beyond a
-/// side is supported at the border of the side before it rotates about the border.
+/// If the distance is nearly constant on a stretch of the edge, for example along a side of a box, both ends of this
+/// stretch are found instead of the minimum. The points beyond which the distance rises steeply (steep_slope) are
+/// found, too: an edge that extends beyond a side is thus supported at the border of the side before it rotates about
+/// the border.
 EdgeContact edge_contact(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b);
 
 }  // namespace skerry

@@ -24,7 +24,8 @@ Touch of_surface(const SurfacePoint& on, Real distance, const std::array<Real, 3
 }
 
 /// Nearest points of an edge and a convex collider part. The distance along the edge is a convex function, so it is
-/// least where its derivative changes sign. Outside of the part, where touches are searched, the distance has no kinks.
+/// least where its derivative changes sign; bisection finds this point. Its normal is accurate, because the gradient of
+/// the distance is continuous outside of the part, where touches are searched.
 Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Nodes& end) {
     const Vec3 edge = end[1] - end[0];
     const auto at = [&](Real s) { return local_distance(geometry, end[0] + s * edge, part); };
@@ -61,8 +62,8 @@ public:
             across > 0 ? std::clamp(-start_.head<2>().dot(edge_.head<2>()) / across, Real(0), Real(1)) : 0;
     }
 
-    /// Lower bound of the distance between the wall and a stretch of the edge. It follows from the ranges of height and
-    /// radius on the stretch [m]. `low`, `high`: ends of the stretch as fractions of the edge.
+    /// Lower bound of the distance between the wall and the stretch of the edge between the parameters `low` and `high`
+    /// [m]. It follows from the ranges of height and distance from the axis on the stretch.
     Real bound(Real low, Real high) const {
         const Real r_low = from_axis(low), r_high = from_axis(high), r_most = std::max(r_low, r_high),
                    r_least = from_axis(std::clamp(nearest_to_axis_, low, high)), z_low = height(low),
@@ -82,8 +83,8 @@ private:
 };
 
 /// Nearest points of an edge and the wall of a bucket, found by branch and bound, because the distance may have several
-/// minima. The returned distance is a lower bound; it is at least half of the distance at the returned point, or a
-/// quarter if the search reaches its limit of samples. `kept` is subtracted from both distances [m].
+/// minima. The returned distance is a lower bound of the least distance. It is at least half of the distance at the
+/// returned point, or a quarter if the search reaches its limit of samples. All distances are reduced by `kept` [m].
 Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end, Real kept) {
     constexpr int most_samples = 1024;
     const Wall wall(geometry, end);
@@ -130,8 +131,9 @@ Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes&
 }
 
 /// Nearest points of a face and the disc inside a rim. The interior of a face is first touched by the rim point that
-/// reaches furthest towards the face; the rim may be on either side of the face. If the projection of this point is
-/// beside the face, an edge of the face is nearest, unless the rim has passed through the face.
+/// reaches furthest towards the face; both sides of the face are tested, because the rim may be on either side. If the
+/// projection of this point lies beside the face, an edge of the face is nearest. The returned distance is then a lower
+/// bound, and `in_face` is false.
 Touch nearest_on_rim(const ColliderGeometry& geometry, Index k, const Nodes& corner) {
     const FaceContact front = face_contact(geometry, k, corner),
                       back = face_contact(geometry, k, {corner[0], corner[2], corner[1]});
@@ -179,7 +181,9 @@ public:
         return local;
     }
 
-    /// Upper bound of the speeds of all nodes of the feature relative to the collider [m per step].
+    /// Upper bound of the speeds of all nodes of the feature relative to the collider during the whole step [m per
+    /// step]. The first summand is the speed at the start; the second bounds its growth, because the arm grows by at
+    /// most drift().
     Real greatest_speed() const {
         Real greatest = 0;
         for (std::size_t i = 0; i < feature_.nodes(); ++i)
@@ -188,7 +192,8 @@ public:
     }
 
     /// Duration after `time` in which no node can pass the tangent plane at the nearest point of the collider, as a
-    /// fraction of the step.
+    /// fraction of the step. During the duration d, a node approaches the plane by at most d v + d^2 a / 2 <= d (v + a
+    /// (1 - time) / 2), where v is its speed towards the plane at `time`, and a bounds its acceleration.
     Real time_before_plane(const Touch& touch, const Nodes& nodes, Real time) const {
         const Vec3 normal = rotation(time) * touch.normal;
         Real least = infinity;
@@ -208,9 +213,10 @@ private:
         return feature_.position[i] + time * feature_.displacement[i] - (motion_.position + time * shift_);
     }
     Vec3 drift(std::size_t i) const { return feature_.displacement[i] - shift_; }
-    /// Velocity of node i in the frame of the collider, which rotates, expressed in world axes [m per step].
+    /// Velocity of node i relative to the rotating frame of the collider, expressed in world axes [m per step].
     Vec3 velocity(std::size_t i, Real time) const { return drift(i) - turn_.cross(arm(i, time)); }
-    /// Upper bound of the acceleration of node i in the frame of the collider, which rotates [m per step^2].
+    /// Upper bound of the acceleration of node i in the rotating frame of the collider [m per step^2]: Coriolis term 2
+    /// |turn| |drift| plus centrifugal term |turn|^2 |arm|.
     Real greatest_turn(std::size_t i) const {
         const Real turning = turn_.norm(), drifting = drift(i).norm();
         return turning * (2 * drifting + turning * (arm(i, 0).norm() + drifting));
@@ -222,9 +228,10 @@ private:
     const Vec3 turn_;   // rotation vector of the collider in the step [rad]
 };
 
-/// True if the whole tested collider part (for a face: collider point) lies behind the tangent plane at the touched
-/// point, that is, on the side opposite to the feature. The feature then cannot touch before one of its nodes passes
-/// this plane. False for the hollow wall of a bucket, and for a face if one of its edges is nearest.
+/// True if the tangent plane at the nearest point of the collider separates the feature from the whole tested collider
+/// part (for a face: from the collider point with its ball). The feature then cannot touch before one of its nodes
+/// passes this plane. False for the wall of a bucket, which is not convex, and for a face if one of its edges is
+/// nearest, because there is no normal then.
 bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& feature, const Touch& touch) {
     if (feature.kind == TouchingFeature::Kind::face) return touch.in_face;
     return geometry.shape != ColliderShape::bucket || feature.of_shape == 0;

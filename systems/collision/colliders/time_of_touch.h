@@ -16,7 +16,8 @@ struct TouchingFeature {
     enum class Kind : std::uint8_t { node, edge, face };
 
     Kind kind;
-    // For a node or edge: number of the collider part. For a face: number of the collider point (see collider_point).
+    // For a node or edge: number of the collider part (collider_part_count). For a face: number of the collider point
+    // (collider_point).
     Index of_shape;
     std::array<Vec3, 3> position;        // world position of each node at the start of the step [m]
     std::array<Vec3, 3> displacement{};  // displacement of each node in the step [m]
@@ -30,38 +31,39 @@ struct Touch {
     // Distance between the nearest points [m]. At the wall of a bucket, where several points may be nearest, it is only
     // a lower bound, at least a quarter of the distance at `point`.
     Real distance;
-    std::array<Real, 3> weight;  // weights of the feature's nodes at the nearest point of the feature
+    std::array<Real, 3> weight;  // weight of each node in the nearest point of the feature; they add up to 1
     // Nearest point of the collider [m], and unit normal of the collider at this point. Vectors are in the frame of the
     // collider.
     Vec3 point, normal;
     // false: an edge of the face is nearest to the collider; then `weight` and `normal` are zero.
     bool in_face = true;
-    bool within = false;  // true: the collider touches the face from the inner side of the body
+    bool within = false;  // true: the collider touches the face from inside the body; set by first_touch only
 };
 
-/// Finds the nearest points of a feature and a collider. `nodes`: nodes of the feature in the frame of the collider. If
-/// `of_shape` is the rim point that depends on the face, all points of the rim are considered. Distances of nodes and
-/// edges are signed, minus the distance that must remain (`kept`). If the rim has passed through a face, the distance
-/// from the edges of the face is returned.
+/// Finds the nearest points of a feature and a collider. `nodes`: nodes of the feature in the frame of the collider.
+/// For a face and the first point of a rim (collider_point), all points of the rim are considered; if the rim has
+/// passed through the face, the distance of the rim from the edges of the face is returned. Distances of nodes and
+/// edges are signed and reduced by `kept.distance`. The distance from a face is positive on both of its sides.
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature, const std::array<Vec3, 3>& nodes);
 
-/// True if the positions at the end of the step suffice to detect a crossing, because the collider is a plane. No
-/// feature can move around a plane, so a feature that has passed the plane is behind it at the end. A feature that a
-/// contact stops in front of the plane has not crossed it, however near it is. False for round bodies, because no part
-/// of their surface may be behind the plane at any time of the step.
+/// True if the positions at the end of the step suffice to detect a crossing: the collider is a plane, and the feature
+/// is not the core of a round body. No feature can move around a plane, so a feature that has crossed the plane is
+/// behind it at the end. For a core the test is not sufficient, because the surface of a round body may not pass the
+/// plane at any time of the step.
 bool the_end_tells(const ColliderGeometry& geometry, const TouchingFeature& feature);
 
 /// Upper bound of the decrease in distance between the collider and any point of the feature, while both move for h
 /// seconds [m].
 Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature& feature);
 
-/// Finds the time in the step at which a feature and a collider are nearly in contact, and returns their nearest points
-/// at this time; no value if they do not meet. The method is conservative advancement, similar to time_of_contact.
-/// `time_of_touch`: null, or receives the time as a fraction of the step if conservative advancement has found it.
+/// Finds the first time in the step at which a feature and a collider are nearly in contact, and returns their nearest
+/// points at this time; no value if they do not meet. The method is conservative advancement, similar to
+/// time_of_contact. `time_of_touch` may be null. Otherwise it receives the time as a fraction of the step, but is left
+/// unchanged if the_end_tells is true.
 ///
 /// If the_end_tells is true, only the end of the step is tested, and the nearest points are returned if the feature is
-/// behind the plane then. There is no value for features that touch or overlap the collider at the start of the step,
-/// and for a face whose edges touch first: edges are tested as separate features.
+/// behind the plane then. No value is returned for a feature that touches or overlaps the collider at the start of the
+/// step, or for a face whose edges touch first, because edges are tested as separate features.
 std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMotion& motion, Real h,
                                  const TouchingFeature& feature, Real* time_of_touch = nullptr);
 

@@ -15,14 +15,15 @@ namespace skerry {
 
 namespace {
 
-// If the angle between an end of the cylinder and a side is below this value, fixed points on the rim support the end.
-// These points rotate with the cylinder, so at rest they are always the same [rad].
+// If the angle between an end of the cylinder and a flat side of another shape is below this value [rad], eight points
+// fixed to the cylinder support the end (RimPoints). The direction of such a small tilt is only noise; points that
+// follow it would jump along the rim while the cylinder stands at rest.
 constexpr Real standing_tilt = 1e-4;
-// If the sine of the angle between an end of the cylinder and a side exceeds this limit, only one point of the rim of
-// this end can touch the side.
+// If the sine of the angle between an end of the cylinder and a flat side of another shape exceeds this limit, only one
+// point of the rim of this end can touch the side.
 constexpr Real lying_tilt = 0.5;
-// Tolerance of contact normals at an edge or rim: a normal may be outside of the range between the adjacent sides by
-// this angle. Capsules have the same tolerance (docs/methods/collision.md 4.5) [rad].
+// Angle by which a contact normal at an edge or rim may be outside of the range between the normals of the two adjacent
+// sides [rad]. Capsules have an equal tolerance (axis_tilt in point_triangle_contact.cpp).
 constexpr Real rim_angle = 0.03;
 // Tolerance for classifying the gradient of the distance from the cylinder. If the gradient differs from the axis by
 // less, it belongs to an end. If its component along the axis is smaller, it belongs to the curved side.
@@ -34,11 +35,12 @@ constexpr Real over_fraction = 1e-9;
 constexpr Real level_slope = 1e-9;
 // Number of samples on a rim. Minima are searched between adjacent samples.
 constexpr int samples_around = 16;
-constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;  // [rad]
+// Accuracy of the angle of a contact point on a rim, and distance below which two minima count as one [rad].
+constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;
 
-// Numbers of the contact points on a shape. Each rim has of_rim numbers, each side has of_side numbers. The other
-// constants are the first numbers of each kind of contact point: on rims of the other shape, on sides, at corners, on
-// edges, and between curved sides.
+// Numbers of the contact points on a shape. Each rim has of_rim numbers, each side has of_side numbers. Points on the
+// rims of the cylinder are numbered from 0. The other constants are the first numbers of the other kinds of contact
+// points: on rims of the other shape, on sides, at corners, on edges, and between curved sides.
 constexpr Index of_rim = 8, of_other_rims = 16, of_sides = 40, of_side = 16, of_corners = 136, of_edges = 144,
                 of_round_sides = 240;
 
@@ -56,8 +58,8 @@ struct CylinderRim {
     }
 };
 
-/// Calls `visit` for each minimum of a distance along a rim. Each minimum is found between two samples. If the distance
-/// is constant along an arc, both ends of the arc are visited.
+/// Calls visit(k, direction, on) for minimum k of a distance along a rim. Minima are searched between samples. If the
+/// distance is constant along an arc, both ends of the arc are visited.
 template <class Distance, class Visit>
 void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& visit) {
     struct Sample {
@@ -76,7 +78,7 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
     Index number = 0;
     std::optional<Real> first, last;  // angles at which the first and the last minimum were found [rad]
     // Finds, by bisection between two samples, the angle at which the derivative of the distance passes the value
-    // `slope`.
+    // `slope`, and visits it. `behind`: sample at `high`.
     const auto find = [&](Real low, Real high, Real slope, const Sample& behind) {
         Sample found = behind;
         while (high - low > turn_tolerance) {
@@ -92,8 +94,8 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
         const bool again = (last && high - *last < same_place) || (first && high - *first > round - same_place);
         last = high;
         if (!first) first = high;
-        // A kink of the distance is caused by an edge of the other shape. The contact points of this edge are found
-        // separately.
+        // If the derivative jumps past `slope`, the distance has a kink, which an edge of the other shape causes. The
+        // contact points of this edge are found separately, so the kink is not visited.
         if (!again && number < of_rim && std::abs(found.slope) < rim_angle) visit(number++, found.direction, found.on);
     };
     Sample before = sample(0);
@@ -101,7 +103,8 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
         const Sample after = sample(i * between);
         const bool falls = before.slope<-level_slope, rises = after.slope> level_slope;
         const Real low = (i - 1) * between, high = i * between;
-        // A sample may by chance lie at a minimum. This is not an arc of constant distance.
+        // If the derivative is zero at a sample, the sample lies on an arc of constant distance or, by chance, at a
+        // minimum. The derivative a little beyond the sample tells which.
         if (falls && after.slope >= -level_slope) {
             const Sample beyond = rises ? after : sample(high + same_place);
             if (beyond.slope > level_slope)
@@ -203,8 +206,8 @@ private:
         on.point = from_other(on.point);
         return on;
     }
-    /// True if `side` is the side of the shape nearest to a point p. `height`: height of p above the side. A point
-    /// behind the side may be nearer to another side.
+    /// True if a point p, whose projection lies on `side`, is in front of this side, or behind it and nearer to it than
+    /// to the other sides. `height`: height of p above the side [m].
     static bool is_before(const FlatSide& side, Real height, const ColliderGeometry& geometry, Index part,
                           const Vec3& p) {
         return height >= 0 || local_distance(geometry, p, part).normal.dot(side.normal) > 1 - over_fraction;
@@ -241,8 +244,9 @@ private:
             });
     }
 
-    /// Adds the rim points of the cylinder that are above a flat side of the other shape. If this side is a disc, the
-    /// points where a rim crosses the outer border of the disc are added, too.
+    /// Adds the rim points (RimPoints) of the cylinder that are above a flat side of the other shape. If this side is a
+    /// disc, adds also the points at which the rim that faces the side crosses the outer border of the disc, seen along
+    /// the normal.
     void touch_side(Index number, const FlatSide& side) {
         const Vec3 normal = place_.rotation * side.normal;
         const Vec3 at = from_other(side.at);
@@ -253,7 +257,8 @@ private:
             if (side.holds(to_other(foot)) && is_before(side, height, other_, part_, to_other(p)))
                 add(of_sides + of_side * number + k, height, normal, foot);
         };
-        // If no end of the cylinder nearly faces the side, touch_rims finds the rim points that reach furthest.
+        // If neither end of the cylinder nearly faces the side, touch_rims() already finds the only possible contact
+        // points, the rim points that reach furthest.
         const bool all = side.region == FlatSide::Region::all;
         if (!all && !stands) return;
         for (const RimPoints::Point& p : RimPoints(own_, normal)) {
@@ -273,7 +278,7 @@ private:
             });
     }
 
-    /// Adds the rim points of the other shape, a cylinder, that are above an end of this cylinder.
+    /// Adds the rim points of the other shape, which is also a cylinder, that are above an end of the cylinder.
     void touch_end(Index number, Index end) {
         const FlatSide side = end_of(own_, end);
         // Normal of the end in the frame of the other cylinder.
@@ -342,8 +347,9 @@ private:
             }
     }
 
-    /// Adds the contact point between two curved sides whose axes cross. `radius`, `low` and `high`: radius of the
-    /// other curved side and the range of its heights. Cylinders with parallel axes touch at their rims instead.
+    /// Adds the contact point between the curved side of the cylinder and a curved side of the other shape, if the two
+    /// axes are nearest between their ends. `radius`: radius of the other side. `low`, `high`: ends of its axis. For
+    /// parallel axes, the rims make the contacts.
     void touch_round_sides(Real radius, Real low, Real high) {
         const Vec3 half = own_.size[1] * Vec3::UnitZ();
         const SegmentSegment nearest =
@@ -351,7 +357,7 @@ private:
         const Real length = std::sqrt(nearest.distance_squared);
         if (!nearest.interior || !(length > 0)) return;
         const Vec3 normal = (nearest.on_first - nearest.on_second) / length;
-        // A cylinder inside a bucket does not touch the curved outer side of the bucket.
+        // The axis of the cylinder passes inside the bucket, so the cylinder cannot touch its outer side.
         if (other_.shape == ColliderShape::bucket && length < radius) return;
         add(of_round_sides, length - own_.size[0] - radius, normal, nearest.on_second + radius * normal);
     }

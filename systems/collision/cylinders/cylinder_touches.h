@@ -11,18 +11,19 @@ namespace skerry {
 
 /// A possible contact point, in the frame of the cylinder.
 struct CylinderTouch {
-    Index number;                  // number that identifies the contact point across steps; ascending in a list
-    Real distance;                 // signed distance between the two shapes at this point [m]
-    Vec3 normal;                   // unit normal, directed from the other shape to the cylinder
-    Vec3 on_other;                 // contact point on the surface of the other shape [m]
-    std::array<Real, 2> weight{};  // weights of the two ends of the axis if the other shape is a capsule
+    Index number;   // number that identifies the contact point across steps; ascending in a list
+    Real distance;  // signed distance between the two shapes at this point [m]
+    Vec3 normal;    // unit normal, directed from the other shape to the cylinder
+    Vec3 on_other;  // contact point on the surface of the other shape [m]
+    // weights of both ends of the axis if the other shape is a capsule; {1, 0} for a sphere
+    std::array<Real, 2> weight{};
 };
 
 /// Contact points of one pair of shapes, or of the cylinder and one triangle. The capacity suffices for the greatest
 /// possible number of contact points.
 class CylinderTouches {
 public:
-    static constexpr Index most = 256;  // capacity of the list, and upper limit of CylinderTouch::number
+    static constexpr Index most = 256;  // capacity of the list; every CylinderTouch::number is below it
 
     void clear() { count_ = 0; }
     void add(const CylinderTouch& touch) {
@@ -40,9 +41,9 @@ private:
 /// Points on the rims of a cylinder that can touch a flat side of another shape. `normal`: outward unit normal of the
 /// side in the frame of the cylinder.
 ///
-/// Each rim has its point nearest to the side. If an end nearly faces the side, each rim also has the points at 90, 180
-/// and 270 degrees from that point. If an end faces the side (up to standing_tilt), each rim has eight points at fixed
-/// angles of the cylinder instead of these three.
+/// The list contains the point of each rim that is nearest to the side. If the ends are tilted against the side by at
+/// most 30 degrees, it also contains the points of each rim at 90, 180 and 270 degrees from the nearest one. If the
+/// tilt is at most 1e-4 rad, it contains eight points of each rim at fixed angles instead of these three.
 ///
 /// A contact assumes that its point moves on a straight path within a step. While a tilted cylinder rotates about its
 /// axis by less than a radian, the straight paths of these points come no nearer to the side than the nearest point.
@@ -80,14 +81,15 @@ void touch_capsule(const ColliderGeometry& cylinder, const Vec3& a, const Vec3& 
 void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
                  Real near, CylinderTouches& found);
 
-/// Lower bound of the distance between the cylinder and a triangle. The triangle is given in the frame of the cylinder
-/// [m].
+/// Lower bound of the distance between the cylinder and a triangle [m]. `face`: the triangle in the frame of the
+/// cylinder.
 Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
 
 /// Lower bound of the distance between the cylinder and the convex hull of a part of another shape [m]. It is the
-/// greatest of several bounds: distances between parallel planes that separate the shapes, with normals along the axes
-/// of both shapes or along the normals of `touches`, and the distance from the bounding sphere of the cylinder.
-/// `place`: pose of the other shape in the frame of the cylinder.
+/// greatest of several bounds: the distance from the bounding sphere of the cylinder, for two cylinders the distance of
+/// the capsules around them, and the distances between parallel planes that enclose the two shapes. The normals of the
+/// planes are the axes of both shapes and the normals of `touches`. `place`: pose of the other shape in the frame of
+/// the cylinder.
 Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
                           const RigidMotion& place, const CylinderTouches& touches);
 

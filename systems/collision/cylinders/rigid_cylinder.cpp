@@ -42,7 +42,8 @@ RigidCylinder cylinder_in_step(const CollisionInputs& inputs, const StepMotion& 
     const Vec3 axis = up.cross(up_then);
     const Real sine = axis.norm();
     found.motion.velocity = way / motion.h;
-    // If the axis has rotated by 180 degrees, the cylinder occupies the same space again, so no rotation is needed.
+    // `sine` is also zero if the axis has rotated by 180 degrees. The cylinder then occupies the same space as before,
+    // so zero angular velocity is right, too.
     if (sine > 0) found.motion.angular_velocity = std::atan2(sine, up.dot(up_then)) / (sine * motion.h) * axis;
     return found;
 }

@@ -34,8 +34,8 @@ inline bool has_cylinder(const CollisionInputs& inputs, const PairTable& pairs, 
 RigidCylinder cylinder_at_start(const CollisionInputs& inputs, Index body);
 
 /// The cylinder at the start of the step, with the constant velocities that move it to its position at the end of the
-/// step. The angular velocity describes the smallest rotation that rotates the axis to its final direction; a rotation
-/// about the axis has no effect on the surface.
+/// step. The angular velocity describes the smallest rotation that turns the axis to its final direction. The rotation
+/// about the axis is left out, because it does not change the surface.
 RigidCylinder cylinder_in_step(const CollisionInputs& inputs, const StepMotion& motion, Index body);
 
 }  // namespace skerry

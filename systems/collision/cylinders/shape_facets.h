@@ -13,12 +13,12 @@ namespace skerry {
 /// A node, edge or triangle of a shape, in the frame of the shape.
 struct Facet {
     TouchingFeature::Kind kind;
-    std::array<Vec3, 3> at;  // positions of the nodes, as many as the kind of feature has [m]
+    std::array<Vec3, 3> at;  // positions of the nodes; 1, 2 or 3 are used, depending on `kind` [m]
     Real radius = 0;         // radius of the round surface around a node or an edge [m]
 };
 
 /// Facets of a sphere, capsule, box or cylinder, or of one part of a bucket, in a fixed order. Curved sides are
-/// approximated by flat sides that lie within the solid.
+/// approximated by flat ones that do not protrude from the solid, so that no contact is found before the shape touches.
 class ShapeFacets {
 public:
     static constexpr int around = 32;
@@ -83,8 +83,9 @@ private:
             quad(corner(0), corner(c), corner(b | c), corner(b), visit);
         }
     }
-    /// Visits the facets between four rings around the z axis. In the half plane with coordinates radius and z, the
-    /// rings are counter-clockwise. `closed`: true if facets also connect the last ring with the first ring.
+    /// Visits the nodes and edges on four rings around the z axis, and the edges and triangles between adjacent rings.
+    /// In the half plane with the coordinates (radius, z), the rings are corners of a polygon, counter-clockwise.
+    /// `closed`: true if the last ring is also connected with the first one.
     static void of_rings(const std::array<Ring, 4>& ring, bool closed, auto&& visit) {
         const auto at = [&](std::size_t i, int k) {
             const Real turn = 2 * std::numbers::pi * (k % around) / around;

@@ -16,18 +16,20 @@
 
 namespace skerry {
 
-/// Division of the pairs among ranks. Each pair belongs to the rank that owns one of its bodies.
+/// Division of the pairs among MPI ranks. Each pair belongs to the rank that owns a certain one of its bodies
+/// (belongs_to_second).
 struct PairOwners {
-    std::span<const std::int32_t> body_owner{};  // by row of BodyTable: rank; empty: all pairs belong to this rank
+    std::span<const std::int32_t> body_owner{};  // by row of BodyTable: owner; empty: this rank has all pairs
     std::int32_t rank = 0;                       // number of this rank
 
-    /// True if the owner of the second of two bodies that can move has the pair. The sum of the slots decides, so that
-    /// about half of the pairs between two ranks belong to each of them.
+    /// True if a pair of two bodies that can move belongs to the rank of the second body. It is the body with the
+    /// higher slot if the sum of the slots is odd, else the one with the lower slot. The result is thus independent of
+    /// the order of the bodies, and each of two ranks gets about half of the pairs between them.
     static constexpr bool belongs_to_second(std::uint32_t first_slot, std::uint32_t second_slot) {
         return (first_slot + second_slot) % 2 == (first_slot < second_slot);
     }
-    /// True if the pair belongs to this rank. `first`: row of a body that can move. `second`: row of another body that
-    /// can move, or no_index.
+    /// True if the pair belongs to this rank. `first`: row of a body that can move. `second`: row of the second body if
+    /// it can move, else no_index.
     bool owns(const BodyTable& body, Index first, Index second) const {
         if (body_owner.empty()) return true;
         if (second != no_index && belongs_to_second(body.slot[first], body.slot[second])) first = second;
@@ -47,7 +49,8 @@ struct CollisionInputs {
     std::span<const LeafFeatures> leaf_features;
     std::span<const Vec3> position;  // position of each node at the start of the step [m]
     std::span<const Vec3> velocity;  // velocity of each node at the start of the step [m/s]
-    // Position of each node in the rest shape [m]; empty: self-contact is not compared with the rest shape.
+    // Position of each node in the rest shape [m]. Features of one body that are near each other at rest make no
+    // contact; if the span is empty, this is not tested.
     std::span<const Vec3> rest_position = {};
     std::span<const std::uint64_t> disabled_pairs = {};  // keys of the disabled pairs (ContactKey::pair), ascending
     const MaterialPairTable* material_pairs = nullptr;   // null: no pair of materials has its own properties
@@ -88,11 +91,11 @@ struct CollisionInputs {
 struct CollisionSettings {
     // Magnitude of the gravitational acceleration, which bounds the increase of speeds in a step [m/s^2].
     Real gravity = 0;
-    // Margin of the candidate lists, as a fraction of the mean edge length. Features are listed if their distance
-    // exceeds the test distance by less than this margin.
+    // Least margin m of the candidate lists, as a fraction of the mean edge length. Features are listed as candidates
+    // if their distance is below zone + m (contact_reach.h).
     Real pair_skin = 0.3125;
-    // Margin of the list of pairs, as a fraction of the mean edge length. Pairs of bodies are listed if their distance
-    // exceeds the test distance by less than this margin.
+    // Margin of the list of pairs, as a fraction of the mean edge length. Two objects are listed if their boxes overlap
+    // when each is enlarged by half of this margin (contact_reach.h, 6).
     Real broad_skin = 4.0;
     bool use_budgets = true;  // false: every step searches all pairs and tests all candidates (reference for tests)
     bool continuous = true;   // false: crossings of surfaces within a step are not detected

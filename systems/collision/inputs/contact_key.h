@@ -12,13 +12,13 @@ inline constexpr std::uint64_t second_side_bit = std::uint64_t{1} << 62;
 inline constexpr int local_bits = 31;
 inline constexpr std::uint64_t local_mask = (std::uint64_t{1} << local_bits) - 1;
 
-/// Key of a pair of two bodies. The lower of the two handle slots comes first. If a body is paired with itself, both
-/// slots are equal.
+/// Key of a pair of two bodies. `first_slot`: the lower one of their handle slots; the caller must order them. For a
+/// body paired with itself, both slots are equal.
 inline std::uint64_t body_pair_key(std::uint32_t first_slot, std::uint32_t second_slot) {
     return std::uint64_t{first_slot} << local_bits | second_slot;
 }
 
-/// Key of a pair of a body and a collider. The collider may be analytic or a mesh.
+/// Key of a pair of a body and a collider, analytic or mesh. Bit 62 distinguishes it from body_pair_key.
 inline std::uint64_t collider_pair_key(std::uint32_t body_slot, std::uint32_t collider_slot) {
     return std::uint64_t{1} << 62 | std::uint64_t{body_slot} << local_bits | collider_slot;
 }
@@ -56,8 +56,9 @@ inline std::uint64_t face_collider_feature(Index k, Index triangle) {
     return second_side_bit | static_cast<std::uint64_t>(k) << local_bits | static_cast<std::uint64_t>(triangle);
 }
 
-/// Contacts of one edge with one part of a collider are numbered from 0 to contacts_of_edge - 1. The last number is for
-/// a crossing, which can exist beside the other contacts.
+/// Contacts of one edge with one part of a collider are numbered from 0 to contacts_of_edge - 1; the feature key
+/// contains contacts_of_edge * part + number. The last number is for a crossing, which can exist in addition to the
+/// contacts of edge_contact().
 inline constexpr Index contacts_of_edge = 9, crossing_of_edge = contacts_of_edge - 1;
 
 inline std::uint64_t edge_collider_feature(Index edge, Index part) {
@@ -82,7 +83,8 @@ inline Index second_local(std::uint64_t feature) {
     return static_cast<Index>(feature & local_mask);
 }
 
-/// Part of a feature key that is equal for all triangles paired with the same point.
+/// Upper part of the feature key of a point and a triangle; it identifies the point. Keys with equal upper parts differ
+/// only in the triangle.
 inline std::uint64_t point_of_feature(std::uint64_t feature) {
     return feature >> local_bits;
 }

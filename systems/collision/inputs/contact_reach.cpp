@@ -26,8 +26,9 @@ PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, 
     const Real own_distance = body.contact_distance[first];
     const Real own_edge = body.mean_edge[first];
     if (kind == PairKind::collider) {
-        // The signed distance from the collider is valid at any depth, so the zone needs no margin for points of the
-        // body inside the collider. face_depth is needed for points of the collider inside the body.
+        // The signed distance from a collider is exact at any depth inside it. The zone therefore needs no margin for
+        // points of the body inside the collider, and edge_depth is 0. face_depth is for points of the collider inside
+        // the body.
         const Real half = own_distance / 2, radius = body.round_radius[first], kept = half + radius;
         return {kept, half, own_edge, face_depth_fraction * own_edge, 0, kept, radius};
     }

@@ -6,9 +6,11 @@
 //   T(t)      travel of the pair. For two bodies it is the sum of the travels of both bodies in their frames (see
 //             BodyTable) and of the path of one frame relative to the other. For a body and a collider it is the sum of
 //             the travel of the body, the path of the body's frame and the travel of the collider.
-//   d0        sum of the displacements of both partners at time 0, when the bounds were computed
-//   T0        travel from which bounds are counted, T0 = T(0) - 2 d0 (pair_travel_base)
-//   F         front, F = T(t) + closing (travel_bound), where `closing` bounds the decrease of D(t) in this step
+//   d0        sum of BodyTable::displacement of both partners at time 0, when D(0) was measured; 0 for a collider
+//   T0        travel from which bounds are counted, T0 = T(0) - 2 d0 (pair_travel_base). The displacement of a body is
+//             the greatest distance d of a node from its origin, and the travel is the sum of the changes of d. A node
+//             can move by 2 d to the opposite side of its origin without changing d.
+//   F         front, F = T(t) plus a bound of the decrease of D(t) in this step (PairTable::travel_bound)
 //   zone, m   zone: distance below which features are tested in each step (PairScale); m: margin of a list
 //
 // 1. Motion:      D(t) >= D(0) - (T(t) - T0). Common motion of both partners does not count (measure_displacement.h).
@@ -36,20 +38,21 @@
 
 namespace skerry {
 
-// Safety factor on speeds, because forces can increase the speeds during the step. A contact that is missed
-// nevertheless is found one step later, when the gap is below the contact distance. find_crossings detects larger
-// motions.
+// Safety factor on speeds, because forces can increase the speeds during the step. If they increase them by more, the
+// contact is found one step later, when the distance may already be below the contact distance. Even larger motions are
+// detected by find_crossings.
 inline constexpr Real speed_safety = 2.0;
 
-// Features cannot meet in the step if the bound of their approach is below this fraction of their distance. The
-// fraction includes a wide safety margin.
+// Features are not tested for a crossing in the step if the bound of their approach is below this fraction of their
+// distance. The fraction 1 would suffice without rounding errors.
 inline constexpr Real slow_fraction = 0.5;
 
 // A gap below this fraction of the contact distance counts as closed. The contacts of a resting pile therefore persist
 // while the pile vibrates.
 inline constexpr Real touching_fraction = 0.1;
 
-/// Largest gap that can close within a step of length h [m]. T is one relative speed or a vector of eight speeds.
+/// Largest gap that can close within a step of length h [m]. Gravity can change the speed of each partner by gravity *
+/// h. T is one relative speed or a vector of eight speeds.
 template <class T>
 T reach(Real h, const T& relative_speed, Real gravity, Real contact_distance) {
     return speed_safety * h * (relative_speed + 2 * gravity * h) + touching_fraction * contact_distance;
@@ -61,7 +64,8 @@ struct PairScale {
     Real shell;             // distance that contacts maintain between the surfaces
     Real edge;              // smaller mean edge length of the two surfaces
     Real face_depth;        // largest depth behind a face at which a point is still pushed out
-    // Largest depth behind an edge or vertex at which a point is still pushed out, also for two edges.
+    // Largest depth behind an edge or vertex at which a point is still pushed out. Also: largest distance of two edges
+    // that have passed each other and are still pushed back.
     Real edge_depth;
     // Features whose distance is below this value, in front of or behind a surface, are tested in each step. For points
     // of a collider see face_zone.
@@ -71,9 +75,9 @@ struct PairScale {
 };
 
 // Largest depths at which points are pushed out, as fractions of the mean edge length. Deep overlap is rare, because
-// the contact distance separates surfaces. A point at a larger depth may belong to the other side of a thin body.
+// the contact distance separates surfaces. A point at a larger depth may have entered a thin body from its other side.
 inline constexpr Real face_depth_fraction = 0.25;  // largest depth behind a face
-// Largest depth behind an edge or vertex. At least the contact distance is used.
+// largest depth behind an edge or vertex, unless the contact distance is larger
 inline constexpr Real edge_depth_fraction = 0.02;
 
 /// Distance between a point of a collider and a face below which the two are tested in each step, in front of or behind
@@ -83,9 +87,9 @@ inline Real face_zone(const PairScale& scale) {
 }
 
 /// Distance that must remain between the cores (centres or axes) of round bodies during the motion of a step: the sum
-/// of their radii. The bodies count as in contact if the gap between their surfaces is below a small part of the shell
-/// distance. If the shell distance is zero, surfaces touch and may overlap by rounding errors. Then only the cores are
-/// tested for crossings.
+/// of their radii. The bodies count as in contact if the gap between their surfaces is below contact_slack times the
+/// shell distance. If the shell distance is zero, surfaces in contact may overlap by rounding errors. Then no distance
+/// is kept, so only crossings of the cores are found.
 inline KeptApart kept_of_radii(const PairScale& scale) {
     return scale.radii > 0 && scale.shell > 0 ? KeptApart{scale.radii, contact_slack * scale.shell} : KeptApart{};
 }
@@ -100,7 +104,7 @@ inline bool is_held_apart(const CollisionSettings& settings, PairState state, co
 }
 
 /// Characteristic distances of a pair whose state is known. If the surfaces cannot have passed through each other, no
-/// point lies deep behind a face. `zone` then shrinks from face_depth (or the contact distance) to edge_depth.
+/// point lies deep behind a face, so `zone` need not contain face_depth and is reduced to edge_depth.
 inline PairScale pair_scale_as_known(const CollisionSettings& settings, PairState state, PairScale scale) {
     if (is_held_apart(settings, state, scale)) scale.zone = scale.edge_depth;
     return scale;
@@ -109,8 +113,8 @@ inline PairScale pair_scale_as_known(const CollisionSettings& settings, PairStat
 /// Returns `properties` with each property replaced by the one in `given` if that is not negative.
 SurfaceProperties with_given(SurfaceProperties properties, const SurfaceProperties& given);
 
-/// Surface of one partner of a contact: row of its material, or no_index for a collider without a material, and its
-/// properties. Properties that a collider does not specify are negative.
+/// Surface of one partner of a contact. `material`: row of MaterialTable, or no_index for a collider without a
+/// material. `surface`: its properties; those that a collider does not specify are negative.
 struct PartnerSurface {
     Index material;
     SurfaceProperties surface;
@@ -126,14 +130,13 @@ SurfaceProperties mean_surface(const SurfaceProperties& own, const SurfaceProper
 /// mean_surface.
 SurfaceProperties pair_surface(const CollisionInputs& inputs, PairKind kind, Index first, Index second);
 
-/// Sum of the displacements of the two partners relative to their frames, since the origins of the displacements were
-/// set [m].
+/// Sum of BodyTable::displacement of the two partners; a collider has none [m].
 inline Real pair_displacement(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
     return inputs.body.displacement[first] + (kind == PairKind::collider ? 0 : inputs.body.displacement[second]);
 }
 
-/// Travel T0 from which bounds are counted. Suppose that a distance d between features of the pair is measured now. As
-/// long as travel_bound is below T0 + d, the features cannot meet [m].
+/// Travel T0 from which bounds are counted [m]: if the distance d between two features of the pair is measured now, the
+/// features cannot meet as long as travel_bound is below T0 + d.
 inline Real pair_travel_base(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
     return pairs.travel[p] - 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]);
 }

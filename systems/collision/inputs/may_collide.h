@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// Key of a pair (ContactKey::pair). `first`: row of a deformable body in BodyTable. `second`: row of BodyTable, or of
-/// ColliderTable if `kind` is collider.
+/// Key of a pair (ContactKey::pair). `first`: row in BodyTable of a body that is not kinematic. `second`: row of
+/// BodyTable, or of ColliderTable if `kind` is collider.
 inline std::uint64_t pair_key(const BodyTable& body, const ColliderTable& collider, PairKind kind, Index first,
                               Index second) {
     if (kind == PairKind::collider) return collider_pair_key(body.slot[first], collider.slot[second]);
@@ -23,8 +23,8 @@ inline std::uint64_t pair_key(const BodyTable& body, const ColliderTable& collid
 }
 
 /// True if the collision filters of both partners permit a contact and the pair is not disabled. `disabled`: keys of
-/// DisabledPairTable. For a body paired with itself the result is always true, because self-contact is checked
-/// elsewhere.
+/// DisabledPairTable. For a body paired with itself the result is always true, because the pair exists only if
+/// BodyTable::self_contact is set.
 inline bool may_collide(const BodyTable& body, const ColliderTable& collider, std::span<const std::uint64_t> disabled,
                         PairKind kind, Index first, Index second) {
     if (kind == PairKind::self) return true;

@@ -8,8 +8,9 @@
 namespace skerry {
 
 struct StepMotion {
-    std::span<const Vec3> velocity_next, push_out;  // by node [m/s]
-    Real h;                                         // length of the step [s]
+    // by node: velocity at the end of the step, and velocity of the push-out, which acts in this step only [m/s]
+    std::span<const Vec3> velocity_next, push_out;
+    Real h;  // length of the step [s]
 
     Vec3 of(Index node) const { return h * (velocity_next[node] + push_out[node]); }
 };

@@ -14,11 +14,11 @@ namespace skerry {
 
 inline constexpr std::size_t candidate_lanes = element_lanes;
 
-/// Nodes of a candidate. First the node of the point and then the three corners of the triangle; or first the two ends
-/// of one edge and then the two ends of the other edge.
+/// Nodes of a candidate: the point and the three corners of the triangle, or the two ends of the first edge and the two
+/// ends of the second edge.
 using CandidateNodes = std::array<Index, 4>;
 
-/// Nodes of eight candidates.
+/// Nodes of eight candidates, in the order of CandidateNodes: node[i][lane].
 using CandidateNodeLanes = std::array<std::array<Index, candidate_lanes>, 4>;
 
 inline void set_lane(CandidateNodeLanes& lanes, std::size_t lane, const CandidateNodes& node) {

@@ -12,8 +12,8 @@ namespace skerry {
 
 namespace {
 
-// A vector shorter than this has no reliable direction because of rounding errors; a fixed direction is used instead
-// [m].
+// A vector shorter than this [m] has no reliable direction because of rounding errors; the normal of a side, or an
+// axis, is used instead.
 constexpr Real min_length = 1e-14;
 
 Vec3 direction_or(const Vec3& v, Real length, const Vec3& otherwise) {
@@ -77,8 +77,8 @@ FlatDistance distance_to_rectangle(const Flat& p, Real r0, Real r1, Real z0, Rea
     return {length, length > min_length ? Flat{offset.r / length, offset.z / length} : side, nearest};
 }
 
-/// Half plane that is bounded by the axis of a body of revolution and contains the point p. It also contains the point
-/// of the body nearest to p.
+/// Half plane that is bounded by the axis (z) of a body of revolution and contains the point p. By symmetry it also
+/// contains the point of the body nearest to p.
 struct AxialFrame {
     Vec3 radial;  // unit vector from the axis to p; +x if p is on the axis
     Flat p;
@@ -98,7 +98,7 @@ FlatDistance distance_to_bucket_part(const Vec3& size, Index part, const Flat& p
 }
 
 /// Signed distance from the L-shaped profile of a bucket. Outside of the profile, this is the distance from the nearer
-/// part; inside, it is the distance from the nearest side. If several sides are equally near, the first one in the list
+/// part; inside, it is the distance from the nearest side. If several sides are equally near, the first one in `sides`
 /// is used.
 FlatDistance distance_to_bucket(const Vec3& size, const Flat& p) {
     const FlatDistance floor = distance_to_bucket_part(size, 0, p), wall = distance_to_bucket_part(size, 1, p);
@@ -119,7 +119,7 @@ FlatDistance distance_to_bucket(const Vec3& size, const Flat& p) {
                            std::clamp(p.z, std::min(side.from.z, side.to.z), std::max(side.from.z, side.to.z))};
         const Flat offset{nearest.r - p.r, nearest.z - p.z};
         const Real length = norm(offset);
-        if (!(-length <= best.distance))  // written so that NaN is returned if `length` is NaN
+        if (!(-length <= best.distance))  // negated, so that a NaN `length` is stored and returned
             best = {-length, length > min_length ? Flat{offset.r / length, offset.z / length} : side.normal, nearest};
     }
     return best;

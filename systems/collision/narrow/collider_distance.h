@@ -7,14 +7,14 @@
 namespace skerry {
 
 struct SurfacePoint {
-    Real distance;  // signed distance of the point from the surface, positive outside [m]
-    Vec3 normal;    // unit gradient of the distance, in the coordinate frame of the queried point
-    Vec3 point;     // nearest point of the surface, in the coordinate frame of the queried point [m]
+    Real distance;  // signed distance of the queried point from the surface, positive outside [m]
+    Vec3 normal;    // unit gradient of the distance, in the frame in which the queried point was given
+    Vec3 point;     // nearest point of the surface, in the same frame as `normal` [m]
 };
 
 /// Signed distance of a world point from a plane, sphere, box, capsule, cylinder or bucket. The distance is exact
-/// outside and inside the shape; inside a box or cylinder the nearest face determines it. On a medial axis the nearest
-/// point is not unique, and a fixed rule selects one.
+/// outside and inside the shape; inside a box or cylinder the nearest face determines it. Where the nearest point is
+/// not unique (medial axis), a fixed rule selects one.
 SurfacePoint distance_to_collider(const ColliderGeometry& geometry, const RigidMotion& motion, const Vec3& world_point);
 
 /// Number of parts of a collider. A bucket has two parts, floor and wall, so that a point in the corner between them
@@ -30,8 +30,8 @@ SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const R
 /// point is given in the frame of the collider.
 SurfacePoint local_distance(const ColliderGeometry& geometry, const Vec3& local_point, Index part = no_index);
 
-/// Largest coordinate of the points of a shape along a unit direction, measured from the origin of the shape [m].
-/// `part`: part of a bucket, whose convex hull is used, or no_index for all parts.
+/// Support function of a shape: largest coordinate of its points along a unit direction, measured from the origin of
+/// the shape [m]; infinity for a plane or a mesh. `part`: number of a part, or no_index for the complete shape.
 Real extent_along(const ColliderGeometry& geometry, Index part, const Vec3& direction);
 
 /// Axis-aligned box of a collider in the world; unbounded for a plane or a mesh.

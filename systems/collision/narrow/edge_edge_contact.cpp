@@ -9,20 +9,21 @@ namespace skerry {
 
 namespace {
 
-// An edge counts as flat if the angle between the normals of its two faces is below this value [rad]. Contacts are not
-// tested at flat edges, so two flat edges can come nearer to each other than the nodes around them. The difference is
-// at most a quarter of this fraction of the width of the faces, which is an eighth of the default contact distance.
+// An edge counts as flat if the angle between the normals of its two faces is below this value [rad]. Flat edges get no
+// contacts, so two of them can come nearer to each other than the contact distance that the nodes around them keep. The
+// difference is at most min_bend / 4 times the width of the faces: an eighth of the default contact distance (0.02 edge
+// lengths).
 constexpr Real min_bend = 0.01;
 
-// Angle by which the contact normal may lie outside of the range between the normals of the two faces of an edge [rad].
-// The angle by which features may rotate in this step is added. Without it, two edges could cross in a step in which a
-// contact stops a point in front of them.
+// Angle by which the contact normal may lie outside of the range between the normals of the two faces of an edge [rad]
+// (docs/methods/collision.md 4.4). A second tolerance, `closing`, allows for rotations in this step: without it, two
+// edges could cross in a step in which a contact stops a point in front of them.
 //
-// The tolerance is needed for resting edges (docs/methods/collision.md 4.5). If another edge lies on one of the faces,
-// the normal is exactly at the limit of the range. If the other edge lies on two edges of a face, and one of these two
-// is flatter, the flatter one permits a smaller distance. The normal at the other one is then outside of the range, by
-// about 0.01 rad for edges of equal length. Without the tolerance the contact at that edge would be lost: the resting
-// edge would fall onto the face, regain the contact and be pushed out, again and again.
+// The tolerance is needed for an edge that rests on a face F of another body. It touches two edges of F, and the
+// contact normal is exactly that of F, which is the limit of the range. If the faces at one of these two edges form a
+// smaller angle, the slack lets the resting edge sink further there. The contact normal at the other one is then
+// outside of the range, by about 0.01 rad for edges of equal length. Without the tolerance the contact there would be
+// lost: the resting edge would fall onto F, regain the contact and be pushed out, again and again.
 constexpr Real border_angle = 3 * min_bend;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
@@ -41,8 +42,8 @@ Vec3 unit_normal(std::span<const Vec3> position, const std::array<Index, 3>& nod
 /// The one or two faces at an edge.
 class Wedge {
 public:
-    /// `closing`: distance that features may move in this step [m]. `against_axis`: true if the other edge is the axis
-    /// of a capsule.
+    /// `closing`: distance by which the two surfaces may approach in this step [m]; it is a tolerance of the tests.
+    /// `against_axis`: true if the edge is tested against the axis of a capsule.
     Wedge(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, Real closing, bool against_axis) {
         const auto& ends = surface.edges.node[edge];
         const auto& around = surface.edges.triangle[edge];
@@ -56,8 +57,8 @@ public:
         into_[0] = across(along, position[opposite(first, ends)] - origin);
         border_[0] = border_angle * into_[0].norm() + closing;
         if (around[1] == no_index) {
-            // At the boundary of an open surface there is only one face. A wall perpendicular to this face is assumed
-            // as the second face.
+            // At the boundary of an open surface there is only one face. The second face is replaced by a face at a
+            // right angle behind the first one.
             into_[1] = -into_[0].norm() * normal;
             border_[1] = border_[0];
             convex_ = true;
@@ -70,13 +71,14 @@ public:
         // `fall`: depth of the second face below the plane of the first face, at the corner of the second face opposite
         // to the edge.
         const Real width = into_[0].norm(), other_width = into_[1].norm(), fall = -normal.dot(into_[1]);
-        if (against_axis) {  // only nearly flat edges can support the axis of a capsule
+        if (against_axis) {  // the axis of a capsule may also rest on flat and slightly concave edges
             convex_ = fall > -min_bend * other_width - closing;
             return;
         }
         convex_ = fall > min_bend * other_width - closing;
-        // fall / other_width is nearly the angle between the two faces, so the slack is the same for either order of
-        // the faces.
+        // fall / other_width is the sine of the angle b between the normals of the two faces, so the slack hardly
+        // depends on the order of the faces: (2 min_bend - b) w1 w2 / (w1 + w2) / 2 with the widths w1, w2
+        // (docs/methods/collision.md 4.5).
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
                                        (width + other_width) / 2
                                  : 0;
@@ -90,31 +92,31 @@ public:
     bool convex() const { return is_axis_ || convex_; }
 
     /// Slack: distance by which another edge that crosses this edge at `fraction` of the length may come nearer than
-    /// the contact distance [m]. It decreases towards the ends of the edge, where the faces are narrower. Without the
-    /// slack, an edge with a bend of min_bend would have a negative gap as soon as it is tested, after its nodes have
-    /// left the other body. Stacked blocks would then vibrate for ever.
+    /// the contact distance [m]. It decreases towards the ends of the edge, where the faces are narrower. An edge with
+    /// a bend below min_bend gets no contact, so another edge may already be that near. Without the slack, the gap
+    /// would be negative as soon as the bend reaches min_bend, and stacked blocks would vibrate for ever.
     Real slack(Real fraction) const { return 4 * fraction * (1 - fraction) * slack_; }
 
     /// True if a point in the given direction from the edge is nearer to the edge than to the two faces of the edge.
     /// `direction`: unit vector perpendicular to the edge.
     bool faces(const Vec3& direction) const {
         if (is_axis_) return true;
-        // At a nearly flat edge, the limits `border_` do not distinguish the outside from the inside, so the mean
-        // normal is tested, too.
+        // At a nearly flat edge, directions into the body are also within the limits `border_`, so the sum of the face
+        // normals is tested, too.
         return direction.dot(outward_) > 0 && direction.dot(into_[0]) <= border_[0] &&
                direction.dot(into_[1]) <= border_[1];
     }
 
 private:
-    /// Component of `v` perpendicular to the edge. If `v` points to the opposite corner of a face, the length of the
-    /// component is the width of the face.
+    /// Component of `v` perpendicular to the edge direction `along`. If `v` is the vector from the edge to the opposite
+    /// corner of a face, the length of the result is the width of the face.
     static Vec3 across(const Vec3& along, const Vec3& v) {
         const Real squared = along.squaredNorm();
         return squared > 0 ? Vec3(v - along.dot(v) / squared * along) : v;
     }
 
     std::array<Vec3, 2> into_;  // vectors from the edge across each face, perpendicular to the edge [m]
-    // for each face: largest product of `into_` and a direction for which faces() is true [m]
+    // for each face: largest scalar product of `into_` and a direction for which faces() can be true [m]
     std::array<Real, 2> border_;
     Vec3 outward_;  // sum of the unit normals of both faces
     bool is_axis_ = false, convex_ = false;

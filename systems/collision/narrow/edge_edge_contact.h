@@ -15,23 +15,24 @@ struct EdgeEdgeContact {
     Real distance = 0;  // signed distance between the edges; negative if they have passed each other [m]
     // Amount by which the distance of nearly flat edges may fall below the contact distance [m].
     Real slack = 0;
-    Vec3 normal;  // unit normal, directed from the second edge to the first
+    Vec3 normal;  // unit normal in the direction in which contacts push the first edge; valid if `touching`
     SegmentSegment closest;
-    Real sleep = 0;  // travel of the pair after which the gap of the edges may have closed [m]
+    Real sleep = 0;  // travel of the pair up to which the edges cannot touch, counted from now [m]
 };
 
-/// Tests two edges that cross for a contact on their outer sides. An edge can only touch if its surface is convex
-/// there, and if the contact normal lies between the normals of its two faces. Otherwise a point and a face are nearer.
-/// Edges inside a nearly flat surface are not tested, because tests of the surface's points suffice. The axis of a
-/// capsule is an exception: edges can touch it from all sides, and so can nearly flat edges. Edges at a larger distance
-/// than `near` are not tested closely. If the surfaces may overlap, contacts of edges that have passed each other are
+/// Tests two edges for a contact between their interior points. An edge can only touch if its surface is convex there,
+/// and if the contact normal lies between the normals of its two faces. Otherwise a point and a face are nearer. Nearly
+/// flat edges are not tested, because tests of the points of the surface suffice. The axis of a capsule can touch in
+/// all directions, and it can touch nearly flat edges. If the distance exceeds both `near` and scale.edge_depth, only
+/// `closest` and `sleep` are computed. If the surfaces may overlap, contacts of edges that have passed each other are
 /// found, too.
 EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
                                   Index second, const PairScale& scale, Real near, Surfaces surfaces);
 
-/// True if a straight or outward bent feature can touch an edge of a surface, because no face at the edge is nearer to
-/// the feature. `direction`: unit vector from the edge to the feature, perpendicular to the edge. `nearly_flat`: true
-/// if nearly flat edges can also touch the feature.
+/// True if a convex feature of another object, such as a straight axis or the side of a cylinder, can touch an edge of
+/// a surface: the surface is convex at the edge, and no face at the edge is nearer to the feature. `direction`: unit
+/// vector from the edge to the feature, perpendicular to the edge. `nearly_flat`: true if nearly flat edges can also
+/// touch the feature.
 bool edge_faces(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, const Vec3& direction,
                 bool nearly_flat);
 

@@ -9,20 +9,22 @@ namespace skerry {
 
 namespace {
 
-// Relative tolerance of the border between two adjacent features (face, edge, vertex), as a fraction of the point's
-// distance and of the edge length. A point within this tolerance of the border belongs to both features. A contact that
-// is found twice does no harm, but a contact that is lost by rounding errors does.
+// The region of points that are nearest to a feature (face, edge, vertex) borders on the regions of its neighbours. A
+// point within a tolerance of the border belongs to both features: a contact that is found twice does no harm, but a
+// contact that rounding errors lose does. The tolerance is tie_fraction times the distance of the point plus
+// tie_edge_fraction times the edge length.
 constexpr Real tie_fraction = 1e-6;
 constexpr Real tie_edge_fraction = 1e-12;
 
-// If the point is closer to an edge or vertex than this fraction of the contact distance (or of the edge length), the
-// direction to the point is too inaccurate for the contact normal (docs/methods/collision.md 4.3).
+// If the point is closer to an edge or vertex than normal_distance_fraction times the contact distance, or than
+// normal_edge_fraction times the edge length, the direction to the point is too inaccurate for the contact normal
+// (docs/methods/collision.md 4.3).
 constexpr Real normal_distance_fraction = 0.1;
 constexpr Real normal_edge_fraction = 1e-6;
 
 // A vertex counts as touching the axis of a capsule if it would touch the axis after a tilt of the axis by at most this
-// angle [rad]. An axis that lies along an edge or on a flat surface therefore touches both ends of this edge, even if
-// the axis is slightly tilted. Edges have a similar tolerance (docs/methods/collision.md 4.5).
+// angle [rad]. A capsule that lies on an edge thus touches both ends of the edge, even if its axis is slightly tilted.
+// Edges have an equal tolerance (border_angle in edge_edge_contact.cpp).
 constexpr Real axis_tilt = 0.03;
 
 struct Query {
@@ -45,7 +47,9 @@ struct Query {
     }
 };
 
-/// Sum of the normals of the two faces at the nearest edge; zero if the other face is nearer to the point.
+/// Sum of the unit normals of the two faces at edge k of a triangle, on which the nearest point lies; `face_normal`,
+/// the normal of the triangle, if it has no neighbour at the edge. Zero if the neighbour is nearer to the point than
+/// the edge.
 Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face_normal) {
     const Index edge = q.surface.triangles.edge[triangle][k];
     const auto& around = q.surface.edges.triangle[edge];
@@ -61,8 +65,9 @@ Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face
 }
 
 /// Sum of the unit normals of the faces around a vertex, weighted by the angles of the faces at the vertex. Its scalar
-/// product with the vector to a point is positive outside and negative inside (Baerentzen, Aanaes 2005). The result is
-/// zero if allowed(side) is false for any side of these faces at the vertex.
+/// product with the vector to a point is positive outside and negative inside (Baerentzen, Aanaes 2005). allowed(side)
+/// is called for each side of these faces at the vertex, as a vector from the vertex; the result is zero if it is false
+/// for any of them.
 Vec3 vertex_normal(const Query& q, Index vertex, auto&& allowed) {
     const VertexTable& vertices = q.surface.vertices;
     const Index self = vertices.node[vertex];
@@ -80,7 +85,8 @@ Vec3 vertex_normal(const Query& q, Index vertex, auto&& allowed) {
     return sum;
 }
 
-/// Sets the contact with an edge or vertex. `mean_normal`: sum of the normals of the adjacent faces.
+/// Sets the contact with an edge or vertex. `mean_normal`: sum of the normals of the adjacent faces; zero: no contact.
+/// `straight_behind`: true if q.offset is perpendicular to the triangle.
 void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind, Surfaces surfaces,
                   PointTriangleContact& contact) {
     const Real length = mean_normal.norm();
@@ -92,7 +98,8 @@ void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind,
         contact.normal = q.offset / q.distance;
         return;
     }
-    // A point straight behind an edge may lie behind a flat surface, so the depth limit of a face applies.
+    // A point straight behind an edge may lie behind the middle of a flat surface that the edge divides, so the larger
+    // depth limit of a face applies.
     if (!outside && q.distance > (straight_behind ? q.scale.face_depth : q.scale.edge_depth)) return;
     contact.side = outside ? Side::outside : Side::behind;
     contact.distance = outside ? q.distance : -q.distance;
@@ -124,15 +131,16 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     const Real aside_squared = std::max(Real(0), distance * distance - height * height);
     contact.sleep = distance - scale.edge_depth;  // edge_depth is at least the contact distance
     if (height < 0 && surfaces == Surfaces::may_overlap) {
-        // The point can become a contact behind the face, at a depth of at most face_depth.
+        // A point behind the plane of the face can move into the region behind the face where it becomes a contact:
+        // down to face_depth. `sleep` is limited by the distance from this region.
         const Real below = std::max(Real(0), -height - scale.face_depth);
         contact.sleep = std::min(contact.sleep, std::sqrt(aside_squared + below * below));
     }
     const std::size_t region = static_cast<std::size_t>(contact.closest.region);
     if (contact.closest.region == TriangleRegion::face) {
         const bool turned = height < 0 && surfaces == Surfaces::apart;
-        // `face_depth` does not limit the core of a round body behind an inverted face, because the core stays as far
-        // behind this face as it would stay in front of a regular one.
+        // If the surfaces are apart, contacts keep the core of a round body behind this face at the distance radii +
+        // shell. This distance may exceed face_depth, so the limit does not apply.
         if (height < -scale.face_depth && !(turned && scale.radii > 0)) return contact;
         contact.side = height >= 0 ? Side::outside : Side::behind;
         contact.distance = turned ? -height : height;
@@ -158,7 +166,8 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
 bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
                        const Vec3& axis, const PairScale& scale) {
     const Query q{surface, position, scale, offset, offset.norm()};
-    // If the axis rotates by the small angle t, its point nearest to the vertex moves to offset + t * along.
+    // If the axis tilts by the small angle t, the vector from the vertex to its nearest point becomes offset + t *
+    // along. [low, high]: angles for which no face at the vertex is nearer to this point.
     const Vec3 along = q.distance * axis.normalized();
     Real low = -axis_tilt, high = axis_tilt;
     const Vec3 normal = vertex_normal(q, vertex, [&](const Vec3& side) {

@@ -22,16 +22,16 @@ enum class Surfaces : std::uint8_t { apart, may_overlap };
 
 struct PointTriangleContact {
     Side side = Side::none;
-    Real distance = 0;  // signed distance between the point and the triangle [m]
+    Real distance = 0;  // distance between point and triangle; negative behind it if the surfaces may overlap [m]
     Vec3 normal;        // unit normal, pointing away from the triangle on the side where the point must stay
     PointTriangle closest;
-    // Travel of the pair after which the gap may have closed [m]. If the value is not positive, the candidate is tested
-    // again in the next step.
+    // Travel of the pair, counted from now, up to which the point and the triangle cannot touch [m]. If the value is
+    // not positive, the candidate is tested again in the next step.
     Real sleep = 0;
 };
 
-/// Tests a point against the nearest part of a triangle: its face, an edge or a vertex. Points at a larger distance
-/// than `near` are not tested closely.
+/// Tests a point against the nearest feature of a triangle: its face, an edge or a vertex. If the distance exceeds both
+/// `near` and scale.zone, only `closest` and `sleep` are computed.
 ///
 /// If an edge or vertex is nearest, only one triangle reports the contact: the triangle with the lowest row of all
 /// triangles at this edge or vertex, and only if none of them has a face nearer to the point. The normal is the normal
@@ -41,9 +41,9 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
                                             const Vec3& point, Index triangle, const PairScale& scale, Real near,
                                             Surfaces surfaces);
 
-/// True if a vertex of a surface touches the axis of a capsule, because no face at the vertex is nearer to the point of
-/// the axis that is nearest to the vertex. A small tilt of the axis is permitted. `offset`: vector from the vertex to
-/// this point of the axis [m].
+/// True if a vertex of a surface can touch a capsule or the curved side of a cylinder. Let p be the point of the axis
+/// that is nearest to the vertex: no face at the vertex may be nearer to p, after a tilt of the axis by at most
+/// axis_tilt. `offset`: vector from the vertex to p [m]. `axis`: direction of the axis.
 bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
                        const Vec3& axis, const PairScale& scale);
 

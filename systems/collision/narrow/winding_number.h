@@ -5,8 +5,8 @@
 
 namespace skerry {
 
-/// Half of the solid angle of a triangle as seen from the origin (Van Oosterom, Strackee 1983, The solid angle of a
-/// plane triangle).
+/// Half of the solid angle of a triangle as seen from the origin, negative if the corners are counter-clockwise as seen
+/// from there (Van Oosterom, Strackee 1983, The solid angle of a plane triangle).
 Real half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Winding number of the surface of a body around a point: 1 inside, 0 outside, 2 in regions where the body overlaps
@@ -14,7 +14,8 @@ Real half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c);
 /// Sorkine-Hornung 2013, Robust inside-outside segmentation using generalized winding numbers, equation 5).
 Real winding_number(const CollisionInputs& inputs, Index body, const Vec3& point);
 
-/// True if no part of the body contains the point. The result is also correct for a folded body.
+/// True if no part of the body contains the point: the winding number, an integer up to rounding, is 0. This is also
+/// correct where the body overlaps itself.
 bool is_outside(const CollisionInputs& inputs, Index body, const Vec3& point);
 
 }  // namespace skerry

@@ -64,8 +64,9 @@ public:
         }
         for (const SolidTriangle& t : solid.surface)
             for (std::size_t k = 0; k < 3; ++k)
-                // A closed surface contains each edge twice, once in each direction; only one direction is tested. In
-                // other surfaces, some edges are tested twice.
+                // Each edge of a closed surface occurs in two triangles, in opposite directions; it is tested in one of
+                // them. An edge of an open surface may occur in one triangle only, so every side of every triangle is
+                // tested.
                 if (!solid.closed || t.node[k] < t.node[(k + 1) % 3])
                     add_edge(pair_.local(t.node[k]), pair_.local(t.node[(k + 1) % 3]));
         if (!(overlap_.depth > 0)) return std::nullopt;
@@ -130,7 +131,8 @@ private:
         overlap_.direction = (within ? -way : way) / length;
         overlap_.place = at + body.shift;
     }
-    /// Adds, for each face of the body, the point of the rim that is deepest behind the face.
+    /// Tests the first point of a rim, number `k`, against each face of the body: the rim point furthest behind the
+    /// plane of the face, if its projection is inside the face.
     void add_rim(Index k) {
         for (const SolidTriangle& t : pair_.body.solid.surface) {
             const FaceContact face = face_contact(
@@ -157,8 +159,8 @@ std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, co
     if (!contains(body.solid, point - body.shift, 0)) return PointsInside({geometry, motion, body}, tolerance).find();
     Vec3 way = to_surface(body.solid, point - body.shift);
     const Real length = way.norm();
-    // The body moves in the direction from its nearest surface point to the collider. The distance takes the body past
-    // the far side of the collider.
+    // The body moves until its surface point nearest to `point` is beyond the far side of the collider. The direction
+    // is from that surface point to `point`.
     return Overlap{OverlapKind::around, length + collider_radius(geometry),
                    length > 0 ? Vec3(-way / length) : Vec3(Vec3::UnitZ()), point};
 }

@@ -15,15 +15,16 @@ namespace skerry {
 std::optional<Overlap> find_surface_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
                                            const PlacedSolid& body, Real tolerance);
 
-/// Overlap of a body and a collider, if no node or edge of the body is inside the collider. The kind is `around` if the
-/// body contains the complete collider. It is `crossing` if a corner, an end or a rim of the collider has entered the
-/// interior of a face by more than `tolerance` [m].
+/// Overlap of a body with a collider, if find_surface_inside has found none: the collider contains no point of the
+/// nodes and edges of the body. The kind is `around` if the body contains the complete collider. The kind is `crossing`
+/// if a corner, an end or a rim of the collider has entered the body through the interior of a face, by more than
+/// `tolerance` [m].
 std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
                                             const PlacedSolid& body, Real tolerance);
 
 /// A round body: all points within `radius` of a core, which is a point or a segment.
 struct RoundSolid {
-    std::array<Vec3, 2> end;  // ends of the core; equal for a point [m]
+    std::array<Vec3, 2> end;  // ends of the core; a core that is a point has two equal ends [m]
     bool is_segment;
     Real radius;  // [m]
 };

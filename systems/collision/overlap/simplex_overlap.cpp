@@ -54,8 +54,9 @@ SimplexOverlap::SimplexOverlap(const Simplex& first, const Simplex& second, Real
     overlapping_ = count_ > 0;
 }
 
-/// True if the two simplices overlap along an axis by at most `tolerance` [m]. For two nearly parallel edges, the
-/// direction of their cross product is arbitrary, but the computed overlap along this direction is still correct.
+/// Projects both simplices onto the axis `along`, a vector of any length. Returns true if the projections overlap by at
+/// most `tolerance` [m]; otherwise stores the axis and the overlap, and returns false. The direction of the cross
+/// product of two nearly parallel edges is arbitrary, but every direction is a valid axis.
 bool SimplexOverlap::separates(const Simplex& first, const Simplex& second, const Vec3& along, Real tolerance) {
     const Real length = along.norm();
     if (!(length > 0)) return false;

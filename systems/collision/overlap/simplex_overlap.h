@@ -16,9 +16,9 @@ struct Simplex {
 };
 
 /// Separating axis test of two simplices. The axes are the normals of all faces, and the cross products of an edge of
-/// the first and an edge of the second simplex. Triangles in one plane never overlap. The test stores for each axis the
-/// distance by which the first simplex would have to move to be separated. The interiors of the simplices overlap if
-/// and only if no axis separates the simplices.
+/// the first and an edge of the second simplex. The interiors of the simplices overlap if and only if no axis separates
+/// the simplices. Triangles in one plane never overlap, because the common normal separates them. The test stores for
+/// each axis the distance by which the first simplex would have to move to be separated.
 class SimplexOverlap {
 public:
     /// Tests the axes one after another. The test ends at the first axis along which the simplices overlap by at most

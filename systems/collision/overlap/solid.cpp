@@ -49,9 +49,9 @@ void finish(Solid& solid) {
                               solid.surface_point.end());
 }
 
-/// Side of the line from a to b on which a point lies, seen along z: 1 is left, -1 is right. A point exactly on the
-/// line is shifted by an infinitesimal vector (e, e^2), so that it lies on one side of the line, and on the opposite
-/// side of the line from b to a.
+/// Side of the line from a to b on which a point lies, in the projection on the plane with x to the right and y up: 1
+/// is left, -1 is right. A point exactly on the line is shifted by an infinitesimal vector (e, e^2), so that it lies on
+/// one side of the line, and on the opposite side of the line from b to a.
 int side_of(const Vec3& point, const Vec3& a, const Vec3& b) {
     const Real x = b.x() - a.x(), y = b.y() - a.y();
     const Real area = x * (point.y() - a.y()) - y * (point.x() - a.x());
@@ -74,7 +74,7 @@ int passage(const Solid& solid, const std::array<Index, 4>& triangle, const Vec3
         side = own;
     }
     const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0));
-    // true if the triangle is above the point, whatever the direction of its normal
+    // The condition holds if the plane of the triangle is above the point, whatever the direction of `normal`.
     return normal.dot(at(0) - point) * normal.z() > 0 ? side : 0;
 }
 

@@ -18,7 +18,7 @@ struct SolidTriangle {
 
 struct Solid {
     std::vector<Vec3> point;  // [m]
-    // Point indices of the simplices: tetrahedra, or triangles with no_index as their last point.
+    // Indices of the points of each simplex: four for a tetrahedron; three for a triangle, with no_index as fourth.
     std::vector<std::array<Index, 4>> simplex;
     std::vector<SolidTriangle> surface;
     std::vector<Index> surface_point;  // indices of the points that are on the surface, ascending
@@ -37,7 +37,8 @@ Solid solid_of_tetrahedra(std::span<const Vec3> point, std::span<const std::arra
 Solid solid_of_surface(std::span<const Vec3> point, std::span<const std::array<Index, 3>> triangles);
 
 /// True if a point is inside a solid. A solid of tetrahedra also contains points that are outside by at most
-/// `tolerance` [m]. A closed surface contains a point if the winding number around the point is at least 1.
+/// `tolerance` [m]. A closed surface contains a point if the winding number around the point is at least 1; `tolerance`
+/// is not used. An open surface contains no point.
 bool contains(const Solid& solid, const Vec3& point, Real tolerance);
 
 }  // namespace skerry

@@ -37,7 +37,8 @@ template <class Meet>
 void for_each_meeting(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, Meet&& meet) {
     // shift of the first solid relative to the second solid
     const Vec3 shift = first.shift - second.shift;
-    // The boxes are enlarged, because the box of a triangle in an axis-aligned plane has no thickness.
+    // The boxes are enlarged, because the box of a triangle in an axis-aligned plane has no volume and would overlap
+    // nothing (boxes_overlap).
     const Vec3 skin = Vec3::Constant(tolerance);
     const Aabb of_second{second.solid.box.lower - shift - skin, second.solid.box.upper - shift + skin};
     first.solid.tree.for_each_overlap(of_second, [&](Index f) {
@@ -136,8 +137,9 @@ void add_normals(const Solid& solid, const std::vector<char>& met, Real sign, Di
     }
 }
 
-/// Directions along which the first solid may leave the second solid: the direction between their centres, and the
-/// normals of overlapping faces.
+/// Directions along which the first solid may leave the second solid. These are the direction from the centre of the
+/// second solid to the centre of the first, and normals of faces of overlapping simplices: outward normals of the
+/// second solid and inward normals of the first.
 Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second, std::span<const Meeting> meetings) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));
@@ -159,8 +161,9 @@ Real extent(std::span<const Meeting> meetings, const Vec3& direction) {
     return highest - lowest;
 }
 
-/// The direction along which the region of overlap is thinnest. If the solids overlap only slightly, this is the
-/// direction of the shortest separating motion.
+/// The candidate direction with the lowest cost. The cost is the distance by which the first solid leaves the simplices
+/// that it overlaps now, plus the extent of the region of overlap along the direction. Without the extent, a direction
+/// along a long region of overlap would seem cheap, although the motion would meet further simplices.
 Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
                     std::span<const Meeting> meetings) {
     const Directions directions = likely_directions(first, second, meetings);
@@ -179,7 +182,8 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
 }
 
 /// Distance by which the first solid has to move along `direction` until it overlaps no simplex of the second solid
-/// [m]. Each iteration moves it out of the simplices that it overlaps at its current position.
+/// [m]. Each iteration moves it out of the simplices that it overlaps at its current position. If most_tries iterations
+/// do not suffice, the result is the distance that takes all points of the first solid past all points of the second.
 Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, const Vec3& direction) {
     constexpr int most_tries = 16;
     Real gone = 0;
@@ -192,8 +196,9 @@ Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tol
     return way_out_of_points(first, second, direction);
 }
 
-/// Finds the separating motion if one of the solids contains the other: the first solid moves past the end of the
-/// second solid.
+/// Finds the separating motion if one of the solids contains the other. The motion takes all points of the first solid
+/// past all points of the second, in the direction between the centres or along a coordinate axis, whichever is
+/// shortest.
 void go_past(const PlacedSolid& first, const PlacedSolid& second, Overlap& overlap) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));
@@ -207,7 +212,8 @@ void go_past(const PlacedSolid& first, const PlacedSolid& second, Overlap& overl
         }
 }
 
-/// True if a solid whose simplices do not overlap those of a closed surface is inside this surface.
+/// True if `inner` is inside the closed surface `outer`. The simplices of the two must not overlap, so one point of
+/// `inner` suffices for the test.
 bool is_within(const PlacedSolid& inner, const PlacedSolid& outer) {
     const Simplex any = inner.solid.at(0).moved(inner.shift - outer.shift);
     const Vec3 centre = (any.point[0] + any.point[1] + any.point[2] + any.point[3]) / 4;

@@ -26,12 +26,13 @@ struct PlacedSolid {
 
 /// Overlap of two solids. The solids overlap if a simplex of the first and a simplex of the second overlap by more than
 /// `tolerance` [m], or if one solid is inside the closed surface of the other. If the two surfaces cross, `direction`
-/// is close to the direction of the shortest separating motion. If one solid contains the other, `direction` is the
-/// best of a few directions, and a motion by `depth` takes the first solid past the end of the second.
+/// is close to the direction of the shortest separating motion. If one solid contains the other, the motion takes all
+/// points of the first solid past all points of the second, and is the shortest of a few such motions.
 std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance);
 
-/// Finds a point of a solid that touches the back of an open surface: its distance is at most `tolerance` [m]. At such
-/// a distance contacts cannot detect the side of the surface on which the solid is.
+/// Finds a surface point of `solid` at a distance of at most `tolerance` [m] from the open `surface`, if the solid is
+/// behind the surface: its outward normal there and the normal of the triangle form an acute angle. Contacts cannot
+/// detect the side at so small a distance. The returned overlap moves the solid further back by twice the tolerance.
 std::optional<Overlap> find_touch_of_open_surface(const PlacedSolid& solid, const PlacedSolid& surface, Real tolerance);
 
 }  // namespace skerry

@@ -15,6 +15,7 @@ public:
     Pieces(const Ray& ray, Real limit) : ray_(ray), limit_(limit) {}
 
     /// Intersects the ray with the flat ring z = height, inner <= r <= outer, where r is the distance from the z axis.
+    /// `up`: z component of the outward normal, 1 or -1.
     void ring(Real height, Real inner, Real outer, Real up) {
         flat(2, height, up, [&](const Vec3& p) {
             const Real squared = p.x() * p.x() + p.y() * p.y();
@@ -54,8 +55,8 @@ private:
         if (!(t >= 0 && t <= limit_) || (nearest_ && !(t < nearest_->distance))) return;
         nearest_ = {t, normal};
     }
-    /// Calls found(t) for each t with |origin + t direction| = radius. The computation starts at the point of the ray
-    /// nearest to the centre, so it is also exact for rays that start far away.
+    /// Calls found(t) for each t with |origin + t direction| = radius. Distances along the ray are measured from the
+    /// point of the ray nearest to the centre, so rays that start far away lose no accuracy to cancellation.
     static void roots(const Vec3& origin, const Vec3& direction, Real radius, auto&& found) {
         const Real squared = direction.squaredNorm();
         if (squared == 0) return;

@@ -39,7 +39,8 @@ Real mean_body_edge(const BodyTable& body) {
     return count > 0 ? sum / count : 0;
 }
 
-/// Computes the boxes of the bodies, and the travel up to which each box is valid.
+/// Computes the boxes and bounding spheres of the bodies, and the travel bound up to which they are valid
+/// (body_valid_until in contact_reach.h, 6).
 void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
                     Real common_travel, SearchState& search) {
     const BodyTable& body = inputs.body;
@@ -119,8 +120,8 @@ public:
 private:
     Index body_count() const { return static_cast<Index>(inputs_.body.slot.size()); }
 
-    /// Lists the boxes that can be part of a pair. Mesh colliders and boxes that are not finite are left out, for
-    /// example the box of a body with an infinite position.
+    /// Lists the boxes that can be part of a pair. Mesh colliders are left out, because the kinematic body of the
+    /// collider has a box, too. Boxes that are not finite are left out, for example those of planes.
     void list_entries() {
         memory_.entry.clear();
         memory_.has_box.assign(memory_.box.size(), 0);
@@ -188,8 +189,9 @@ private:
                 collider, found);
     }
 
-    /// Adds a pair with an expired candidate list, so that the pair is searched in this step. Only a search shows how
-    /// far apart the two partners are.
+    /// Adds a pair, unless another rank searches it or its partners may not collide. valid_until = -infinity marks the
+    /// candidate list as expired, so that the pair is searched in this step: only a search shows how far apart the
+    /// partners are.
     void add_row(std::uint64_t key, PairKind kind, Index first, Index second, Column<FoundPair>& found) const {
         const bool both_move = kind != PairKind::collider && is_movable(inputs_.body, second);
         if (!inputs_.owners.owns(inputs_.body, first, both_move ? second : no_index)) return;
@@ -200,7 +202,8 @@ private:
         found.push_back({key, kind, first, second, -infinity, PairState::unknown, apart, 0});
     }
 
-    /// Groups the pairs by kind and slot of the first body, then sorts each group.
+    /// Sorts the found pairs by key. Kind and slot of the first body are the leading bits of the key: pairs are first
+    /// grouped by these two, then each group is sorted.
     void sort_pairs() {
         const std::size_t slots = 1 + greatest_slot(), groups = 2 * slots;
         const auto group_of = [&](const FoundPair& pair) {
@@ -242,8 +245,8 @@ bool is_forgotten(const SearchMemory& memory, const FoundPair& pair) {
     return memory.body_forgotten[pair.first] || of_second[pair.second];
 }
 
-/// Copies the values of pairs that existed before from their previous rows in PairTable. Stores the previous rows in
-/// memory.old_row.
+/// For each found pair that PairTable already contains: copies its values from there, and stores its row in
+/// memory.old_row. Pairs of an object that is forgotten (added or moved by the user) count as new.
 void recall_pairs(Executor& executor, SearchMemory& memory, const PairTable& pairs) {
     memory.old_row.assign(memory.pairs.size(), no_index);
     parallel_for(executor, memory.pairs.size(), pairs_per_block, [&](std::size_t begin, std::size_t end) {
@@ -331,7 +334,7 @@ void write_rows(Executor& executor, const SearchMemory& memory, PairTable& pairs
 }
 
 /// Replaces the rows of PairTable by memory.pairs. Pairs that existed before keep their candidate lists, unless one of
-/// the partners is forgotten.
+/// the partners is forgotten (added or moved by the user).
 void replace_rows(Executor& executor, SearchMemory& memory, PairTable& pairs) {
     recall_pairs(executor, memory, pairs);
     move_lists(executor, memory, pairs);
@@ -357,8 +360,8 @@ void find_pairs(Executor& executor, const CollisionInputs& inputs, const Collisi
     search.memory.sphere.resize(body_count);
     search.memory.collider_extent.resize(collider_count);
     search.memory.collider_margin.resize(collider_count);
-    // Travel that is allowed before the next broad search, for bodies and colliders that a script moves. It is the
-    // allowed travel of an average body.
+    // Travel that colliders and kinematic bodies may make before the next broad search: that of a deformable body with
+    // the average mean edge.
     const Real common_travel = settings.broad_skin / 2 * mean_body_edge(inputs.body);
     fit_body_boxes(executor, inputs, settings, common_travel, search);
     fit_collider_boxes(inputs, h, common_travel, search);

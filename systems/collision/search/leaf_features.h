@@ -15,7 +15,7 @@ namespace skerry {
 /// Coordinates of eight points: vectors of the x, y and z coordinates [m].
 using PointLanes = std::array<Lanes<Real, leaf_lanes>, 3>;
 
-/// Least and greatest coordinates of the points in each lane.
+/// Writes for each lane l the bounding box of the points in lane l of points[0] to points[Count - 1].
 template <std::size_t Count>
 void find_bounds(const std::array<PointLanes, Count>& points, LeafBoxes& box) {
     for (std::size_t i = 0; i < 3; ++i)
@@ -71,7 +71,8 @@ inline unsigned used_lanes(Index count, std::size_t group) {
     return left < leaf_lanes ? (1U << left) - 1 : (1U << leaf_lanes) - 1;
 }
 
-/// The points that the triangles of a leaf own.
+/// The vertices that the triangles of a leaf own. Each vertex is owned by one of its triangles, so that a search
+/// compares it once.
 struct LeafPoints {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;
@@ -92,7 +93,8 @@ struct LeafPoints {
     unsigned used(std::size_t group) const { return used_lanes(list->point_count, group); }
 };
 
-/// The edges that the triangles of a leaf own.
+/// The edges that the triangles of a leaf own. Each edge is owned by one of its triangles, so that a search compares it
+/// once.
 struct LeafEdges {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;

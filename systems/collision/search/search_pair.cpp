@@ -44,7 +44,7 @@ bool share_node(const std::array<Index, Size>& a, Index node) {
     return std::find(a.begin(), a.end(), node) != a.end();
 }
 
-/// `Self`: the body is paired with itself.
+/// Finds close features of two bodies, or of one body that is paired with itself (`Self`).
 template <bool Self>
 class BodySearch {
 public:
@@ -71,7 +71,8 @@ public:
     }
 
 private:
-    /// Two leaves whose features are to be compared, with the margin of the list [m].
+    /// Two leaves (rows of BvhTable) whose features are to be compared. Features are listed if their distance is below
+    /// the zone plus `margin` [m].
     struct NearLeaves {
         Index first, second;
         Real margin;
@@ -132,9 +133,10 @@ private:
     }
 
     void compare_leaves(Index a, Index b) {
-        // The core of a sphere or cylinder is a point in this search. It is tested against faces and axes of the other
-        // body. A test of the point against the faces also covers the case that a node is nearest, so that a node
-        // inside a flat surface does not obstruct the sphere. For two spheres, the first is tested against the second.
+        // The core of a sphere or cylinder is a point in this search. It is tested against the faces and axes of the
+        // other body. Nodes of the other body are not tested against it: the test of a face finds the case that one of
+        // its nodes is nearest, and a node inside a flat surface does not obstruct the sphere. For two spheres, only
+        // the first is tested against the second.
         if (!second_is_point_ || first_is_point_) compare_points(a, b, false);
         if (!first_is_point_) compare_points(b, a, true);
         const LeafEdges &own = features_of(a, first_.edges), &other = features_of(b, second_.edges);
@@ -178,7 +180,8 @@ private:
         return any != 0;
     }
 
-    /// Compares the points of one leaf with the triangles of another leaf.
+    /// Compares the points of the leaf `owner` with the triangles of the leaf `other`. `of_second`: true if the points
+    /// belong to the second body.
     void compare_points(Index owner, Index other, bool of_second) {
         const LeafPoints& points = of_second ? features_of(owner, second_.points) : features_of(owner, first_.points);
         for (std::size_t group = 0; group < points.groups(); ++group)
@@ -243,8 +246,8 @@ private:
         if (++queue.count == candidate_lanes) empty_queue(kind);
     }
 
-    /// Adds the candidates in the queue whose features are close. A candidate needs no test until the distance of its
-    /// features may be below the zone.
+    /// Adds the candidates in the queue whose features are close, unless these features touched in the rest shape of
+    /// one body. A candidate needs no test until the distance of its features may be below the zone (PairScale).
     void empty_queue(FeaturePair kind) {
         Queue& queue = queue_[static_cast<std::size_t>(kind)];
         if (queue.count == 0) return;
@@ -289,7 +292,8 @@ private:
     const PairToSearch& pair_;
     std::span<const Aabb> box_;
     Column<FoundCandidate>& found_;
-    // Squared search distance of points, and of edges, for which it is smaller [m^2].
+    // Squared distance below which features are listed: for a point and a triangle, and for two edges, where it is not
+    // larger [m^2].
     Real radius_squared_, edge_radius_squared_;
     Real margin_;  // margin of the list for the present pair of leaves [m]
     // True for a sphere or a cylinder, whose core is a point in this search.

@@ -13,7 +13,8 @@ namespace skerry {
 
 namespace {
 
-/// Computes the boxes of the tree of a body for a value of each node, for example a displacement.
+/// Computes, for each tree node of a body, the box of the vectors of_node[n] of the mesh nodes n below it. The vectors
+/// are for example displacements.
 void fit(const CollisionInputs& inputs, Index body, std::span<const Vec3> of_node, Column<Aabb>& box) {
     refit_bvh(inputs.body.bvh_nodes[body], inputs.bvh_node, inputs.leaf_nodes, of_node, box);
 }
@@ -30,8 +31,9 @@ struct RigidDisplacement {
     Mat3 rotation = Mat3::Identity();
 };
 
-/// Computes the rigid motion that is nearest to the displacements u of the surface nodes if the rotation is small. The
-/// rotation vector minimises the sum of |w x r - u|^2.
+/// Fits a rigid motion to the displacements of the surface nodes. The rotation vector w is a least squares fit of
+/// cross(w, r) to u at all nodes, with the position r and the displacement u of a node relative to the centres. For
+/// large rotations the fit is poor, but the bounds hold for any rotation.
 RigidDisplacement rigid_displacement(const CollisionInputs& inputs, Index body, const SelfSearch& self,
                                      auto&& position) {
     RigidDisplacement part;
@@ -55,7 +57,8 @@ RigidDisplacement rigid_displacement(const CollisionInputs& inputs, Index body, 
     return part;
 }
 
-/// Computes the boxes of the motion since the last update. position(n): position of node n [m].
+/// Computes the displacements of the surface nodes since the last update without the rigid motion of the body
+/// (self.moved), and their boxes. position(n): position of node n [m].
 void fit_motion(const CollisionInputs& inputs, Index body, SelfSearch& self, auto&& position) {
     const RigidDisplacement part = rigid_displacement(inputs, body, self, position);
     for_each_node(inputs, body, [&](Index n) {
@@ -72,7 +75,7 @@ void store_speeds(const SelfMotion& motion, SelfSearch& self) {
     fit(motion.inputs, motion.body, motion.inputs.velocity, self.speed_box);
 }
 
-/// Relative motion U(root, root) of all nodes of the body since the last update [m].
+/// Largest relative displacement U(root, root) of two nodes of the body since the last update [m].
 Real greatest_motion(const SelfMotion& motion, const SelfSearch& self) {
     return farthest(self.moved_box[motion.root()], self.moved_box[motion.root()]);
 }
@@ -81,8 +84,9 @@ constexpr auto leaves_before = [](const LeafPair& a, const LeafPair& b) {
     return a.first != b.first ? a.first < b.first : a.second < b.second;
 };
 
-/// Lists the pairs of leaves that are close to each other. Pairs that were listed before keep their spare distance.
-/// Children follow their parent in the tree, so a forward search from each leaf finds the pairs in their order.
+/// Lists the pairs of leaves that are close to each other. The spare distance of a pair follows from its boxes; a pair
+/// that was listed before keeps its spare distance if that is larger. Tree nodes are in depth-first order, so a forward
+/// search from each leaf finds the pairs sorted by first and second leaf.
 void list_close(const SelfMotion& motion, std::span<const Aabb> box, const SelfSearch& self, LeafPairTable& pairs) {
     const Index root = motion.root(), end = motion.inputs.body.bvh_nodes[motion.body].end;
     const Real margin = std::max(listed_edges * motion.scale.edge, motion.margin_of(self, root, root)),
@@ -128,8 +132,8 @@ void find_leaves(const CollisionInputs& inputs, Index body, SelfSearch& self) {
     }
 }
 
-/// Finds pairs of leaves in a sorted list. The positions of the most recent first leaves are remembered, because
-/// consecutive candidates have few different leaves.
+/// Finds pairs of leaves in a sorted list. It is remembered where in the list the pairs with a recent first leaf begin,
+/// because consecutive candidates have few different leaves.
 class SortedLeafPairs {
 public:
     explicit SortedLeafPairs(std::span<const LeafPair> pairs) : pairs_(pairs) {}
@@ -143,7 +147,7 @@ public:
     }
 
 private:
-    /// Index of the first pair with this first leaf.
+    /// Index in the list, `begin`, of the first pair whose first leaf is `first`.
     struct Place {
         Index first = no_index;
         std::size_t begin = 0;

@@ -8,17 +8,19 @@
 // computes one that fits. Let U(a, b) be the largest |u_i - u_j| for mesh nodes i of a and j of b. Features f of a and
 // g of b satisfy
 //
-//     D(t) >= D(s) - U(a, b),
+//     D(t) >= D(s) - U(a, b).
 //
-// because the nearest points at time t have the same weights of mesh nodes at time s. The velocities give the bound
-// R(a, b) >= reach (contact_reach.h) in the same way. Each pair of leaves has a spare distance M(a, b): features of the
-// pair that are not in the list satisfy D(s) >= zone + M(a, b).
+// Reason: take the weights of the mesh nodes for the nearest points at time t. The points with these weights at time s
+// were at least D(s) apart, and the vector between them has changed by at most U(a, b), apart from the rotation. The
+// velocities give the bound R(a, b) >= reach (contact_reach.h) in the same way. Each pair of leaves has a spare
+// distance M(a, b): features of the pair that are not in the list satisfy D(s) >= zone + M(a, b).
 //
 // 1. An update for the time t subtracts U(a, b) from M(a, b). The next update counts from t. No update is needed while
 //    U(root, root) + R(root, root) is below the smallest M.
-// 2. The list is complete for a step if M(a, b) > R(a, b) for all pairs of leaves. The features of other pairs are
-//    compared again, and those with D(t) < zone + max(m, k S, R) are listed. S(a, b) bounds the relative motion in one
-//    step, so fast pairs are not compared in every step. The new spare distance is this maximum.
+// 2. The list is complete for a step if M(a, b) > R(a, b) for all pairs of leaves. The features of pairs with M <= R
+//    are compared again, and those with D(t) < zone + max(m, k S, R) are listed; this maximum is the new M. m is
+//    SelfMotion::skin, S(a, b) bounds the relative motion in one step, and k is steps_ahead. The term k S gives fast
+//    pairs a larger M, so that they are not compared in every step.
 // 3. Only pairs of leaves that are close to each other have a row. The row of the root with itself represents all other
 //    pairs. If it expires, the close pairs are listed again.
 //
@@ -41,8 +43,8 @@ inline constexpr Real steps_ahead = 4;
 // Pairs of leaves are listed up to this distance, as a multiple of the mean edge length. With a larger number the list
 // of pairs is longer, but valid for more steps.
 inline constexpr Real listed_edges = 1;
-// When some pairs are compared, all pairs are compared that have at most this part of the smallest spare distance left,
-// because a search has a fixed cost.
+// When some pairs are compared, all pairs are compared whose spare distance is at most this fraction of
+// SelfMotion::skin, because a search has a fixed cost.
 inline constexpr Real renewed_part = 0.5;
 
 /// Largest distance between a point in one box and a point in another box.
@@ -50,7 +52,7 @@ inline Real farthest(const Aabb& a, const Aabb& b) {
     return (a.upper - b.lower).cwiseMax(b.upper - a.lower).norm();
 }
 
-/// The parts of one body that move relative to each other, for steps of length h.
+/// One body whose parts move relative to each other, and the length h of the step.
 struct SelfMotion {
     const CollisionInputs& inputs;
     Index body;
@@ -61,7 +63,7 @@ struct SelfMotion {
 
     /// Row of BvhTable of the root of the body's tree.
     Index root() const { return inputs.body.bvh_nodes[body].begin; }
-    /// Bound R(a, b): distance that features of two leaves may close in this step and still become a contact [m].
+    /// Bound R(a, b): largest gap between features of two leaves that can close in this step [m].
     Real reach_of(const SelfSearch& self, Index a, Index b) const {
         return reach(h, farthest(self.speed_box[a], self.speed_box[b]), gravity, scale.contact_distance);
     }
@@ -72,8 +74,7 @@ struct SelfMotion {
     }
 };
 
-/// `state`: state of the pair of the body with itself. `longer_motion`: distance by which the smallest spare distance
-/// is increased [m].
+/// `state`: state of the pair of the body with itself. `longer_motion`: distance by which the skin is increased [m].
 inline SelfMotion self_motion_of(const CollisionInputs& inputs, const CollisionSettings& settings, PairState state,
                                  Index body, Real h, Real longer_motion = 0) {
     const PairScale scale = pair_scale(inputs, PairKind::self, body, body);
@@ -85,22 +86,24 @@ inline SelfMotion self_motion_of(const CollisionInputs& inputs, const CollisionS
 void resize(const CollisionInputs& inputs, SelfSearch& self);
 
 /// If the candidate list is complete for the step that begins, returns a lower bound of the spare distances that are
-/// left [m], otherwise 0. Unless a bound for all leaves suffices, the motion of the body since the last update is
-/// subtracted from all spare distances, and the present positions are stored.
+/// left [m], otherwise 0. The motion of all nodes since the last update is compared with the smallest spare distance
+/// first. If this does not suffice, the motion of each pair of leaves is subtracted from its spare distance, and the
+/// present positions are stored as positions of the last update.
 Real update_spare(const SelfMotion& motion, std::span<LeafPair> pairs, SelfSearch& self);
 
 /// Lists the pairs of leaves whose features are compared in this step (LeafPairTable::searched), and sets their new
 /// spare distances. If `anew` is true, all close pairs of leaves are compared. Otherwise update_spare must have been
 /// called in this step. The boxes of the tree must be computed from the present positions. Removes the candidates of
-/// the listed pairs, and those of pairs that are no longer close.
+/// the pairs in `searched`, because the comparison finds them again, and the candidates of pairs that are no longer
+/// close.
 void renew_leaf_pairs(const SelfMotion& motion, std::span<const Aabb> box, bool anew, Index p, PairTable& pairs);
 
 /// Smallest spare distance [m].
 Real least_spare(std::span<const LeafPair> pairs);
 
-/// True if the nodes move so nearly at their present velocities that the motion of the step is within the reach R of
+/// True if the nodes move so nearly at their present velocities that the motion of the step is within the bound R of
 /// all pairs of leaves. R exceeds the relative motion at constant velocities by at least the reach at zero speed, so
-/// each node may deviate by half of that reach.
+/// each of two nodes may deviate by half of that reach.
 bool moves_as_expected(const SelfMotion& motion, const StepMotion& step);
 
 /// True if features that are not in the candidate list of the body with itself cannot meet during the motion of the

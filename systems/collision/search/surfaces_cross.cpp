@@ -12,9 +12,8 @@ namespace skerry {
 
 namespace {
 
-// Distance at rest below which features of a body belong to the same piece when its crossings are counted, as a
-// multiple of the mean edge. Features that are closer pass through each other where a few elements are crushed or
-// inverted.
+// A crossing of two features of one body is not counted if their distance at rest was at most this multiple of the mean
+// edge (count_self_crossings). Such near features pass through each other where a few elements are crushed or inverted.
 constexpr Real own_piece_edges = 1;
 
 class CrossingSearch {
@@ -24,8 +23,9 @@ public:
                    std::span<const Aabb> box)
         : inputs_(inputs), kind_(kind), first_(first), second_(second), own_piece_(own_piece), box_(box) {}
 
-    /// Calls visit(edge owner, side, triangle) for the sides of triangles that pass through another triangle, until
-    /// visit returns true. Returns true if a visit returned true. An edge that two triangles share is visited twice.
+    /// Calls visit(triangle, side) for each side of a triangle that passes through another triangle, until visit
+    /// returns true. Returns true if a call returned true. An edge that two triangles share is visited once for each of
+    /// them.
     bool any(auto&& visit) const {
         const Range first = inputs_.body.bvh_nodes[first_], second = inputs_.body.bvh_nodes[second_];
         if (first.size() == 0 || second.size() == 0) return false;
@@ -40,7 +40,8 @@ public:
 
 private:
     bool any_in_leaves(const BvhNode& own, const BvhNode& other, bool same, auto&& visit) const {
-        // Upper limit of the squared distance of overlapping boxes. Denormal numbers may count as 0.
+        // Boxes overlap if their squared distance is 0. lanes_below tests for values below a limit, so the limit is the
+        // smallest normal number.
         constexpr Real overlap = std::numeric_limits<Real>::min();
         const LeafBoxes first = boxes_of(own), second = boxes_of(other);
         bool found = false;

@@ -42,8 +42,8 @@ inline Real distance_squared(const Aabb& box, const Vec3& point) {
     return distance_squared(box, Aabb{point, point});
 }
 
-/// Sphere that contains the given points. Its centre is the centre of the box of these points. Points with NaN
-/// coordinates are ignored.
+/// Sphere that contains the points point_of(i) for begin <= i < end. `box`: box of these points; its centre is the
+/// centre of the sphere. Points with NaN coordinates are ignored.
 template <class PointOf>
 BoundingSphere sphere_around(const Aabb& box, Index begin, Index end, PointOf&& point_of) {
     const Vec3 centre = 0.5 * (box.lower + box.upper);

@@ -15,8 +15,8 @@ struct BvhRanges {
     Range leaves;  // rows of BvhLeafTable
 };
 
-/// Appends a tree over the triangles of one body. The tree is built from the present positions. A leaf contains at most
-/// eight triangles, because a search compares a feature with eight triangles at once.
+/// Appends a tree over the triangles of one body, built from `position`. A leaf contains at most eight triangles,
+/// because a search compares a feature with eight triangles at once.
 BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node,
                      std::span<const Vec3> position, BvhTable& bvh, BvhLeafTable& leaves);
 
@@ -30,7 +30,8 @@ void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhL
 BvhRanges append_bvh_again(const BvhRanges& like, const RowsBehind& behind, std::span<const Vec3> position,
                            BvhTable& bvh, BvhLeafTable& leaves);
 
-/// Computes the boxes of one tree from the present positions, from the leaves upwards.
+/// Computes the boxes of one tree from `position`, from the leaves upwards. self_motion.cpp passes other vectors of the
+/// nodes instead, for example velocities.
 void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafNodes> leaf_nodes,
                std::span<const Vec3> position, std::span<Aabb> box);
 

@@ -47,7 +47,8 @@ inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::sp
     return boxes;
 }
 
-/// Squared distances of eight ranges of coordinates from one box, by lane; 0 for those that overlap the box [m^2].
+/// Squared distances of eight boxes, given by their lower and upper coordinates, from the box `to`, by lane; 0 for
+/// boxes that overlap `to` [m^2].
 [[gnu::always_inline]] inline Parts<KernelReal> distance_squared(const std::array<Lanes<Real, leaf_lanes>, 3>& lower,
                                                                  const std::array<Lanes<Real, leaf_lanes>, 3>& upper,
                                                                  const Aabb& to) {

@@ -221,8 +221,8 @@ Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude)
     return fastest;
 }
 
-/// True if some node is so fast relative to the first node of the body that the tetrahedron with the smallest altitude
-/// could deform faster than `rate` [1/s].
+/// True if the tetrahedron with the smallest altitude could deform faster than `rate` [1/s]. Two nodes separate at most
+/// twice as fast as the fastest node moves relative to the first node of the body; hence the factor 4 between squares.
 bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body, Real rate) {
     const Real altitude = state.body_min_altitude[body], limit_squared = rate * altitude * rate * altitude;
     const Range blocks = state.body_node_blocks[body];
@@ -237,9 +237,9 @@ bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body
     });
 }
 
-/// Deformation rate of the fastest element of a body if the rate exceeds `rate`, else 0 [1/s]. The rate of an element
-/// is the mean over its tetrahedra. Cheap tests come first, and the function ends as soon as a test shows that no
-/// element exceeds `rate`. `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
+/// Deformation rate of the fastest element of a body if the rate exceeds `rate`, else 0 [1/s]. F of an element is the
+/// mean over its tetrahedra. Cheap tests come first, and the function ends as soon as a test shows that no element
+/// exceeds `rate`. `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
 Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate, Real part_at_most,
                       std::span<std::uint8_t> beside_fast) {
     if (!parts_faster(executor, state, body, rate)) return 0;
@@ -265,7 +265,7 @@ Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t 
 }
 
 /// Finds the tetrahedron and the node to report for a body that deforms too fast: the tetrahedron with the highest
-/// deformation rate, and of several the first.
+/// deformation rate, or the first such tetrahedron if several have equal rates.
 Fastest fastest_of(const CheckInputs& state, std::size_t body) {
     if (state.body_blocks.empty())
         return fastest_from_mean(state, state.body_node_blocks[body], state.body_min_altitude[body]);

@@ -43,8 +43,8 @@ struct CheckInputs {
     std::span<const Real> body_min_altitude;
     std::span<const Vec3> velocity;  // velocity at the start of the step [m/s]
     std::span<const Vec3> velocity_next;
-    // Velocity with which contacts push nodes out of overlaps, which changes only positions; empty if none does so
-    // [m/s]
+    // Velocity with which contacts push nodes out of overlaps [m/s]. It changes positions, but is not part of
+    // velocity_next. Empty if no contact pushes.
     std::span<const Vec3> push_out;
     std::span<const Vec3> rest_position = {};                 // m
     std::span<const TetrahedronNodes> tetrahedron_node = {};  // TetrahedronBlockTable
@@ -52,8 +52,8 @@ struct CheckInputs {
     // Factor on max_strain_step; empty means 1 for all tetrahedra.
     std::span<const ElementLane> tetrahedron_leeway = {};
     std::span<const Range> body_blocks = {};  // tetrahedra, from BodyTable; if empty, check_state tests node speeds
-    // The next two spans are columns of ElementBlockTable and ElementNodeTable. If they are empty, the tetrahedra are
-    // the elements.
+    // Elements: columns of BodyTable, ElementBlockTable and ElementNodeTable. If body_element_blocks is empty, the
+    // tetrahedra are the elements.
     std::span<const Range> body_element_blocks = {};
     std::span<const Index> element_first = {}, element_count = {};
     std::span<const NodeLane> element_node = {};
@@ -62,7 +62,7 @@ struct CheckInputs {
     std::span<const ElementPart> element_part = {};  // empty if no element is an inversion barrier
     // column of BodyTable; empty if the frames of all bodies are at rest
     std::span<const MovingFrame> body_frame = {};
-    GhostMarks ghosts = {};  // ghosts, for which deformation rates are not checked
+    GhostMarks ghosts = {};  // copies of bodies of other ranks; their deformation rates are not checked
 
     /// `pushed`: true if a contact pushes nodes out of penetration in this step.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
@@ -108,7 +108,8 @@ struct SpeedOutputs {
     }
 };
 
-/// Leeway: factor on max_strain_step, for implicit elements and for the tetrahedra that these elements cover.
+/// Leeway (factor on max_strain_step) of implicit elements and of the tetrahedra that these elements cover; the leeway
+/// of all others is 1. It is larger, because implicit elements make no step unstable.
 inline constexpr Real implicit_leeway = 5;
 
 /// Writes the greatest speeds, and returns the first fault in body order. A fault is a velocity that is not finite, or
@@ -124,8 +125,8 @@ inline constexpr Real implicit_leeway = 5;
 /// Without `body_blocks`, the speed of each node relative to the mean velocity of its body is tested against the
 /// smallest altitude of the body. This test also rejects fast rotation of a large body.
 ///
-/// `fastest` is set if an element deforms too fast for a step of length `h` or `longest` [s]. `beside_fast`: work
-/// memory, one entry per node.
+/// StepVerdict::fastest is set if an element deforms too fast for a step of length `h` or `longest` [s], the greatest
+/// length of the next step. `beside_fast`: work memory, one entry per node.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real longest, Real max_strain_step,
                         const SpeedOutputs& speed, Column<std::uint8_t>& beside_fast);
 
@@ -133,8 +134,9 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
 /// two steps. The deformation rate of the result is 0 if no body deforms faster than `rate` [1/s].
 StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, Column<std::uint8_t>& beside_fast);
 
-/// Greatest allowed ratio of the spacing of floating-point coordinates to the mean edge of a body. With a coarser
-/// spacing, motion below a millionth of the speed of sound would be lost to rounding.
+/// Greatest allowed ratio of the spacing of floating-point coordinates to the mean edge of a body. In a step, which
+/// lasts about as long as sound takes to cross an edge, motion below a millionth of the speed of sound would be lost to
+/// rounding with a coarser spacing.
 inline constexpr Real coarsest_place = 1e-6;
 
 /// Finds the first body that is too far from the origin for its size. One node per body is tested, because the size of

@@ -34,7 +34,8 @@ Real8 larger(const Real8& a, const Real8& b) {
 }
 
 /// Largest squared cross product of two edges of a tetrahedron, over its four faces and its three pairs of opposite
-/// edges [m^4]. The nearest two parallel planes that enclose a tetrahedron are parallel to one of these seven pairs.
+/// edges [m^4]. The nearest two parallel planes that enclose a tetrahedron are parallel to one of these seven pairs of
+/// edges.
 Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
     const LaneVec3<Real8> e01 = e.c1 - e.c0, e02 = e.c2 - e.c0, e12 = e.c2 - e.c1;
     const Real8 faces = larger(larger(squared(cross(e.c0, e.c1)), squared(cross(e.c1, e.c2))),
@@ -43,8 +44,9 @@ Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
     return larger(faces, pairs);
 }
 
-/// Width of the narrowest tetrahedron of a block. The width of a tetrahedron is the least distance of two parallel
-/// planes that enclose it [m]. Inverted tetrahedra count, because they may become positive and invert again.
+/// Width of the narrowest tetrahedron of a block [m]. The width of a tetrahedron is the least distance of two parallel
+/// planes that enclose it: |determinant of the edges| / largest cross product. Inverted tetrahedra count, because they
+/// may become positive and invert again.
 Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
     const Real8 volume = determinant(edges), span = largest_cross_squared(edges);
     const Real8 left_over = Real8{} + infinity;
@@ -103,8 +105,9 @@ struct Body {
     }
 
 private:
-    /// True for tetrahedra whose inversion matters. Inversion is harmless under implicit elements, which never make a
-    /// step unstable, and in slivers, whose strong strain concerns only a negligible volume.
+    /// True for tetrahedra whose inversion matters. Inversion is harmless in tetrahedra that implicit elements cover
+    /// (leeway above 1), because implicit elements never make a step unstable. It is also harmless in slivers, whose
+    /// volume is negligible.
     bool is_judged(std::size_t b, std::size_t l) const {
         if (!inputs.tetrahedron_sliver.empty() && (inputs.tetrahedron_sliver[b] >> l & 1U) != 0) return false;
         return inputs.tetrahedron_leeway.empty() || inputs.tetrahedron_leeway[b][l] <= 1;
@@ -160,7 +163,7 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
     const std::size_t most = inputs.tetrahedron_node.size() / blocks_per_part + inputs.body_blocks.size();
     memory.part.reserve(most);
     memory.job.reserve(most + 1);
-    Index open = blocks_per_part;  // number of blocks in the last job
+    Index open = blocks_per_part;  // number of blocks in the last job; the first part thus begins a job
     for (Index b = 0; b < static_cast<Index>(inputs.body_blocks.size()); ++b) {
         const Range blocks = inputs.body_blocks[b];
         if (inputs.body_travel[b] + h * inputs.body_frame_speed[b] < body_uninverted_until[b]) continue;

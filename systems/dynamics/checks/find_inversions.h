@@ -16,14 +16,14 @@ namespace skerry {
 struct InversionInputs {
     std::span<const TetrahedronNodes> tetrahedron_node;  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_volume;
-    std::span<const ElementLane> tetrahedron_leeway;   // empty: 1
+    std::span<const ElementLane> tetrahedron_leeway;   // factor on max_strain_step; empty: 1 for all
     std::span<const std::uint8_t> tetrahedron_sliver;  // empty if there are no slivers
     std::span<const Range> body_blocks;                // BodyTable
     std::span<const Real> body_frame_speed, body_travel, body_displacement;
     std::span<const Vec3> position;  // position at the start of the step [m]
     // push_out is empty if no contact pushes nodes out of an overlap [m/s]
     std::span<const Vec3> velocity_next, push_out;
-    // column of BodyTable; rigid bodies are not checked; empty if there are none
+    // column of BodyTable; rigid and implicit bodies are not checked; empty: no body is rigid or implicit
     std::span<const Range> body_rigid = {};
 
     /// `pushed`: true if a contact pushes nodes out of penetration in this step.
@@ -59,7 +59,7 @@ struct InversionPart {
     Index body = no_index;
     Range blocks{0, 0};
     Real uninverted_until = 0;  // travel of the body up to which no tetrahedron of these blocks can invert [m]
-    // Number of tetrahedra that the step inverts; the first of these tetrahedra.
+    // `count`: number of tetrahedra that the step inverts. `tetrahedron`: the first of them.
     Index count = 0, tetrahedron = no_index;
     bool judged = false;  // true if one of the inverted tetrahedra is no sliver and not covered by an implicit element
 };
@@ -85,8 +85,8 @@ struct InversionBudgets {
 /// Finds the tetrahedra that a step of length `h` [s] inverts. Parallel over parts of bodies.
 ///
 /// A tetrahedron cannot invert before its corners have moved by half of its width, the least distance of two parallel
-/// planes that enclose it. So a tetrahedron is checked only after its body may have moved that far: slivers often, all
-/// other tetrahedra rarely. Each check of a block writes a travel budget, the distance that the body may move before
+/// planes that enclose it. So a tetrahedron is checked only after its body may have moved that far: narrow tetrahedra
+/// often, all others rarely. Each check of a block writes a travel budget, the distance that the body may move before
 /// the next check. For a block too narrow for a budget, only every eighth check computes a new one.
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, InversionMemory& memory,
                            const InversionBudgets& budgets);

@@ -31,9 +31,10 @@ struct ReactionInputs {
     std::span<const Index> attached_body;  // by attachment: row of BodyTable of the attached body
     std::span<const Index> held;           // held nodes of all attachments: rows of NodeTable
     std::span<const Mat3> directions;      // AttachmentTable::held
-    std::span<const Vec3> axis_impulse;    // impulses of hold_axes, by entry of `held` [N s]
+    std::span<const Vec3> axis_impulse;    // impulses that hold_axes applied, by entry of `held` [N s]
     std::span<const Vec3> held_impulse;    // impulse of contacts on held nodes, by node [N s]
-    // velocity of held nodes before the step, by node [m/s]
+    // velocity of each held node after the previous step [m/s]; `velocity` already holds the velocity prescribed for
+    // this step
     std::span<const Vec3> velocity_before;
     // by node
     std::span<const Vec3> position, velocity, velocity_next;
@@ -51,7 +52,8 @@ struct ReactionInputs {
     std::span<const Index> first, count;
     std::span<const NodeLane> element_node;
     std::span<const ElementGradient> gradient;
-    // columns of RigidBodyTable, and the range of rows of each body in this table
+    // Columns of RigidBodyTable, and for each body its rows in that table and in ImplicitNodeTable. For a held rigid
+    // body `kick` and `moment_kick` are the changes of its momentum and angular momentum.
     std::span<const Range> body_rigid, body_implicit;  // BodyTable
     std::span<const Index> holder;
     std::span<const Vec3> center, kick, moment_kick, hold_moment;
@@ -99,10 +101,10 @@ struct ReactionInputs {
 /// Writes the impulse and moment of each attachment on its nodes, one row per attachment. Moments are about
 /// `moment_point`. `kick`: time for which forces act [s]. `node_impulse`: work memory, by node. Sequential.
 ///
-/// The impulse is the one that gives the nodes their velocities of this step, against element forces, weight, loads,
-/// contact impulses and the inertia of implicit elements. If several attachments hold a node or a rigid body, the last
-/// one gets the impulse, because the node follows its motion. Attachments of sleeping bodies and of colliders get zero
-/// rows.
+/// The impulse of an attachment is the change of momentum of its nodes in this step, minus the impulses of element
+/// forces, weight, loads and contacts. The momentum includes the inertia of implicit elements. If several attachments
+/// hold a node or a rigid body, the impulse counts for the last of them, whose motion the node or body follows.
+/// Attachments of sleeping bodies and of colliders get rows of zeros.
 void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, Column<Vec3>& node_impulse,
                        Column<ImpulseAndMoment>& reactions);
 

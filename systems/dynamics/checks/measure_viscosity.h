@@ -12,10 +12,10 @@ namespace skerry {
 
 /// Energy that the viscosity of implicit elements dissipates in a step [J]. Elements that are left out of the step do
 /// not count. `impulse` and `viscous`: columns that compute_element_forces wrote. `patches`: blocks of each patch.
-/// Parallel over patches, summed in a fixed order.
+/// `partial`: work memory. Parallel over patches, summed in a fixed order.
 ///
-/// Each element dissipates the product of its viscous impulse and the mean of the rates of F before and after the step.
-/// The mean is needed because the highest modes change velocities strongly within a step.
+/// Each element dissipates the product of its viscous impulse and the mean of two rates of F, at `velocity` and at
+/// `velocity_next`. The mean is needed because the highest modes change velocities strongly within a step.
 Real measure_viscosity(Executor& executor, const ElementInputs& elements, std::span<const Range> patches,
                        std::span<const ElementViscousImpulse> impulse, std::span<const std::uint8_t> viscous,
                        std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, Column<Real>& partial);

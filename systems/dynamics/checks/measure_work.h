@@ -24,9 +24,9 @@ struct WorkInputs {
     std::span<const Vec3> velocity, velocity_next;  // [m/s]
     FreeNodes free;
     std::span<const Real> mass;   // kg, by node
-    std::span<const Index> held;  // nodes
+    std::span<const Index> held;  // nodes of all attachments; read only to test whether there are any
     std::span<const Index> node_body;
-    std::span<const Range> body_implicit;  // rows of implicit bodies, whose entries of `force` act for the whole step
+    std::span<const Range> body_implicit;  // ImplicitNodeTable rows by body; empty if the body is not implicit
     RestingNodes resting;
     GhostMarks ghosts;
     Vec3 gravity = Vec3::Zero();  // m/s^2
@@ -55,7 +55,7 @@ struct WorkInputs {
     }
 };
 
-/// Sums impulse and work of the loads on all nodes, and of the forces that hold the nodes listed in `held`. A holding
+/// Sums impulse and work of the loads on all nodes, and of the forces that hold nodes with inverse mass 0. A holding
 /// force is the opposite of `force`. Nodes of sleeping bodies do not count, because the forces that hold them are
 /// unknown. Nodes of ghosts do not count either, because the owner counts them. Loads are summed over fixed groups of
 /// nodes, in a fixed order.
@@ -63,10 +63,10 @@ struct WorkInputs {
 /// A force F has the impulse kick F, with the force interval `kick` [s]. A constant force does the work h F .
 /// velocity_next, since h velocity_next is the displacement in symplectic Euler. If a force has changed by dF since the
 /// last step, its work on a free node is greater by lag dF . velocity, because each force acts over half of the
-/// previous step and half of this step. `lag`: half of the previous step [s]. With leapfrog `lag` is 0, and the
-/// displacement of a free node during the force interval is that with the mean of both velocities. The work of a
-/// holding force is computed with the step length `h` [s] where it balances weight and loads, and with `kick` where it
-/// balances element forces.
+/// previous step and half of this step. `lag`: half of the previous step [s]. With leapfrog `lag` is 0, and a free node
+/// moves by h (velocity + velocity_next) / 2 while the forces act. The part of a holding force that balances weight and
+/// loads does work over the step length `h` [s], the part that balances element forces over `kick`. For an implicit
+/// body both parts act over `kick`, because strain_implicit_bodies has scaled its `force` so.
 ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick, Real lag,
                           Column<ExternalWork>& partial);
 

@@ -10,8 +10,8 @@ namespace skerry {
 
 namespace {
 
-// Assumed modulus of an inactive inversion barrier (guard), divided by the stiffness k of the barrier
-// (docs/methods/elasticity.md 7.7). It is so small that the added inertia is negligible at ordinary strain.
+// Assumed modulus that an inversion barrier (guard) gets when it is activated, divided by its stiffness k
+// (docs/methods/elasticity.md 7.7). It is so small that the added inertia is negligible until the guard is compressed.
 constexpr Real modulus_at_rest = 0.01;
 
 /// True if a tetrahedron has moving corners and all its moving corners belong to one cluster.

@@ -9,13 +9,13 @@ namespace skerry {
 
 /// Output columns of arm_guards, with one row per element block of the body.
 struct GuardOutputs {
-    std::span<ElementLane> modulus, volume;  // Pa; m^3
+    std::span<ElementLane> modulus, volume;  // assumed modulus [Pa], volume [m^3]; 0 for an inactive guard
 };
 
-/// Activates every guard (inversion barrier) whose moving corners are all nodes of one cluster. Guards themselves do
-/// not form clusters. An active guard gets the volume of its tetrahedron and an assumed modulus; stiffen_clusters
-/// raises this modulus when the guard is compressed. Other guards get volume 0 and modulus 0. The assumed modulus of an
-/// already active guard does not decrease. Sequential; allocates.
+/// Activates the guard (inversion barrier) of every tetrahedron whose moving corners all belong to one cluster. Guards
+/// themselves do not form clusters. An active guard gets the volume of its tetrahedron and an assumed modulus;
+/// stiffen_clusters raises this modulus when the guard is compressed. Other guards get volume 0 and modulus 0. The
+/// assumed modulus of an already active guard does not decrease. Sequential; allocates.
 void arm_guards(const ElementInputs& elements, Range blocks, std::span<const Real> inverse_mass,
                 const GuardOutputs& out);
 

@@ -149,7 +149,7 @@ void rebuild_clusters(const ElementInputs& elements, const ClusterInputs& inputs
     clusters.nodes.offset.push_back(0);
     UnionFind sets;
     sets.start(node_count);
-    std::size_t next = 0;  // cluster of `before`
+    std::size_t next = 0;  // first cluster of `before` that is not handled yet
     for (std::size_t body = 0; body < inputs.body_blocks.size(); ++body) {
         const auto is_of_body = [&] { return next < before.size() && before.body[next] == static_cast<Index>(body); };
         for (; is_of_body(); ++next)

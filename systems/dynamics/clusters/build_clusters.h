@@ -20,8 +20,8 @@ struct ClusterInputs {
 
 /// Builds the clusters, which are sets of moving nodes that implicit elements connect, and inverts their inertia
 /// matrices
-///     A = M + beta sum_e c_e V_e sum_kl g_k.g_l,     beta = (step/1.8)^2.
-/// M is the matrix of lumped masses and `step` the step of the body's clusters. Implicit element e has the assumed
+///     A_kl = M_kl + beta sum_e c_e V_e g_k.g_l,     beta = (step/1.8)^2 (inertia_of_stiffness()).
+/// M is the diagonal matrix of lumped masses and `step` is body_cluster_step. Implicit element e has the assumed
 /// modulus c_e, the volume V_e, and the shape gradient g_k at node k. Sequential; allocates.
 void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, NodeClusters& clusters);
 
@@ -32,7 +32,7 @@ void rebuild_clusters(const ElementInputs& elements, const ClusterInputs& inputs
 
 /// Sizes of the clusters that build_clusters() would make for a body. `largest`: node count of the largest cluster.
 /// `entries`: number of entries of all inertia matrices together. `cubes`: sum of the cubes of the node counts,
-/// proportional to the cost of the inversions.
+/// proportional to the cost of the inversions. Row 0 of `modulus` belongs to the block blocks.begin.
 struct ClusterSizes {
     std::size_t largest = 0, entries = 0, cubes = 0;
 };

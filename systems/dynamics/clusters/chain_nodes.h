@@ -34,8 +34,8 @@ void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real>
     }
 }
 
-/// Sets of moving nodes that the implicit elements of a body connect. Guards (inversion barriers) connect no nodes,
-/// since they only act inside a cluster.
+/// Sets of moving nodes that the implicit elements of a body connect. Guards (inversion barriers) are left out, since
+/// they act only inside clusters that other elements form.
 struct NodeChains {
     Index first = 0;                    // smallest row of NodeTable among the connected nodes
     UnionFind sets;                     // numbered by row of NodeTable minus `first`
@@ -57,7 +57,8 @@ struct NodeChains {
         };
         for_each([&](Index, Index n) { nodes.push_back(n); });
         if (nodes.empty()) return;
-        // The nodes of a body are consecutive rows of NodeTable.
+        // The nodes of a body are consecutive rows of NodeTable, so arrays from the first to the last connected node
+        // suffice.
         const auto ends = std::ranges::minmax(nodes);
         first = ends.min;
         sets.start(static_cast<std::size_t>(ends.max - first) + 1);
@@ -68,7 +69,8 @@ struct NodeChains {
         });
     }
 
-    /// Root of the set that contains a node; no_index if no implicit element acts on the node.
+    /// Root of the set that contains a node (row of NodeTable minus `first`); no_index if no implicit element except
+    /// guards acts on the node.
     Index root_of(Index node) {
         const Index row = node - first;
         if (row < 0 || row >= static_cast<Index>(chained.size()) || chained[static_cast<std::size_t>(row)] == 0)

@@ -60,8 +60,9 @@ Real least_moment(std::span<const Index> nodes, std::span<const Vec3> position, 
 }
 
 /// Moment of inertia that an implicit element adds in a rigid rotation about any axis [kg m^2]. At the angular velocity
-/// omega the kinetic energy grows by beta c V |grad(omega x x)|^2 / 2 = beta c V omega^2, with the assumed modulus c,
-/// the volume V, and beta = inertia_of_stiffness(step).
+/// w the nodes have the velocity field w x r, and the element adds the kinetic energy beta c V |grad(w x r)|^2 / 2 =
+/// beta c V |w|^2, with the assumed modulus c, the volume V, and beta = inertia_of_stiffness(step). The moment is
+/// therefore 2 beta c V.
 Real added_moment(Real step, Real modulus, Real volume) {
     return 2 * inertia_of_stiffness(step) * modulus * volume;
 }
@@ -90,7 +91,7 @@ ImplicitSearch::ImplicitSearch(const ElementInputs& elements, Range blocks, std:
 void ImplicitSearch::prepare() {
     const std::size_t rows = frequency_.size(),
                       count = nodes_.empty() ? 0 : static_cast<std::size_t>(nodes_.back() - first_node_) + 1;
-    marks_.resize(count);  // `count` includes rows between the first and the last node that are not used
+    marks_.resize(count);  // indexed by row of NodeTable minus first_node_; some rows may be unused
     sum_.resize(count);
     ratio_.resize(count);
     for (std::vector<ElementLane>* column : {&stiffness_, &unit_, &step_, &measured_, &trace_}) column->resize(rows);
@@ -201,7 +202,7 @@ void ImplicitSearch::give_up(Real step) {
 }
 
 ImplicitShare ImplicitSearch::add_implicit(const ImplicitGoal& goal) {
-    Real volume = 0, given_up = 0, added = 0;  // m^3; kg m^2
+    Real volume = 0, given_up = 0, added = 0;  // volumes [m^3]; moment of inertia [kg m^2]
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
         volume += elements_.volume[b][l];
         if (share(b, l) != 0) return;
@@ -218,7 +219,7 @@ ImplicitShare ImplicitSearch::add_implicit(const ImplicitGoal& goal) {
 
 Real ImplicitSearch::estimate_volume(Real stable) const {
     struct Demand {
-        Real mass, volume;  // mass that an element needs [kg], and its volume [m^3]
+        Real mass, volume;  // mass that makes an element stable [kg], and its volume [m^3]
     };
     std::vector<Demand> demands;
     Demand sum{0, 0};
@@ -227,13 +228,14 @@ Real ImplicitSearch::estimate_volume(Real stable) const {
         Real mass = 0;
         for (Index k = 0; k < nodes.count; ++k) {
             const Index node = nodes.node[k][l];
-            if (k == 0 || node != nodes.node[0][l]) mass += mass_[static_cast<std::size_t>(node)];  // no padding
+            // skips repeats: padding
+            if (k == 0 || node != nodes.node[0][l]) mass += mass_[static_cast<std::size_t>(node)];
         }
         demands.push_back({need(b, l, stable) * mass, elements_.volume[b][l]});
         sum.mass += demands.back().mass;
         sum.volume += demands.back().volume;
     });
-    Real excess = sum.mass, implicit = 0;  // kg; m^3
+    Real excess = sum.mass, implicit = 0;  // lacking mass [kg]; volume [m^3]
     for (const Index n : nodes_) excess -= mass_[static_cast<std::size_t>(n)];
     if (!(excess > 0)) return 0;
     // The elements that need the most mass for their volume become implicit first.
@@ -246,7 +248,8 @@ Real ImplicitSearch::estimate_volume(Real stable) const {
 }
 
 ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
-    // Every fourth round also makes elements implicit, after mass shares have adapted.
+    // Every fourth round also makes elements implicit, so that the mass shares can adapt in between. Every 24th round
+    // computes the rigorous bound; all others estimate it.
     constexpr int rounds_of_sharing = 4;
     constexpr int rounds_of_estimates = 24;
     // Largest factor by which a mass share may change in one round. Without this limit, an element that stays unstable
@@ -292,7 +295,8 @@ ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks,
                                     const ImplicitOutputs& out, const ElementBounds& bounds) {
     const auto first = static_cast<std::size_t>(blocks.begin);
     std::vector<ElementLane> step(out.mass_share.size());
-    // When an element becomes implicit, explicit elements get its mass share. Stable steps are then computed again.
+    // When an element becomes implicit, explicit elements get its mass share. Their stable steps then change, so the
+    // loop runs until no element becomes implicit.
     for (bool gave_up = true; gave_up;) {
         bounds.steps(elements, blocks, position, mass, stiffness_sum, step);
         gave_up = false;

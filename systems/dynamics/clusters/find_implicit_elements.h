@@ -19,21 +19,23 @@ struct ImplicitOutputs {
 };
 
 struct ImplicitGoal {
-    Real step;  // step for which the clusters are made [s]
+    Real step;  // step at which the implicit elements are to be stable [s]
     // Stable step that every explicit element must reach with its mass share [s]. It is less than `step` if mass forms,
     // which are computed later, will allow longer steps.
     Real stable;
-    Real headroom;     // ratio of the assumed to the present stiffness of an implicit element
+    Real headroom;     // assumed divided by present stiffness of an implicit element, which may stiffen later
     Real most_moment;  // largest allowed ImplicitShare::moment; the search fails above it
-    // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. With a limit, the inverse
-    // masses show which nodes move; by row of NodeTable [1/kg].
+    // Largest allowed number of nodes in a cluster; the search fails above it. 0: no limit. Only with a limit
+    // `inverse_mass` (by row of NodeTable, 0 for held nodes [1/kg]) is needed, because clusters contain only moving
+    // nodes.
     std::size_t most_nodes = 0;
     std::span<const Real> inverse_mass{};
 };
 
 struct ImplicitShare {
     Real moment = 0;  // moment of inertia added by the clusters, relative to the least principal moment of the body
-    // The search failed: more than 3/4 of the volume would be implicit, or a cluster would have too many nodes.
+    // True if the search failed because more than 3/4 of the volume would be implicit, or a cluster would have too many
+    // nodes.
     bool too_many = false;
 };
 
@@ -43,8 +45,8 @@ struct ImplicitShare {
 ///
 /// The rigorous bound on the stable step of an element needs 9x9 matrices. Most rounds therefore only estimate how the
 /// bound changes with the mass shares. The step is nearly proportional to 1/sqrt(T), where T is the trace of sum_k g_k
-/// g_k^T / m_k, with the shape gradient g_k and the element's mass share m_k at node k. The trace takes one product per
-/// node.
+/// g_k^T / m_k, with the shape gradient g_k at node k, and the part m_k that the element gets of the mass of node k.
+/// The trace takes one product per node.
 class ImplicitSearch {
 public:
     /// `out` must refer to the columns that `elements` reads. `stiffness_sum` is work memory with one entry per node.
@@ -66,12 +68,13 @@ private:
     /// Pair of an element and one of its nodes. Pairs are listed by block, node of the block and lane, so that sums
     /// have a fixed order.
     struct Hold {
-        // Index of the node counted from the first node of the body; index of the element counted from its first lane.
+        // `node`: row of NodeTable minus first_node_. `element`: lane of the element, counted through all blocks of the
+        // body.
         Index node, element;
         Real size;  // squared length of the shape gradient [1/m^2]
     };
-    // Bits of marks_: `some_starved` marks the nodes of elements that are unstable at the step, `of_implicit` the nodes
-    // of implicit elements.
+    // Bits of marks_: `some_starved` marks the nodes of elements that are unstable at the required step, `of_implicit`
+    // the nodes of implicit elements.
     static constexpr std::uint8_t some_starved = 1, of_implicit = 2;
 
     std::size_t row(std::size_t b) const { return b - static_cast<std::size_t>(blocks_.begin); }
@@ -83,7 +86,8 @@ private:
     /// Fraction of the masses of its nodes that an element needs to be stable at `step`. If the fraction is above 1, no
     /// mass share can make the element stable.
     Real need(std::size_t b, std::size_t l, Real step) const;
-    /// Computes the data of find() that do not depend on the step length. Mass shares must be the initial ones.
+    /// Computes the data of find() that do not depend on the step length. Mass shares must still be those of
+    /// start_mass_shares(): unit_ is divided by them, which a share of 0 would prevent.
     void prepare();
     void list_holds();
     /// measure() and estimate() compute the stable steps of all elements with their present mass shares. measure() uses
@@ -91,18 +95,19 @@ private:
     void measure();
     void estimate();
     /// Computes the trace of sum_k g_k g_k^T / m_k for every element with a mass share, up to a factor that depends
-    /// only on the shape. g_k is the shape gradient and m_k the element's mass share at node k.
+    /// only on the shape. g_k is the shape gradient and m_k the element's part of the mass of node k. sum_ must contain
+    /// the stiffness sums for the present mass shares.
     void find_trace(std::vector<ElementLane>& trace);
     void mark(std::size_t b, std::size_t l, std::uint8_t with);
     /// Marks of an element: some_starved if any of its nodes has this mark, and of_implicit if all of its nodes have
     /// this mark.
     std::uint8_t marks_of(std::size_t b, std::size_t l) const;
-    /// Makes elements implicit that share a node with an element unstable at `step`. Candidates are elements whose
-    /// need() is at least least_need_. Elements whose nodes all belong to implicit elements are candidates as well,
-    /// because they enlarge no cluster. If there is no candidate, the function lowers least_need_.
+    /// Makes some of the elements implicit that share a node with an element unstable at `step`: those whose need() is
+    /// at least least_need_, and those whose nodes all belong to implicit elements, because these enlarge no cluster.
+    /// Lowers least_need_ if there are none.
     void give_up(Real step);
-    /// Writes the assumed moduli of the implicit elements. Returns their share of the volume and of the moment of
-    /// inertia.
+    /// Writes the assumed moduli of the implicit elements. Returns the moment of inertia that they add, and whether
+    /// they have too much volume or form too large a cluster.
     ImplicitShare add_implicit(const ImplicitGoal& goal);
 
     const ElementInputs elements_;
@@ -112,12 +117,12 @@ private:
     std::span<Real> stiffness_sum_;
     ImplicitOutputs out_;
     ElementBounds bounds_;
-    std::vector<Index> nodes_;  // nodes of the elements
-    Real least_moment_;         // kg m^2
+    std::vector<Index> nodes_;  // nodes of all elements: rows of NodeTable, ascending
+    Real least_moment_;         // least principal moment of inertia of the body [kg m^2]
     Index first_node_ = 0;
     std::vector<Hold> holds_;
     std::vector<ElementLane> frequency_;  // squared frequency of an element that has all mass of its nodes [1/s^2]
-    std::vector<ElementLane> stiffness_;  // Pa
+    std::vector<ElementLane> stiffness_;  // bound on the material Hessian in the initial shape [Pa]
     std::vector<ElementLane> unit_;       // stiffness_weight() of an element divided by its mass share
     // Values by element: stable step (step_), stable step at the last rigorous bound (measured_), trace at that bound
     // (trace_), present trace (now_), stiffness weight (weight_).
@@ -131,8 +136,8 @@ private:
 
 /// Makes every explicit element implicit that is unstable at a step of goal.stable. Implicit elements stay implicit,
 /// and the mass shares and mass forms of all other elements are unchanged. This function is faster than
-/// ImplicitSearch::find(), but makes more elements implicit because masses are not shared anew. The limits
-/// of the goal are ignored.
+/// ImplicitSearch::find(), but makes more elements implicit because masses are not shared anew. Of the limits only that
+/// on the volume is tested (too_many).
 ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> mass, const ImplicitGoal& goal, std::span<Real> stiffness_sum,
                                     const ImplicitOutputs& out, const ElementBounds& bounds);

@@ -10,13 +10,13 @@
 namespace skerry {
 
 /// Writes the leeway of each tetrahedron: a factor on the allowed change of the deformation gradient in a step. The
-/// factor is `of_implicit` if an implicit element covers the tetrahedron, which may then also invert; otherwise it is
-/// 1. `tetrahedra` lists the tetrahedra that each element covers.
+/// factor is `of_implicit` for a tetrahedron that an implicit element covers, else 1. `tetrahedra` lists the tetrahedra
+/// that each element covers, lane by lane.
 void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, Real of_implicit,
                  std::span<ElementLane> leeway);
 
 /// Writes the viscous time of each block with implicit elements: viscosity over assumed modulus [s]. Other blocks get
-/// 0. `step`: step length for which the clusters of the body are made [s].
+/// 0. `step`: longest step at which the implicit elements are stable (BodyTable::cluster_step) [s].
 void find_viscous_times(std::span<const ElementLane> modulus, Real step, std::span<Real> viscous_time);
 
 /// Largest ratio of present to assumed stiffness among the implicit elements of a body; 0 without implicit elements.
@@ -24,8 +24,7 @@ Real worst_stiffening(const ElementInputs& elements, Range blocks, std::span<con
                       std::span<const ElementLane> modulus);
 
 /// Kinetic energy that the inertia of implicit elements adds: v.(A - M) v / 2, with the node velocities v, the inertia
-/// matrix A of the clusters, and the matrix M of lumped masses [J]. `step`: step length for which the clusters of the
-/// body are made [s].
+/// matrix A of the clusters, and the matrix M of lumped masses [J]. `step`: BodyTable::cluster_step [s].
 Real added_energy(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus, Real step,
                   std::span<const Vec3> velocity);
 
@@ -33,13 +32,13 @@ Real added_energy(const ElementInputs& elements, Range blocks, std::span<const E
 /// centre of mass.
 Real least_moment_of(const Mat3& spread);
 
-/// Relative increase of the least principal moment of inertia if masses are lumped: each tetrahedron of a body of
-/// uniform density puts a quarter of its mass at each corner. 0 for a body without volume.
+/// Relative error of the least principal moment of inertia by lumping: each tetrahedron, of uniform density, puts a
+/// quarter of its mass at each corner. 0 for a body without volume.
 Real moment_of_lumping(std::span<const TetrahedronNodes> node, std::span<const ElementLane> volume,
                        std::span<const Vec3> position);
 
-/// Factor beta of the element stiffnesses in the inertia matrix of clusters, A = M + beta (sum of element stiffnesses),
-/// for steps up to `step` [s^2].
+/// Factor beta [s^2] in the inertia matrix of clusters, A = M + beta (sum of assumed element stiffnesses), for which
+/// steps up to `step` [s] are stable.
 constexpr Real inertia_of_stiffness(Real step) {
     // Bound on circular frequency times step (step_times_frequency); the stability limit is 2.
     constexpr Real safety = 1.8;

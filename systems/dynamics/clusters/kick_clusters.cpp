@@ -36,8 +36,8 @@ struct ByComponent {
     Vec3 at(std::size_t place) const { return {component[0][place], component[1][place], component[2][place]}; }
 };
 
-/// Products of some matrix rows with a field of vectors, one for each component of the vectors. Each lane sums its own
-/// columns.
+/// Products of some matrix rows with the vectors of a ByComponent, one for each component. Lane l sums the columns l, l
+/// + 8, l + 16 and so on.
 template <std::size_t Rows>
 struct RowSums {
     std::array<Real8, Rows> x{}, y{}, z{};
@@ -51,10 +51,10 @@ template <std::size_t Rows, class Visit>
     (std::make_index_sequence<Rows>());
 }
 
-/// Multiplies `Rows` rows of a symmetric matrix, from row `place` on, with columns 0 to width - 1; `width` is a
-/// multiple of the tile. Returns the sums of the rows. Uses each entry a second time, as the transposed entry, and adds
-/// that product to the sum of its column. Thus only one triangle of the matrix is read, which matters because large
-/// matrices do not fit into the caches.
+/// Multiplies `Rows` rows of a symmetric matrix, from row `place` on, by the vectors `kick` and returns the sums of the
+/// rows. Reads only columns 0 to width - 1; `width` is a multiple of the tile. Each entry also stands for the
+/// transposed entry: times the kick of its row, it is added to `sum` at its column. Thus only one triangle of the
+/// matrix is read, which matters because large matrices do not fit into the caches.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline RowSums<Rows> add_rows_and_columns(const Real* matrix, std::size_t count,
                                                                  std::size_t place, std::size_t width,
@@ -108,7 +108,7 @@ template <std::size_t Rows>
 }
 
 /// Computes the sums of `Rows` rows, from row `place` on, of the complete tile that begins at row `first`. It reads all
-/// columns of the tile, not only one triangle.
+/// entries of the tile itself, so none of them is used twice.
 template <std::size_t Rows>
 void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t place,
                       const ByComponent& kick, const ByComponent& sum) {
@@ -157,8 +157,8 @@ void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, co
 }
 
 /// Index of the tile of working memory at which cluster `c` begins. `begin`: index of the first node of the cluster in
-/// the list of all cluster nodes. Earlier clusters are padded to complete tiles. They end below this tile, since (begin
-/// + 7 c)/8, rounded down, is at most begin/8 + c.
+/// the list of all cluster nodes. Each of the c clusters before it is padded to complete tiles, with at most 7 nodes.
+/// Together they fill at most (begin + 7 c)/8 tiles, rounded down, which is at most begin/8 + c, rounded down.
 std::size_t tile_of(std::size_t begin, std::size_t c) {
     return begin / tile + c;
 }

@@ -16,7 +16,7 @@ struct ClusterKickInputs {
     const NodeClusters& clusters;
     std::span<const Real> mass;                           // kg, by node
     std::span<const std::uint8_t> body_asleep;            // empty if no body is asleep
-    std::span<const std::uint16_t> body_unstrained = {};  // empty if no body is unstrained
+    std::span<const std::uint16_t> body_unstrained = {};  // may be empty if no body is unstrained
 
     static ClusterKickInputs bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                                   const BodyTable& body, const bool& any_asleep) {
@@ -32,13 +32,13 @@ struct ClusterKickInputs {
 };
 
 /// Sets velocity_next = velocity + A^-1 m (velocity_next - velocity) for the nodes of each cluster, with the inertia
-/// matrix A of the cluster and the node masses m. Returns false if there is no cluster (skipped). Parallel over
-/// clusters.
+/// matrix A of the cluster and the node masses m. On entry velocity_next contains the velocities that the forces give
+/// the nodes with the masses m alone. Returns false if there is no cluster (skipped). Parallel over clusters.
 ///
-/// If the body is unstrained and the nodes of a cluster have equal velocities, A acts like the masses, so velocity_next
-/// is unchanged. `kick`: impulse of the forces on each node, by item of clusters.nodes [N s]. `work`: work memory whose
-/// contents persist between steps. `known`: true if `kick` and `work` still contain the results of a call with equal
-/// clusters, velocities and forces.
+/// If the body is unstrained and velocity_next is equal at all nodes of a cluster, A acts like the masses, so
+/// velocity_next is unchanged. `kick`: impulse of the forces on each node, by item of clusters.nodes [N s]. `work`:
+/// work memory whose contents persist between steps. `known`: true if `kick` and `work` still contain the results of a
+/// call with equal clusters, velocities and forces.
 bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity, bool known,
                    Column<Vec3>& kick, Column<Real>& work, std::span<Vec3> velocity_next);
 

@@ -16,13 +16,13 @@ namespace skerry {
 
 namespace {
 
-// Fraction of the assumed modulus. If the stiffness of an element exceeds it, the assumed modulus is raised, before the
-// stiffness grows beyond the assumed modulus.
+// The assumed modulus of an element is raised when the present stiffness exceeds this fraction of it. It is raised
+// early, so that the stiffness does not exceed it within the next step.
 constexpr Real too_near = 0.9;
 constexpr Real raised_to = 2;  // ratio of the new assumed modulus to the present stiffness
 
-/// Adds a linear combination of the three vectors x, y, z in `from`: to += x factor.x + y factor.y + z factor.z. Every
-/// entry is computed by one expression, with or without vectorisation.
+/// Adds a linear combination of the three vectors x, y, z in `from`: to += x factor.x + y factor.y + z factor.z. Both
+/// loops evaluate the same expression, so each entry gets the same bits in a vector register and alone.
 void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& factor, std::span<Real> to) {
     const Real *const x = from[0].data(), *const y = from[1].data(), *const z = from[2].data();
     std::size_t i = 0;
@@ -34,10 +34,10 @@ void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& f
     for (; i < to.size(); ++i) to[i] += factor.x() * x[i] + factor.y() * y[i] + factor.z() * z[i];
 }
 
-/// Replaces the inverse A^-1 of a cluster's inertia matrix by (A + weight G G^T)^-1, by Woodbury's identity. The
-/// columns of G are the shape gradients of an element, by node. The identity subtracts U (1/weight + G^T U)^-1 U^T with
-/// U = A^-1 G. With the Cholesky factor C C^T = 1/weight + G^T U this is W W^T with W = U C^-T, which is bitwise
-/// symmetric in any order of summation.
+/// Replaces the inverse A^-1 of a cluster's inertia matrix by (A + weight G G^T)^-1, by Woodbury's identity. Row k of G
+/// is the shape gradient of an element at node k. The identity subtracts U (1/weight + G^T U)^-1 U^T with U = A^-1 G.
+/// With the Cholesky factor C C^T = 1/weight + G^T U this is W W^T with W = U C^-T, which is bitwise symmetric in any
+/// order of summation.
 void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<const Real> inverse_mass,
                     const NodeClusters& clusters, std::span<Real> inverse) {
     Index cluster = no_index;
@@ -86,9 +86,10 @@ Vec3 lane_of(const LaneVec3<Real8>& v, std::size_t l) {
     return {v.x[l], v.y[l], v.z[l]};
 }
 
-/// Adds the impulse -weight F' g_k to the forces of an element on its nodes k in this step, and to its viscous impulse.
-/// F' is the rate of the deformation gradient, g_k the shape gradient, and `weight` the increase of the element's
-/// inertia. The impulse keeps the momentum of the deformation constant while the inertia increases.
+/// Adds the force -weight F' g_k / kick to the forces of an element on its nodes k in this step, and the impulse weight
+/// F' to its viscous impulse. F' is the rate of the deformation gradient, g_k the shape gradient, and `weight` the
+/// increase of the element's inertia. The force, acting for the time `kick`, keeps the momentum of the deformation
+/// constant while the inertia increases.
 void keep_momentum(const ElementInputs& elements, const LaneMat3<Real8>& rate, std::size_t b, std::size_t l,
                    Real weight, Real kick, const PatchForces& patches) {
     const auto after = std::ranges::upper_bound(patches.blocks, static_cast<Index>(b), {}, &Range::begin);

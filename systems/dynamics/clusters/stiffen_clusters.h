@@ -48,14 +48,14 @@ struct StiffenOutputs {
     }
 };
 
-/// Raises the assumed stiffness of implicit elements whose present stiffness has come close to it: to twice the present
-/// stiffness. Updates the inertia matrices of the clusters concerned. Returns the kinetic energy that the larger
-/// inertia adds at unchanged velocities, without that of ghosts [J]. Sequential, in element order.
+/// Raises the assumed stiffness of implicit elements whose present stiffness exceeds 0.9 of it. The new value is twice
+/// the present stiffness. Updates the inertia matrices of the clusters concerned. Returns the kinetic energy that the
+/// larger inertia adds at unchanged velocities, without that of ghosts [J]. Sequential, in element order.
 ///
-/// A stiffened element retains the momentum of its deformation, not the velocity. The difference is an impulse of the
-/// step (docs/methods/clusters.md 6). It is added to the element forces, which act for the time `kick` [s], and to the
-/// viscous impulses. Only blocks are tested that compute_element_forces has marked in `patches.stiffening` at the same
-/// positions. The marks are then cleared.
+/// The momentum of the deformation of a stiffened element stays constant, so its rate of deformation decreases. The
+/// impulse that this takes (docs/methods/clusters.md 6) is added to the element forces, which act for the time `kick`
+/// [s], and to the viscous impulses. Tests only the blocks that compute_element_forces has marked in
+/// `patches.stiffening` for the present node positions, and clears these marks.
 Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, Real kick, const PatchForces& patches,
                       const StiffenOutputs& out);
 

@@ -25,8 +25,8 @@ std::vector<Vec3> centres_of(const ElementList& list, std::span<const Vec3> rest
     return centre;
 }
 
-/// Halves a group of elements along the longest side of the group until every part is small enough for a patch. Appends
-/// the number of elements of each patch to `patch_size`.
+/// Halves a group of elements along the longest side of the bounding box of their centres, until every half is small
+/// enough for a patch. Appends the number of elements of each patch to `patch_size`.
 void split_into_patches(Order group, std::span<const Vec3> centre, std::vector<std::size_t>& patch_size) {
     const std::size_t patches = (group.size() + elements_per_patch - 1) / elements_per_patch;
     if (patches <= 1) {
@@ -130,14 +130,14 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
 namespace {
 
 /// Chooses the order of the nodes of elements in the rows of their blocks. The kernel adds forces to nodes row by row
-/// and lane by lane. Each addition waits for the previous addition to the same node, so every row gets the node of the
-/// element whose previous addition is the longest ago.
+/// and lane by lane. Each addition waits for the previous addition to the same node. Every row therefore gets, of the
+/// remaining nodes of the element, the one with the oldest addition.
 class RowOrder {
 public:
     explicit RowOrder(std::size_t node_count) : last_addition_(node_count, 0) {}
 
-    /// Returns the number within the element of the node for a row. Marks the node in `taken`, the nodes of the element
-    /// that other rows have.
+    /// Chooses the node of an element for the next row and returns its index within the element. `taken` flags the
+    /// nodes that already have a row; the chosen node is flagged too.
     std::size_t next(std::span<const Index> node, std::vector<bool>& taken) {
         const auto last_addition = [&](std::size_t k) -> std::size_t& {
             return last_addition_[static_cast<std::size_t>(node[k])];
@@ -151,7 +151,7 @@ public:
     }
 
 private:
-    std::vector<std::size_t> last_addition_;  // by node; 0 if there was none
+    std::vector<std::size_t> last_addition_;  // by node: number of its last addition, counted from 1; 0: none yet
     std::size_t additions_ = 0;
 };
 
@@ -176,7 +176,8 @@ void fill_rows(const ElementList& list, std::span<const Index> lanes, Index firs
                 nodes.gradient[r][i][l] = list.gradient[next][static_cast<Eigen::Index>(i)];
         }
     }
-    // The kernel computes the force on the first node as minus the sum of the others, in the same order.
+    // The gradient of the first node is minus the sum of all other gradients, summed in row order like the forces in
+    // the kernel, which sets the force on the first node to minus the sum of the other forces.
     for (std::size_t l = 0; l < element_lanes; ++l)
         for (std::size_t i = 0; i < 3; ++i)
             nodes.gradient[static_cast<std::size_t>(rows.begin)][i][l] = 0 - others[l][static_cast<Eigen::Index>(i)];

@@ -31,7 +31,7 @@ struct ElementPlaces {
 };
 
 struct AppendedElements {
-    Range blocks, nodes;         // rows
+    Range blocks, nodes;         // appended rows of ElementBlockTable and ElementNodeTable
     std::vector<Index> element;  // index in the list for each lane; no_index in an unused lane
 };
 
@@ -40,20 +40,21 @@ struct AppendedElements {
 /// `rest_position`: rest positions of the nodes of the body [m].
 ///
 /// Within a patch, all elements of a block have the same part of the stress (ElementPart) and the same material.
-/// Elements with equal numbers of nodes are adjacent, so that few rows are unused. In all other respects elements stay
-/// in order. Inversion barriers (guards) have patches of their own, after all others.
+/// Elements with equal numbers of nodes are adjacent, so that few rows are unused. Otherwise elements keep the order of
+/// the list. Inversion barriers (guards) have patches of their own, after all others.
 ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position);
 
-/// Appends the elements of a new body to the tables, in the lanes `places`. These lanes may have been assigned for
-/// another list, if its elements have the same nodes. The nodes of an element are reordered, so that the force kernel
-/// seldom adds to a node twice in close succession.
+/// Appends the elements of a new body to the tables, in the lanes `places`. `places` may have been found for another
+/// list whose elements have the same nodes and parts and are divided among materials in the same way. The nodes of an
+/// element are reordered, so that the force kernel seldom adds to a node twice in close succession.
 AppendedElements append_elements(const ElementList& list, const ElementPlaces& places, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes);
 /// Assigns the elements of a new body to lanes of blocks, and appends the elements to the tables.
 AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position, Index first_node,
                                  Index body, ElementBlockTable& blocks, ElementNodeTable& nodes);
 
-/// Rotates the rest shape of the elements in a range of blocks: gradients and mass forms.
+/// Rotates the rest shape of the elements in the blocks `rows`: gradients, mass forms, and the axes of materials
+/// (`orientation`).
 void turn_elements(const Mat3& rotation, Range rows, ElementBlockTable& blocks, ElementNodeTable& nodes);
 
 /// Adds a quarter of the mass of each tetrahedron, rho V / 4, to each of its nodes. `density`: rho by tetrahedron
@@ -61,9 +62,9 @@ void turn_elements(const Mat3& rotation, Range rows, ElementBlockTable& blocks, 
 void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                      std::span<const Real> density, std::span<Real> mass);
 
-/// Builds the patches, the lists of their nodes, and the slots of element nodes. Covers all blocks and nodes without
-/// patches: those of added bodies, or all. The slots of a patch are in the order of the nodes. The slots of a node are
-/// in the order of the patches.
+/// Builds the patches, the lists of their nodes, and the slots of element nodes. Covers only blocks and nodes that are
+/// in no patch yet, and keeps the patches that `patches` already has. The slots of a patch are in the order of the
+/// nodes. The slots of a node are in the order of the patches.
 void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes, ElementPatches& patches);
 
 /// Removes all patches except those of the first `block_count` blocks and `node_count` nodes, which must belong to

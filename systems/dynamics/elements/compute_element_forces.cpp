@@ -23,7 +23,7 @@ namespace {
 // Numbers of blocks and of their rows by which prefetching is ahead of the computation.
 constexpr std::size_t blocks_ahead = 6, rows_ahead = 32;
 
-// Number of node positions (16 kB) that fit into a local buffer, which stays in the L1 cache. Larger patches use
+// Size of a local buffer of node positions (16 kB), which stays in the L1 cache. Patches with more nodes use
 // patches.position instead.
 constexpr std::size_t near_nodes = 512;
 
@@ -48,8 +48,8 @@ struct Run {
     }
 
     /// Prefetches a later row of nodes, which may belong to another patch. Processors do not recognise that these rows
-    /// are consecutive, because other loads lie between them. The distance is constant, because a loop over the rows of
-    /// a later block takes more instructions than its prefetches.
+    /// are consecutive, because other loads lie between them. The distance is a fixed number of rows: to find the rows
+    /// of a certain later block, a loop would need more instructions than the prefetches themselves.
     [[gnu::always_inline]] static void prefetch_row_ahead_of(const BlockNodes& nodes, Index k) {
         prefetch_lines_ahead(nodes.gradient + k, rows_ahead, 1);
         prefetch_lines_ahead(nodes.node + k, rows_ahead, 1);
@@ -88,8 +88,8 @@ struct Run {
         return stress;
     }
 
-    /// Rotations nearest to F, as quaternions, and the traces of R^T F. They are extracted for all lanes of a block at
-    /// once, so that the number of iterations does not depend on the register width.
+    /// Rotations nearest to F, as quaternions, and the traces of R^T F. The iteration runs for all lanes of a block
+    /// together, so that its number of steps, and with it the bits, do not depend on the register width.
     struct Frames {
         Parts<LaneQuaternion<KernelReal>> q;
         Parts<KernelReal> trace;
@@ -112,7 +112,7 @@ struct Run {
         return frames;
     }
 
-    /// Elastic stress of one part of a block [Pa].
+    /// Elastic stress of the elements in one register-wide part of a block [Pa].
     template <class Law>
     [[gnu::always_inline]] auto elastic_stress(const Law& law, const LaneMat3<KernelReal>& F, const Frames& frames,
                                                std::size_t part) const {
@@ -219,7 +219,7 @@ struct Run {
         return scale;
     }
 
-    /// Total first Piola-Kirchhoff stress of the elements of a block [Pa], times minus their volume. Adds the
+    /// Total first Piola-Kirchhoff stress of the elements of a block, times minus their volume [Pa m^3]. Adds the
     /// dissipation of the springs to `relaxed`, in the unit that dissipated_of() converts to joules.
     template <class Law>
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> stress_of(const Law& law, std::size_t block,
@@ -243,8 +243,8 @@ struct Run {
             for (std::size_t part = 0; part < kernel_parts; ++part) Q[part] = whole(elastic(part), F[part]);
         }
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
-            // The copies are needed because a variable whose address is taken is stored in memory, even if the call is
-            // not made, and so are results that rests_easy() could share with the stress.
+            // Without the copies gcc would keep F and Q in memory, because with_viscous_stress() takes their addresses,
+            // even when it is not called. It would also store intermediate results of the stress for rests_easy().
             if (rests_easy(law, block, copy_of_parts(F)))
                 note(block, false, false);
             else
@@ -253,8 +253,8 @@ struct Run {
         return Q;
     }
 
-    /// Dissipated energy from the sum over the elements [J]. MaxwellStep defines the unit of the sum. The minus sign is
-    /// needed because `scale` is negative.
+    /// Dissipated energy from the sum over the elements [J]. relax() gives the energies per volume divided by a quarter
+    /// of maxwell.modulus. The minus sign is needed because `scale` is negative.
     Real dissipated_of(const Parts<KernelReal>& sum) const {
         return -0.25 * maxwell.modulus * sum_of_parts(sum);
     }
@@ -281,8 +281,8 @@ struct Run {
 
 /// Computes the forces of a run of blocks. With wide registers the next block is fetched before the forces of the
 /// present block are added. Fetching and adding are independent of each other, while the stress between them is a long
-/// chain of dependent operations. Narrow registers are too few to store two blocks. Returns the energy that the
-/// dashpots of the elements dissipate [J].
+/// chain of dependent operations. Narrow registers are too few to hold two blocks, so there the next block is fetched
+/// last. Returns the energy that the dashpots of the elements dissipate [J].
 [[gnu::always_inline]] inline Real compute_run(const Run& run) {
     constexpr bool ahead = kernel_parts == 1;
     Parts<KernelReal> relaxed{};
@@ -312,7 +312,8 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};
 }
 
-/// First block after `begin` that has another material or another part of the stress, or `end`.
+/// First block after `begin` whose material or part of the stress (ElementPart) differs from those of `begin`; `end` if
+/// there is none.
 std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::size_t end) {
     std::size_t b = begin + 1;
     while (b < end && elements.material[b] == elements.material[begin] && elements.part[b] == elements.part[begin]) ++b;
@@ -328,7 +329,7 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
     SKERRY_CHECK(rotation.size() == elements.blocks() && next.rotation.size() == elements.blocks());
     SKERRY_CHECK(elements.viscous_time.empty() || elements.implicit_modulus.size() == elements.blocks());
     parallel_for(executor, patches.blocks.size(), 1, [&](std::size_t first, std::size_t last) {
-        const FlushSubnormals flush;  // decaying strains of springs would become subnormal numbers
+        const FlushSubnormals flush;  // decaying strains of springs would become subnormal numbers, which are slow
         for (std::size_t p = first; p < last; ++p) {
             const auto begin = static_cast<std::size_t>(patches.blocks[p].begin),
                        end = static_cast<std::size_t>(patches.blocks[p].end);
@@ -358,7 +359,8 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
     });
     const auto relaxes = [](const MaterialConstants& material) { return material.relaxes(); };
     if (std::ranges::none_of(elements.constants, relaxes)) return 0;
-    return std::accumulate(patches.relaxed.begin(), patches.relaxed.end(), Real{0});  // in order
+    // in order of patches: same bits for any number of workers
+    return std::accumulate(patches.relaxed.begin(), patches.relaxed.end(), Real{0});
 }
 
 }  // namespace skerry

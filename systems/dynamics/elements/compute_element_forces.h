@@ -14,7 +14,7 @@
 namespace skerry {
 
 struct ElementInputs {
-    std::span<const Index> first, count;  // rows of `node` and `gradient`, by block
+    std::span<const Index> first, count;  // by block: first row in `node` and `gradient`, and number of rows
     std::span<const NodeLane> node;
     std::span<const ElementGradient> gradient;
     std::span<const ElementLane> volume;
@@ -22,23 +22,23 @@ struct ElementInputs {
     std::span<const Index> material;
     std::span<const ElementPart> part;
     std::span<const MaterialConstants> constants;
-    std::span<const Mat3> orientation = {};   // empty if no material is anisotropic
+    std::span<const Mat3> orientation = {};   // may be empty if no material is anisotropic
     std::span<const Index> body = {};         // row of BodyTable by block; may be empty if no body is left out
-    std::span<const Real> viscous_time = {};  // viscous time by block; empty if no element is viscous [s]
-    // The next four spans describe the part of the stress that relaxes; they are empty if none does.
+    std::span<const Real> viscous_time = {};  // viscosity / modulus by block; may be empty if none is viscous [s]
+    // The next four spans describe the part of the stress that relaxes; they may be empty if no material relaxes.
     std::span<const RelaxationRates> relaxation_rate = {};
     std::span<const ElementLane> own_frequency = {};  // 1/s
     std::span<const Real> relaxing_share = {};
     std::span<const SpringStrain> spring_strain = {};
-    // Flags from BodyTable. Elements of idle and of unstrained bodies are left out of a step. The spans are empty if
+    // Flags from BodyTable. Elements of idle and of unstrained bodies are left out of a step. An empty span means that
     // there are no such bodies.
     std::span<const std::uint8_t> body_idle = {};
     std::span<const std::uint16_t> body_unstrained = {};
-    std::span<const ElementForm> mass_form = {};  // empty if all elements use mass_share [1/(kg m^2)]
-    // Assumed modulus; 0 for an explicit element; empty if all elements are explicit [Pa]
+    std::span<const ElementForm> mass_form = {};  // may be empty if all use mass_share [1/(kg m^2)]
+    // Assumed modulus; 0 for an explicit element; empty if not bound (bind_explicit) [Pa]
     std::span<const ElementLane> implicit_modulus = {};
     std::span<const FrameMass> frame_mass = {};
-    std::span<const Real> frame_bound = {};  // empty if no body has frame masses [1/s^2]
+    std::span<const Real> frame_bound = {};  // may be empty if no body has frame masses [1/s^2]
     GhostMarks ghosts = {};                  // ghosts, whose elements are computed but do not count in sums of energy
 
     std::size_t blocks() const { return first.size(); }
@@ -47,7 +47,7 @@ struct ElementInputs {
         return {node.data() + row, gradient.data() + row, count[block]};
     }
     MaterialConstants material_of(std::size_t block) const { return part_of(whole_material_of(block), part[block]); }
-    /// Constants for all parts of the stress, with the axes of the material as they are turned in the block.
+    /// Constants for the whole stress, with the axes of the material rotated by the orientation of the block.
     MaterialConstants whole_material_of(std::size_t block) const {
         MaterialConstants whole = constants[static_cast<std::size_t>(material[block])];
         if (whole.model == MaterialModel::orthotropic && !orientation.empty()) turn_axes(orientation[block], whole);
@@ -112,8 +112,8 @@ inline constexpr Real near_stiffness = 0.7;
 /// Patches of elements, and columns for the forces and the dissipated energy of each patch.
 struct PatchForces {
     std::span<const Range> blocks, slots;
-    std::span<const Index> node;  // by slot
-    // slot of each element node in its patch, as an offset in numbers: row index times slot_width
+    std::span<const Index> node;  // by slot: row of NodeTable
+    // slot of each element node in its patch, as an offset in reals (index of the slot times slot_width)
     std::span<const NodeLane> slot;
     std::span<PaddedVec3> position;                         // by slot [m]; work memory
     std::span<PaddedVec3> force;                            // N, by slot
@@ -122,7 +122,7 @@ struct PatchForces {
     // 1 if the quick stiffness bound of an implicit element of the block is above near_stiffness. Blocks that are left
     // out are not written.
     std::span<std::uint8_t> stiffening = {};
-    std::span<Real> relaxed = {};  // energy that the dashpots of a patch dissipate; empty if none exist [J]
+    std::span<Real> relaxed = {};  // energy that the dashpots of a patch dissipate; may be empty if there are none [J]
 
     static PatchForces bind(const Binder& binder, ElementPatches& patches, const ElementNodeTable& nodes) {
         return {.blocks = binder.read(patches.blocks),
@@ -141,7 +141,7 @@ struct PatchForces {
 /// State of the elements that a step writes for the next step.
 struct ElementMemory {
     std::span<ElementRotation> rotation;
-    // Strains of the springs in this step; empty if no stress relaxes
+    // strains of the springs of Maxwell elements in this step; may be empty if no material relaxes
     std::span<SpringStrain> spring_strain = {};
 
     static ElementMemory bind(const Binder& binder, ElementBlockTable& element) {
@@ -150,15 +150,16 @@ struct ElementMemory {
     }
 };
 
-/// Computes the forces of the elements on their nodes, and sums the forces over each patch. Returns the dissipated
-/// energy [J]. Parallel over patches.
+/// Computes the forces of the elements on their nodes, and sums the forces over each patch. Returns the energy that the
+/// dashpots of Maxwell elements dissipate [J]. Parallel over patches.
 ///
 /// The first Piola-Kirchhoff stress P of an element depends on F = sum_k (x_k - x_0) (x) g_k, with the node positions
 /// x_k and the gradients g_k at rest. The force on node k is f_k = -V P g_k, with the rest volume V, and f_0 = -(f_1 +
 /// f_2 + ...). Sums run block by block and lane by lane, so that the bits do not depend on the number of workers.
 ///
 /// Corotational elements start the search for their frame from `rotation` and write next.rotation; other laws write no
-/// frame. The forces of patches of bodies that are left out stay unchanged. `kick`: time for which forces act [s].
+/// frame. For bodies that are left out (is_left_out()), `patches.force` stays unchanged. `kick`: time for which forces
+/// act [s].
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real kick, std::span<const ElementRotation> rotation,
                             const ElementMemory& next, const PatchForces& patches);

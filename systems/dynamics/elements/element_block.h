@@ -1,6 +1,6 @@
 // Kernel operations on a block of elements: fetch the node positions, form F, add the forces to the nodes. Loops over
-// the parts of a block are unrolled, because gcc keeps the entries of an array in registers only if every index is a
-// constant.
+// the register-wide parts of a block are unrolled, because gcc keeps the entries of an array in registers only if every
+// index is a constant.
 #pragma once
 
 #ifdef __AVX512VL__
@@ -17,8 +17,8 @@
 
 namespace skerry {
 
-/// Returns x, as a value that gcc regards as new. With 512-bit registers gcc then neither loads x from memory at each
-/// use, which would take more time than the arithmetic, nor stores intermediate results for later use.
+/// Returns x in a register, as a value that gcc regards as new (512-bit registers only). Otherwise gcc would load x
+/// from memory at each use, which takes more time than the arithmetic, or store intermediate results for later use.
 template <class T>
 [[gnu::always_inline]] inline T kept_apart(T x) {
 #ifdef __AVX512VL__
@@ -35,9 +35,9 @@ template <class T>
     return *reinterpret_cast<const Real4*>(at->lane);
 }
 
-/// Positions of the nodes of a patch, or forces on these nodes. A slot is the offset of the first number of a row
-/// (ElementNodeTable), not the index of the row: processors scale addresses by at most eight bytes, and a row is
-/// longer.
+/// Positions of the nodes of a patch, or forces on these nodes. Each node has a PaddedVec3. A slot is the offset of its
+/// first number (ElementNodeTable::slot), not its index: processors scale an index by at most eight bytes, and a
+/// PaddedVec3 is longer.
 template <class Number>
 struct PatchRows {
     Number* first;
@@ -48,9 +48,9 @@ struct PatchRows {
     }
 };
 
-/// Corner: positions of one corner of several elements, as many as fit into a register, in the order that the
-/// transposes below need. One full-width load per position and a few shuffles replace three gathers, each of which
-/// takes one load per lane.
+/// Corner: positions of one corner of all elements in a register-wide part of a block, in the order that the transposes
+/// in edge() need. One full-width load per position and a few shuffles replace three gathers, each of which takes one
+/// load per lane.
 #ifdef __AVX512VL__
 // Halves of registers are moved with intrinsics. For __builtin_shufflevector gcc shuffles the whole register.
 
@@ -68,7 +68,8 @@ template <class Positions>
     return {{pair(0), pair(1), pair(2), pair(3)}};
 }
 
-/// Variant of load_corner for a block that contains the last node, whose position is the end of the array.
+/// Variant of load_corner for a block that contains the last node. Its position ends the array, and load_position()
+/// would read beyond it.
 [[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t, const Vec3* position) {
     const auto pair = [&](std::size_t l) {
         const Vec3 &a = position[node[l]], &b = position[node[l + 4]];
@@ -82,7 +83,7 @@ template <class Positions>
     const Real8 d04 = corner.pair[0] - corner0.pair[0], d15 = corner.pair[1] - corner0.pair[1];
     const Real8 d26 = corner.pair[2] - corner0.pair[2], d37 = corner.pair[3] - corner0.pair[3];
     // After the transposes, low01 contains x0 x1 z0 z1 x4 x5 z4 z5 and high01 contains y0 y1 .. .. y4 y5 .. .. (letters
-    // are components, digits are lanes).
+    // are components, digits are lanes, .. is not used).
     const Real8 low01 = __builtin_shufflevector(d04, d15, 0, 8, 2, 10, 4, 12, 6, 14);
     const Real8 high01 = __builtin_shufflevector(d04, d15, 1, 9, 3, 11, 5, 13, 7, 15);
     const Real8 low23 = __builtin_shufflevector(d26, d37, 0, 8, 2, 10, 4, 12, 6, 14);
@@ -103,7 +104,8 @@ template <class Positions>
              load_position(position + of[3])}};
 }
 
-/// Variant of load_corner for a block that contains the last node, whose position is the end of the array.
+/// Variant of load_corner for a block that contains the last node. Its position ends the array, and load_position()
+/// would read beyond it.
 [[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t part, const Vec3* position) {
     const auto at = [&](std::size_t l) {
         const Vec3& p = position[node[4 * part + l]];
@@ -117,7 +119,7 @@ template <class Positions>
     const Real4 d0 = corner.lane[0] - corner0.lane[0], d1 = corner.lane[1] - corner0.lane[1];
     const Real4 d2 = corner.lane[2] - corner0.lane[2], d3 = corner.lane[3] - corner0.lane[3];
     // After the transposes, low01 contains x0 x1 z0 z1 and high01 contains y0 y1 .. .. (letters are components, digits
-    // are lanes).
+    // are lanes, .. is not used).
     const Real4 low01 = __builtin_shufflevector(d0, d1, 0, 4, 2, 6);
     const Real4 high01 = __builtin_shufflevector(d0, d1, 1, 5, 3, 7);
     const Real4 low23 = __builtin_shufflevector(d2, d3, 0, 4, 2, 6);
@@ -127,7 +129,7 @@ template <class Positions>
 }
 #endif
 
-/// Joins the register-wide parts of a block, which a kernel computes one by one, to all lanes of the block.
+/// Calls part_of_block(part) for each register-wide part of a block, and joins the results to one matrix for all lanes.
 template <class Part>
 [[gnu::always_inline]] inline LaneMat3<Real8> joined(Part&& part_of_block) {
     if constexpr (kernel_parts == 1) {
@@ -233,8 +235,8 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
     return joined([&](std::size_t part) { return deformation_gradient(block, part, position); });
 }
 
-/// Copies matrices number by number for rare code, so that the original stays in registers and the copy shares no
-/// intermediate results with it.
+/// Copies matrices for code that seldom runs. The original then stays in registers, and the compiler shares no
+/// intermediate results between uses of the original and of the copy.
 template <class T>
 [[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& of) {
     Parts<LaneMat3<T>> copy;
@@ -297,7 +299,8 @@ template <class Take>
         take(Index{0}, part, LaneVec3<KernelReal>{-sum[part].x, -sum[part].y, -sum[part].z});
 }
 
-/// Adds the force f of lane l to force[slot[l]], one lane after the other, because two lanes may have the same node.
+/// Adds the force in lane l of f to force[slot[l]]. The lanes are added one after the other, because several may have
+/// the same node.
 [[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real4>& f, const Index* slot, PatchRows<Real> force) {
     // Contains x0 y0 x2 y2: letters are components of f, digits are lanes.
     const Real4 xy02 = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);

@@ -8,11 +8,12 @@
 
 namespace skerry {
 
-/// Elastic energy of the elements in a range of blocks [J]. Sequential, in element order.
+/// Elastic energy of the elements in a range of blocks, including the springs of their Maxwell elements [J].
+/// Sequential, in element order.
 Real elastic_energy(const ElementInputs& elements, Range blocks, std::span<const Vec3> position);
 
-/// Rate of change of the elastic energy of the elements in a range of blocks, at given node velocities [W]. Sequential,
-/// in element order.
+/// Power of the elastic stress of the elements in a range of blocks at given node velocities, including the springs of
+/// their Maxwell elements [W]. Sequential, in element order.
 Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Vec3> velocity);
 
@@ -32,7 +33,8 @@ struct ElementFields {
 void element_fields(const ElementInputs& elements, Range blocks, std::span<const Index> asked,
                     std::span<const Vec3> position, std::span<ElementFields> fields);
 
-/// Writes Green's strain (F^T F - I) / 2 of each element, in the order of cauchy_stress; zero in lanes without volume.
+/// Writes Green's strain (F^T F - I) / 2 of each element to strain[8 (block - blocks.begin) + lane]; zero in lanes
+/// without volume.
 void element_strains(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                      std::span<Mat3> strain);
 

@@ -17,7 +17,8 @@ bool move_alike(std::span<const Vec3> velocity) {
     const Vec3& first = velocity.front();
     // The last node is compared first: it is far from the first node, so that rotation and vibration show at once.
     if (velocity.back() != first) return false;
-    constexpr std::size_t at_once = 64;  // number of velocities that are compared without a branch for each of them
+    // number of velocities compared between two branches, so that the loop is vectorised
+    constexpr std::size_t at_once = 64;
     const Real x = first[0], y = first[1], z = first[2];
     for (std::size_t begin = 0; begin < velocity.size(); begin += at_once) {
         const Real* const v = velocity[begin].data();

@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// Cheap upper bound on the stiffness of a material law in each lane; 0 if the stiffness of the law is constant [Pa].
-/// `square`: |F|^2, `J`: det F.
+/// Cheap upper bound on the stiffness of a material law in each lane [Pa]. Returns 0 if the stiffness of the law is
+/// constant, since it then never exceeds the assumed stiffness. `square`: |F|^2, `J`: det F.
 template <class Law, class T>
 [[gnu::always_inline]] inline T quick_stiffness(const Law& law, const MaterialConstants& material, const T& square,
                                                 const T& J) {

@@ -12,19 +12,20 @@
 
 namespace skerry {
 
-/// Lists of the tetrahedra that each element of a body covers, lane by lane of the body's blocks, including unused
-/// lanes. Tetrahedra are numbered within the body.
+/// Lists of the tetrahedra that each element of a body covers. There is one list for each lane of the blocks of the
+/// body, empty for an unused lane and for a guard. Tetrahedra are numbered within the body.
 struct ElementCover {
     std::span<const ElementPart> part;  // by block: part of the stress of its elements
-    RaggedView<Index> tetrahedra;       // tetrahedra that the element of each lane covers
+    RaggedView<Index> tetrahedra;       // by lane: tetrahedra that its element covers
 };
 
-/// Stress of each tetrahedron [Pa]. For each part of the stress (ElementPart), the mean over the elements that cover
-/// the tetrahedron is taken; these means are added up.
+/// Stress of each of the `count` tetrahedra of a body [Pa]: the sum of the means of the parts `whole`, `shear` and
+/// `volume` of the stress (ElementPart), each over the elements that cover the tetrahedron. `of_elements`: stress by
+/// lane of the blocks.
 std::vector<Mat3> stress_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements, std::size_t count);
 
-/// Strain of each tetrahedron: the mean over the elements that cover it. Elements with only the volumetric part of the
-/// stress do not count.
+/// Strain of each of the `count` tetrahedra of a body: the mean over the elements that cover it. Elements with only the
+/// volumetric part of the stress do not count. `of_elements`: strain by lane of the blocks.
 std::vector<Mat3> strain_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements, std::size_t count);
 
 /// Mean of a value of the elements over those that cover a tetrahedron. Elements with only the volumetric part of the

@@ -17,7 +17,7 @@ namespace {
 /// Changes of the elements of a block by plastic flow. Lanes that do not flow have the unit matrix and zeros.
 struct Flow {
     bool any = false;
-    LaneMat3<Real8> inverse;   // inverse of the plastic deformation, symmetric, with determinant 1
+    LaneMat3<Real8> inverse;   // inverse of the plastic deformation in this return, symmetric, with determinant 1
     Real8 strain, dissipated;  // increase of the equivalent plastic strain; plastic work per volume [J/m^3]
 };
 
@@ -34,7 +34,7 @@ Flow flow_of(const MaterialConstants& material, const Real8& volume, const LaneM
     LaneVec3<Real8> e{log_of(regular ? s.x : one), log_of(regular ? s.y : one), log_of(regular ? s.z : one)};
     const Real8 mean = (e.x + e.y + e.z) * (1.0 / 3);
     e = {e.x - mean, e.y - mean, e.z - mean};
-    const Real8 square = dot(e, e), stress = mu * square_root(6.0 * square),  // von Mises stress
+    const Real8 square = dot(e, e), stress = mu * square_root(6.0 * square),  // von Mises stress times det F
         limit = material.yield_stress + material.hardening * plastic_strain;
     const auto flows = stress > (1 + rounding) * limit;
     Flow flow;
@@ -57,9 +57,10 @@ Flow flow_of(const MaterialConstants& material, const Real8& volume, const LaneM
     return flow;
 }
 
-/// Work of the springs of the Maxwell elements on the plastic flow, per volume [J/m^3]: the mean of their stresses
-/// before and after the step, times the change of the elastic strain by the flow. `trial`, `F`: before and after the
-/// flow.
+/// Work of the springs of the Maxwell elements on the plastic flow, per volume [J/m^3]: the mean of their stresses in
+/// the last step and after the flow, times the decrease of the elastic strain by the flow. `trial`, `F`: elastic
+/// deformation gradient before and after the flow. The factor 1/4 contains 1/2 for the mean and 1/2 for doubled
+/// strains.
 Real8 work_of_springs(const ElementInputs& elements, std::size_t block, const MaterialConstants& material,
                       const LaneMat3<Real8>& trial, const LaneMat3<Real8>& F) {
     const SpringStrain& last = elements.spring_strain[block];
@@ -99,7 +100,8 @@ void change_rest_shape(const ElementInputs& elements, std::size_t block, const L
     for (std::size_t i = 0; i < 6; ++i) store(entry[i], form[i]);
 }
 
-/// Energy that the elements of a block dissipate [J].
+/// Lets the elements of a block flow: changes their rest shape and plastic strain. Returns the energy that they
+/// dissipate [J].
 Real yield_block(const ElementInputs& elements, std::size_t block, const MaterialConstants& material,
                  std::span<const Vec3> position, const PlasticState& state) {
     const LaneMat3<Real8> F = deformation_gradient(elements.nodes_of(block), position);
@@ -140,8 +142,9 @@ void forget_flow(const ElementInputs& elements, Range blocks, std::span<const Ve
     for (auto block = static_cast<std::size_t>(blocks.begin); block < static_cast<std::size_t>(blocks.end); ++block) {
         const Real8 strain = load(state.plastic_strain[block]), zero{}, one = zero + 1.0;
         if (all(strain <= 0.0)) continue;
-        // With these gradients, the rest positions X of the mesh have the deformation gradient R^T Fp^-1, where R is
-        // the rotation. The gradients without flow are Fp^T g, with Fp = (R^T Fp^-1)^-1 R^T.
+        // Plastic flow has changed the gradients R g_0 of the rotated mesh to g = Fp^-T R g_0, where R is `rotation`.
+        // Computed with g, the rest positions have the deformation gradient A = R^T Fp^-1. The gradients without flow
+        // are Fp^T g, with Fp = A^-1 R^T; M is Fp.
         const LaneMat3<Real8> A = deformation_gradient(elements.nodes_of(block), rest_position), cof = cofactor(A);
         const Real8 over_det = 1.0 / (strain > 0.0 ? dot(A.c0, cof.c0) : one);
         LaneMat3<Real8> M;

@@ -8,8 +8,8 @@
 namespace skerry {
 
 /// Plastic state of the elements. Plastic flow changes the rest shape of an element. With the inverse Fp^-1 of its
-/// plastic deformation, the gradients of its nodes become Fp^-T g, so that F computed from them is the elastic part F
-/// Fp^-1. The mass forms change with the gradients, so that the element keeps its mass.
+/// plastic deformation, the gradients g of its nodes become Fp^-T g, so that the deformation gradient computed from
+/// them is its elastic part F Fp^-1. The mass forms change with the gradients, so that the element keeps its mass.
 struct PlasticState {
     std::span<ElementGradient> gradient;    // ElementNodeTable
     std::span<ElementForm> mass_form;       // ElementBlockTable
@@ -23,12 +23,12 @@ struct PlasticState {
 /// Number of blocks in a job of yield_elements().
 inline constexpr std::size_t blocks_per_yield = 64;
 
-/// Returns the elastic strain of all elements in a range of blocks to the yield surface, at the given positions (Simo
-/// 1992). Elements that do not yield, or are left out of the step, stay unchanged. An element with a stretch or volume
-/// ratio below the limits of the law of Hencky does not flow. Returns the dissipated energy, the plastic work [J]. Only
-/// the work of the stress along the yield surface counts. The excess of the elastic energy before the return does not,
-/// because the stress before the return never acted on the nodes. `parts`: work memory, one entry per blocks_per_yield
-/// blocks. Parallel over blocks.
+/// Moves the elastic strain of all elements in a range of blocks back to the yield surface, at the given positions
+/// (radial return, Simo 1992). Elements that do not yield, or are left out of the step, stay unchanged. An element with
+/// a stretch or volume ratio below the limits of its law (Ogden::least_stretch, least_volume) does not flow. Returns
+/// the dissipated energy, the plastic work [J]. Only the work of the stress along the yield surface counts. The excess
+/// of the elastic energy before the return does not, because the stress before the return never acted on the nodes.
+/// `parts`: work memory, one entry per blocks_per_yield blocks. Parallel over blocks.
 Real yield_elements(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                     const PlasticState& state, std::span<Real> parts);
 

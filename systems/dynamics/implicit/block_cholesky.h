@@ -42,8 +42,8 @@ public:
 private:
     template <class X>
     void solve_in_place(X* x) const;
-    /// Columns of the nonzero blocks in row `k` of L. The order is such that each column follows the columns on which
-    /// it depends. Sets mark_ of the found columns to k.
+    /// Columns of the nonzero blocks in row `k` of L. A column comes after all columns of the row on which it depends.
+    /// Sets mark_ of these columns and of k to k.
     std::span<const Index> columns_of(const BlockRows& pattern, Index k);
 
     std::vector<Index> parent_;           // parent of each column in the elimination tree; no_index for a root
@@ -51,9 +51,10 @@ private:
     std::vector<Index> row_;              // row of each block of L below the diagonal
     std::vector<Mat3> block_;             // L_ij
     std::vector<Mat3> inverse_diagonal_;  // inverses of the diagonal blocks of L (lower triangular)
-    // Work memory for the factorisation of one row at a time:
+    // Work memory for one row k. `mark_`: last row in which each column was found; `path_`: path in the elimination
+    // tree; `stack_`: columns of the row, filled from its end.
     std::vector<Index> mark_, path_, stack_;
-    std::vector<std::size_t> end_;  // for each column: end of the blocks that are computed so far
+    std::vector<std::size_t> end_;  // by column: index after its last block that is computed so far
     std::vector<Mat3> sum_;
 };
 

@@ -10,8 +10,8 @@ namespace skerry {
 
 namespace {
 
-/// Block of the stiffness matrix of two nodes with the gradients `g` and `other`, from the parts of the tangent that
-/// only anisotropic laws have.
+/// 3x3 block of the stiffness matrix that couples two nodes of an element, per volume, from the parts of the tangent
+/// that only anisotropic laws have. `g`, `other`: gradients of the two nodes at rest.
 Mat3 further_block(const Tangent& tangent, const Vec3& g, const Vec3& other) {
     Mat3 block = g.dot(tangent.second_stress * other) * Mat3::Identity();
     for (const Mat3& dyad : tangent.dyads) block += (dyad * g) * (dyad * other).transpose();
@@ -83,7 +83,8 @@ void BodyElements::forces(const Displacements& displacement, std::span<Vec3> out
     for (std::size_t e = 0; e < size(); ++e) {
         const Nodes nodes = nodes_of(e);
         const Mat3 pull = volume_[e] * stress(material_[e], Mat3::Identity() + gradient_of(e, displacement));
-        // Sum of the forces on all nodes but the first; the first node gets the opposite force.
+        // Sum over all nodes but the first, which gets the opposite sum because the gradients of an element add up to
+        // zero.
         Vec3 others = Vec3::Zero();
         for (std::size_t k = 1; k < nodes.place.size(); ++k) {
             const Vec3 of_node = pull * nodes.gradient[k];

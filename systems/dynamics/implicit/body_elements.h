@@ -42,7 +42,8 @@ public:
     bool any_bends() const { return any_bends_; }
     /// Largest Frobenius norm |F - 1| of all elements, with the deformation gradient F.
     Real largest_strain(const Displacements& displacement) const;
-    /// Bound on the change of largest_strain() divided by the largest change of a node displacement [1/m].
+    /// Lipschitz constant of largest_strain(): bound on its change, divided by the largest change of a node
+    /// displacement [1/m].
     Real strain_by_displacement() const { return strain_by_displacement_; }
     /// Elastic energy of all elements at the given displacements [J].
     Real energy(const Displacements& displacement) const;
@@ -55,9 +56,9 @@ public:
     /// Computes out = dU/dx, the gradient of the elastic energy U, by position of the node in the elimination order
     /// [N].
     void forces(const Displacements& displacement, std::span<Vec3> out) const;
-    /// Adds `scale` times the second derivative d2U/dx2 of the elastic energy U, without its negative part, to `matrix`
-    /// [N/m]. The first call finds the positions of the element blocks in the matrix, so later matrices must have the
-    /// same pattern.
+    /// Adds `scale` times the second derivative d2U/dx2 of the elastic energy U to `matrix` [N/m]. Negative eigenvalues
+    /// of single elements are left out, so that the sum is positive semidefinite. The first call finds which blocks of
+    /// the matrix each element adds to, so later matrices must have the same pattern.
     void add_tangent(const Displacements& displacement, Real scale, BlockRows& matrix);
 
 private:
@@ -74,8 +75,7 @@ private:
     std::vector<Index> place_;
     std::vector<Vec3> gradient_;  // shape gradient at each node of each element [1/m]
     std::vector<Real> volume_;    // [m^3]
-    // Material constants of each element, with only the constants for the part of the stress that the element
-    // contributes.
+    // Material constants of each element, reduced to the part of the stress (ElementPart) that the element exerts.
     std::vector<MaterialConstants> material_;
     bool any_bends_ = false;
     Real strain_by_displacement_ = 0;

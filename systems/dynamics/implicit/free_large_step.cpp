@@ -21,8 +21,8 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
     const Real within = theta * h;
     const Mat3 to_mesh = bodies.turn(r).transpose();
     step.angular_momentum = to_mesh * spins.kicked(r);
-    // Coriolis forces rotate the node velocities by -2 h times the angular velocity of the frame. A rotation of
-    // velocities adds no energy.
+    // Coriolis forces rotate the node velocities by -2 h times the angular velocity of the frame. They are applied as
+    // an exact rotation, which adds no energy.
     const Mat3 against = rotation_matrix(-2 * h * stiff.shape().inertia().ldlt().solve(step.angular_momentum));
     for (std::size_t n = 0; n < of.count; ++n) step.before[of.place(n)] = against * velocity[n];
     stiff.take_momenta(step.before);
@@ -39,9 +39,10 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
 
 namespace {
 
-/// Removes the rigid motion of the shape at the end of the step from velocities and displacements. Returns `taken` plus
-/// the decrease of energy [J]. `taken` must already contain the kinetic energy of the deformation at the start of the
-/// step.
+/// Removes rigid motion from the velocities and displacements at the end of the step, and writes the moments, axes and
+/// strain flag of the new shape. Returns `taken` minus the kinetic energy of the deformation at the end, plus the
+/// decrease of the spin energy and of the elastic energy [J]. `taken` must contain the kinetic energy of the
+/// deformation at the start.
 Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, Real taken,
                   StiffBody& stiff, const ImplicitStrains& out) {
     const OfBody of(bodies, stiff, r);
@@ -70,8 +71,9 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
         stiff.take_rigid_motion(next);
     }
     for (std::size_t n = 0; n < of.count; ++n) taken -= stiff.mass(of.place(n)) / 2 * next[n].squaredNorm();
-    // The energy of the spin is computed with the moments of inertia of the new shape. It includes the energy error of
-    // the rotation in this step (docs/methods/rigid_bodies.md 2).
+    // The spin energy is L.omega / 2. At the end of the step omega follows from the moments of inertia of the new shape
+    // and the computed rotation, so the difference includes the energy error of this rotation
+    // (docs/methods/rigid_bodies.md 2).
     const Mat3 turned_for_step =
         turn_of_step(out.rotation_shaped[r], out.moments_next[r], momentum, spins.push_spin[r], h);
     const Vec3 spin_before = spin_of(bodies.rotation[r], spins.moments[r], momentum),
@@ -95,8 +97,8 @@ Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& load
         const std::size_t k = of.place(n);
         const Vec3 during = next[n], before = newton ? step.before[k] : velocity[n];
         next[n] = before + (during - before) / theta;
-        // `taken` is the sum of the reported work of contacts and loads and of the kinetic energy at the start of the
-        // step.
+        // `taken`: reported work of contacts and loads, plus the kinetic energy of the deformation at the start of the
+        // step [J].
         taken += (to_mesh * contact[n]).dot(velocity[n] + during) / 2;
         if (!loads.load.empty()) {
             const Vec3 load = to_mesh * loads.load[of.first_node + n];
@@ -113,7 +115,8 @@ Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     Real kinetic = 0;
     for (std::size_t n = 0; n < of.count; ++n)
         kinetic += stiff.mass(of.place(n)) / 2 * of.rows(out.velocity_next)[n].squaredNorm();
-    // Subtracts the growth of the linear elastic energy, which the energy balance of the step already contains.
+    // Growth of the linear elastic energy. The damped energy of the step already contains its negative; end_in_shape()
+    // subtracts the growth of the energy by the material laws instead.
     const Real linear = stiff.elastic_energy(of.rows(out.displacement_next), false) -
                         stiff.elastic_energy(of.rows(bodies.displacement), false);
     return end_in_shape(bodies, spins, r, h, kinetic + linear, stiff, out);

@@ -10,7 +10,8 @@ namespace skerry {
 
 namespace {
 
-/// Properties of the nodes of a body that an attachment holds.
+/// Gives access to the nodes of a held body by index n in the body. An attachment holds the body, but only some of its
+/// nodes.
 struct HeldNodes {
     const ImplicitBodies& bodies;
     const LedFrame& frame;
@@ -97,8 +98,9 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
         if (!loads.load.empty()) outer += loads.load[of.first_node + n];
         return Vec3(frame.turn.transpose() * outer);
     };
-    // Elastic force of the step if free nodes do not move: 1 - theta times the force at the start of the step plus
-    // theta times the force at the end.
+    // `force`: elastic force of the step if free nodes do not move in the world, (1 - theta) times the force at the
+    // start of the step plus theta times the force at the end. Both forces are equal unless `carried` is true: the
+    // frame or a held node moves.
     bool carried = !frame.is_still;
     for (std::size_t n = 0; n < of.count; ++n) {
         impulse[of.place(n)] = displacement[n];
@@ -113,7 +115,8 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
                 at_end = frame.carried(nodes.arm(n), displacement[n]);
                 if (nodes.held(n)) at_end += h * nodes.led(n);
             }
-            stiff.elastic_forces(impulse, next);  // temporarily by place
+            // `next` temporarily holds forces, by position in the elimination order
+            stiff.elastic_forces(impulse, next);
             for (std::size_t k = 0; k < of.count; ++k)
                 force[k] = (1 - theta) * (frame.across * force[k]) + theta * next[k];
         }
@@ -142,8 +145,9 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
 namespace {
 
 /// Computes the elastic forces on the nodes in a step of large strain, by position in the elimination order [N]. Forces
-/// on free nodes follow from the motion of these nodes, forces on held nodes from the material laws. The remaining
-/// force of Newton's method and of contacts is divided among the held nodes, so that all forces add up to zero.
+/// on free nodes follow from the motion of these nodes, forces on held nodes from the material laws. These forces do
+/// not add up to zero exactly, because Newton's method leaves a residual and the material laws do not see the motion by
+/// contacts. The missing force is divided equally among the held nodes.
 void forces_of_large_step(const HeldNodes& nodes, const OfBody& of, Real inertia, Real theta, Real within,
                           std::span<const Vec3> next, std::span<const Vec3> contact, StiffBody& stiff,
                           std::span<Vec3> force) {
@@ -189,8 +193,8 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         displacement_next[n] = frame.carried(nodes.arm(n), displacement[n]) + h * next[n];
     }
     if (bodies.asleep(r)) return 0;
-    // The elastic forces have a moment about the centre, with the lever arms of the deformed shape. This moment acts on
-    // the prescribed frame.
+    // The elastic forces have a moment about the centre, with the lever arms of the deformed shape. The attachment
+    // balances it with hold_moment.
     const bool newton = stiff.is_tangent(), was_large = bodies.large[r] != 0,
                is_large = is_large_after(was_large, displacement_next, Vec3::Zero(), of, stiff);
     const bool large = newton || was_large || is_large;
@@ -211,7 +215,8 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         const Vec3 place = nodes.arm(n) + displacement[n];
         moment += (frame.turn_start * place).cross(pull);
         // Subtracts the work of the attachment, which rotates the node positions against the elastic forces. The
-        // elastic forces add up to zero, so the translation of the frame does no work.
+        // elastic forces add up to zero, so the translation of the frame does no work. At large strain the work of the
+        // elastic forces is added, and their energy is subtracted below.
         if (large)
             taken += h * next[n].dot(of_mesh);
         else if (!frame.is_still)
@@ -222,7 +227,8 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
     }
     out.hold_moment[r] = -h * moment;
     // Adds the energy losses: (theta - 1/2) (dw.M dw + du.K du) and the material damping. dw and du are the changes of
-    // velocity and displacement in the step, M the masses and K the stiffness.
+    // velocity and displacement in the step, M the masses and K the stiffness. At large strain the decrease of the
+    // elastic energy replaces the term du.K du.
     if (large) {
         taken += stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
     } else {

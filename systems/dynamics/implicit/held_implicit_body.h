@@ -16,8 +16,8 @@ struct LedFrame {
 
     LedFrame(const ImplicitBodies& bodies, std::size_t r, Real h);
 
-    /// Displacement at the end of the step of a node that does not move in the world [m]. `arm`: rest position of the
-    /// node relative to the centre [m].
+    /// Displacement of a node that does not move in the world, in the frame at the end of the step [m]. `displacement`:
+    /// in the frame at the start [m]. `arm`: rest position of the node relative to the centre [m].
     Vec3 carried(const Vec3& arm, const Vec3& displacement) const {
         return is_still ? displacement : Vec3(across * (arm + displacement) - arm + shift);
     }
@@ -33,7 +33,7 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
 Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real kick, Real theta, StiffBody& stiff,
                       const ImplicitStrains& out);
 
-/// Drift of one held body, for drift_implicit_bodies.
+/// Moves one held body for the time `seconds` at its present velocities, for drift_implicit_bodies.
 void drift_held_body(const ImplicitBodies& bodies, std::size_t r, Real seconds, std::span<Vec3> displacement_next,
                      std::span<Vec3> velocity_next);
 

@@ -7,7 +7,8 @@ namespace skerry {
 
 namespace {
 
-/// Time from the start of a body's long step to the end of the present short step [s].
+/// Time from the start of a body's long step to the end of the present short step [s]. The last short step ends exactly
+/// at times.length in spite of rounding errors.
 Real time_at_end(const LongStep& step, const ImplicitTimes& times) {
     constexpr Real rounding = 1e-9;
     const Real time = step.done + times.h;
@@ -150,8 +151,9 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         step.answer.swap(step.answer_next);
         step.contact.swap(step.contact_next);
         if (!times.ends) continue;
-        // Contact forces are assumed to continue in the next long step with their mean over the elapsed part of this
-        // long step.
+        // `left` is the length of a long step times the velocity that contacts would have caused in a complete long
+        // step. The next long step assumes this velocity at first. step.answer covers only the time step.done, hence
+        // the factor.
         for (std::size_t n = 0; n < of_body.size(); ++n)
             of_body[n] = times.length * (times.length / step.done) * step.answer[n];
     }

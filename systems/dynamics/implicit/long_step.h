@@ -18,13 +18,14 @@ bool takes_long_steps(const ImplicitBodies& bodies, const ImplicitTimes& times, 
 bool kick_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                        const ImplicitTimes& times, StiffBody& stiff, std::span<Vec3> elastic_force,
                        std::span<Vec3> out);
-/// Treats a sleeping body like a body at the start of a long step, so that its contacts in this step use the state at
-/// that start.
+/// Sets a sleeping body to the start of a long step. The contacts of this step then use the matrix of the long step
+/// with the factor t/h = 1.
 void rest_in_long_step(const ImplicitTimes& times, StiffBody& stiff);
 
-/// Computes displacements and velocities at the end of the short step. The body continues with these values if its long
-/// step ends here. `given`: node velocities that the contacts of this step add, by position in the elimination order
-/// [m/s]. Returns the damped energy without the jump of energy at a change to large strain [J].
+/// Computes displacements and velocities at the end of the short step. A following long step starts from these values
+/// if the long step ends with this short step. `given`: node velocities that the contacts of this step add, by position
+/// in the elimination order [m/s]. Returns the damped energy without the jump of energy at a change to large strain
+/// [J].
 Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                          const ImplicitTimes& times, StiffBody& stiff, std::span<const Vec3> given,
                          const ImplicitStrains& out);

@@ -22,8 +22,8 @@ void for_each_implicit(Executor& executor, const ImplicitBodies& bodies, auto&& 
     });
 }
 
-/// True if a step with these velocities leads from small to large strain. The velocities are stored by position in the
-/// elimination order.
+/// True if a step of length `h` [s] with these velocities leads from small to large strain. `displacement`: by node;
+/// `velocity`: by position in the elimination order.
 bool becomes_large(std::span<const Vec3> displacement, std::span<const Vec3> velocity, const Vec3& angular_momentum,
                    Real h, const OfBody& of, StiffBody& stiff) {
     if (!stiff.elements().any_bends()) return false;
@@ -238,7 +238,7 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
             const std::size_t k = of.place(n);
             const Vec3 &before = velocity[n], &during = next[n];
             const Vec3 after = before + (during - before) / theta;
-            // `taken` is the sum of the reported work of contacts and loads, minus the growth of energy.
+            // `taken`: reported work of contacts and loads minus the growth of kinetic and elastic energy [J].
             taken += (back * contact[n]).dot(before + during) / 2;
             if (!loads.load.empty()) {
                 const Vec3 load = back * loads.load[of.first_node + n];

@@ -41,7 +41,7 @@ struct ImplicitBodies {
     // Columns for bodies that attachments hold:
     RigidHolds holds;
     std::span<const Vec3> center, rest_center;           // RigidBodyTable
-    std::span<const Vec3> rest_position, node_velocity;  // columns of NodeTable; held nodes have prescribed velocities
+    std::span<const Vec3> rest_position, node_velocity;  // NodeTable; velocities of held nodes are prescribed
     std::span<const Real> inverse_mass;                  // NodeTable
     GhostMarks ghosts = {};
 
@@ -107,7 +107,7 @@ struct ImplicitTimes : LongStepTimes {
 
 struct ImplicitLoads {
     std::span<const Vec3> load;  // applied force by node; empty if there are no applied forces [N]
-    Vec3 gravity;                // gravity for the nodes of held bodies; free bodies fall with their frames [m/s^2]
+    Vec3 gravity;                // used for nodes of held bodies only: the frames of free bodies fall [m/s^2]
     // Time for which loads act on other bodies. On implicit bodies the loads act for the complete step [s].
     Real kick;
 
@@ -119,7 +119,7 @@ struct ImplicitLoads {
     }
 };
 
-/// Rotational state of the frames of free bodies, from RigidBodyTable.
+/// Columns of RigidBodyTable: rotational state of the frames; used only for free bodies.
 struct ImplicitSpins {
     std::span<const Vec3> moments, angular_momentum, moment_kick, contact_moment, push_spin;
 
@@ -171,8 +171,9 @@ struct TouchedNodes {
     }
 };
 
-/// Lists the nodes of implicit bodies that contacts and cables touch. Computes the velocity response of each of these
-/// nodes to impulses on all touched nodes of its body. Returns false if none touches an implicit body (skipped).
+/// Lists the nodes of implicit bodies that contacts and cables touch. For each body, computes the velocities of its
+/// touched nodes per unit impulse on each of them. Returns false if no contact or cable touches an implicit body
+/// (skipped).
 bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const TouchedNodes& stencils,
                             std::span<const Index> node_body, const ImplicitTimes& times, StiffBodies& stiff,
                             ImplicitCoupling& coupling);
@@ -206,8 +207,8 @@ struct ImplicitStrains {
 /// Result of strain_implicit_bodies for one body.
 struct StrainPart {
     Real damped = 0;  // damped energy minus the work of the moment of the attachment [J]
-    // Impulse of weight and loads over the complete step, minus the impulse over the shorter or longer time for which
-    // weight and loads act on other bodies [N s].
+    // (h - loads.kick) times weight and loads: their impulse over the complete step minus that over the time
+    // loads.kick, for which they act on other bodies [N s].
     Vec3 impulse = Vec3::Zero();
 };
 
@@ -227,11 +228,13 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
                                       const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                                       const ImplicitStrains& out, Column<StrainPart>& parts);
 
-/// Commits a short step for every body that is in a long step. `left`: column of ImplicitNodeTable [m].
+/// Advances the long step of every body by the short step that is being committed. Writes ImplicitNodeTable::left when
+/// a long step ends, and sets it to zero for bodies that took an ordinary step.
 void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, std::span<const Range> body_implicit,
                       StiffBodies& stiff, std::span<Vec3> left);
 
-/// Changes the displacements by the present velocities times `seconds`. Writes the columns that ElasticMotion reads.
+/// Writes to `out` the displacements that result from the present velocities in the time `seconds`, and all other
+/// columns that ElasticMotion reads.
 void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, StiffBodies& stiff, Real seconds,
                            const ImplicitStrains& out);
 

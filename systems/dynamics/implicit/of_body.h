@@ -24,8 +24,8 @@ struct OfBody {
     std::size_t place(std::size_t n) const { return static_cast<std::size_t>(stiff.place(n)); }
 };
 
-/// Coefficient `inertia` in the matrix inertia M + within^2 K of a step, with the masses M and the stiffness K.
-/// `within`: theta times the step length [s].
+/// Coefficient 1 + within d of the masses M in the matrix (1 + within d) M + within^2 K of a step, with the damping
+/// rate d of the material and the stiffness K. `within`: theta times the step length [s].
 Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within);
 /// Prepares the factor of the small-strain matrix of a step, which stiff.respond() then uses. Returns false if the
 /// matrix cannot be factored.
@@ -37,8 +37,9 @@ bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta
 void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
                      std::span<const Vec3> force, const OfBody& of, std::span<Vec3> impulse);
 
-/// True if strain is large after a step. `displacement`: at the end of the step, by node [m]. `angular_momentum`: for a
-/// free body in the frame of the mesh, zero for a held body [kg m^2/s].
+/// True if strain is large after a step. After a step at large strain the lower bounds of becomes_small() decide.
+/// `displacement`: at the end of the step, by node [m]. `angular_momentum`: for a free body in the frame of the mesh,
+/// zero for a held body [kg m^2/s].
 bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum, const OfBody& of,
                     StiffBody& stiff);
 

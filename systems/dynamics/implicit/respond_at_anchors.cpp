@@ -8,7 +8,7 @@ namespace skerry {
 
 namespace {
 
-/// Response of a body at one of its points, in the frame of the mesh [1/kg].
+/// Velocity of a point of a body per unit impulse at this point, in the frame of the mesh [1/kg].
 Mat3 response_at(const AnchorRow& point, StiffBody& stiff) {
     Mat3 sum = Mat3::Zero();
     for (std::size_t a = 0; a < 4; ++a) {
@@ -31,7 +31,8 @@ bool respond_at_anchors(const ImplicitBodies& bodies, const DampedAnchors& ancho
     const auto respond = [&](Index body, const AnchorRow& point, const AnchorMass& mass, Mat3& response) {
         if (mass.dampers == 0 || !(mass.inverse > 0)) return;
         const auto r = static_cast<std::size_t>(anchors.body_rigid[static_cast<std::size_t>(body)].begin);
-        // For large strain this is the response at small strain, because no other matrix is known before the step.
+        // This is the response at small strain. It is used at large strain too, because the tangent matrix of the step
+        // is not known before the step.
         if (bodies.asleep(r) || !make_factor(bodies, r, times.h, times.theta, stiff[r])) return;
         const Mat3 turn = bodies.turn(r);
         response = turn * response_at(point, stiff[r]) * turn.transpose();

@@ -34,8 +34,9 @@ struct AnchorResponses {
     }
 };
 
-/// For each anchor of a damper on an implicit body: the change of its velocity by deformation within this step, per
-/// unit impulse, in world axes. For all other anchors: zero. Returns false if there is no implicit body (skipped).
+/// Writes for each anchor of a damper on an implicit body the velocity by deformation that a unit impulse at the anchor
+/// causes in this step, in world axes, and zero for all other anchors. Returns false if there is no implicit body
+/// (skipped).
 bool respond_at_anchors(const ImplicitBodies& bodies, const DampedAnchors& anchors, const ImplicitTimes& times,
                         StiffBodies& stiff, const AnchorResponses& out);
 

@@ -28,9 +28,8 @@ SolidMasses::SolidMasses(std::span<const std::array<Index, 4>> tetrahedra, std::
 }
 
 void SolidMasses::find_arms(BodyShape& shape) const {
-    // The integral of rho N_k x over a tetrahedron is a twentieth of the tetrahedron's mass times the sum of all four
-    // corner positions plus the position of corner k. rho is the density, N_k the shape function of corner k, and x the
-    // position.
+    // The lever arm of node k is the integral of rho N_k x, with the density rho, the shape function N_k and the
+    // position x. Over a tetrahedron of mass m with the corners x_j it is m/20 (sum_j x_j + x_k).
     shape.arm.assign(shape.position.size(), Vec3::Zero());
     for (std::size_t t = 0; t < share_.size(); ++t) {
         Vec3 sum = Vec3::Zero();

@@ -1,5 +1,5 @@
-// Inertia and angular momentum of the solid that a body's tetrahedra fill, in any shape. Velocities are linear in each
-// tetrahedron (docs/methods/implicit_bodies.md 8).
+// Inertia and angular momentum of the solid that a body's tetrahedra fill, in any shape. Velocities are interpolated
+// linearly within each tetrahedron (docs/methods/implicit_bodies.md 8).
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Deformed shape of a body, by position of its nodes in the elimination order.
+/// Deformed shape of a body. Entries are in the elimination order of the nodes.
 struct BodyShape {
     std::vector<Vec3> position;  // node positions relative to the centre of mass [m]
     // Lever arms of the nodes: the angular momentum is the sum of arm x v over the node velocities v [kg m]

@@ -11,7 +11,8 @@ namespace {
 
 /// Function of the node velocities v whose minimum is the solution of the step: inertia v.M v / 2 - v.impulse +
 /// U(carried + within v). M are the node masses; `impulse` and `carried` are members of LargeStep. U is the elastic
-/// energy, for a free body plus the energy of the spin.
+/// energy. For a free body U also contains the energy of the spin, L.I^-1 L / 2, with the constant angular momentum L
+/// and the inertia I of the deformed shape.
 class Objective {
 public:
     Objective(Real inertia, Real within, const StiffBody& stiff, LargeStep& step)
@@ -34,7 +35,7 @@ public:
     }
 
     /// Computes forces and gradient at the displacements step_.within, and the next Newton direction with the present
-    /// matrix factor. Returns the squared Newton decrement [J].
+    /// matrix factor. Returns the squared Newton decrement g.A^-1 g, with the gradient g and the matrix A [J].
     Real turn() {
         stiff_.elements().forces(step_.within, step_.force);
         if (spins_) {
@@ -59,7 +60,7 @@ public:
         return decrement;
     }
 
-    /// Kinetic energy that the forces of the step alone would give to the free nodes [J].
+    /// Kinetic energy that elastic and centrifugal forces alone would give to the free nodes in the step [J].
     Real of_forces() const {
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k)
@@ -77,7 +78,7 @@ public:
 
 private:
     /// Energy of the spin with the present angular momentum and the inertia of the shape within the step [J]. Its
-    /// gradient gives the centrifugal forces.
+    /// negative gradient is the centrifugal force.
     Real of_spin() const {
         if (!spins_) return 0;
         stiff_.find_shape(step_.within, step_.shape);

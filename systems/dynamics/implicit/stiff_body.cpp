@@ -120,7 +120,8 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
     solid_.find_arms(rest);
     inverse_solid_inertia_ = rest.inertia().inverse();
     // A bar of length l that spins at the angular velocity omega has the energy density rho (omega l)^2 / 24. Its
-    // strain is greatest in the middle: three times this energy density over Young's modulus.
+    // stress is greatest in the middle, rho (omega l)^2 / 8, so its strain there is three times this energy density
+    // over Young's modulus.
     Real volume = 0, least = infinity;
     for (const std::array<Index, 4>& corners : tetrahedra) volume += six_volumes(corners, rest_position) / 6;
     for (const Index m : elements.material) {
@@ -195,8 +196,9 @@ bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, cons
 }
 
 bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
-    // Fractions of the bounds of becomes_large() below which strain counts as small again. `calmer`: fraction of all
-    // bounds. `still`: fraction of small_strain alone; below it, energies are mostly rounding errors.
+    // Fractions of the bounds of becomes_large() below which strain counts as small again. `calmer`: fraction of the
+    // bounds on energies and spin. `still`: fraction of small_strain, below which strain is small without a test of
+    // energies, because these are mostly rounding errors there.
     constexpr Real calmer = 0.25, still = 0.1;
     if (energy_of_spin(angular_momentum) > calmer * stretching_spin_) return false;
     const Displacements at(displacement, node_);
@@ -247,8 +249,9 @@ void StiffBody::stand_in(const Displacements& displacement) {
 
 Mat3 StiffBody::turn_to_own_frame(std::span<Vec3> displacement) const {
     // Finds the rotation for which the sum of m X x y is zero, by Newton's method. m are the node masses, X and y the
-    // rest and the present positions relative to the centre of mass, and x is the cross product. In one step a body
-    // rotates only little against its frame.
+    // rest and the present positions relative to the centre of mass, and x is the cross product. A body rotates only
+    // little against its frame in one step, so a few iterations suffice: the error after an angle of 1e-8 rad is about
+    // its square.
     constexpr int most = 20;
     constexpr Real rounding = 1e-15;
     Mat3 turn = Mat3::Identity();
@@ -388,7 +391,8 @@ std::span<const Mat3> StiffBody::column(std::size_t node) {
     Index& slot = slot_of_[node];
     ++uses_;
     if (slot == no_index) {
-        // With fewer slots than nodes touched in one step, every step would compute all columns again.
+        // There are at least as many slots as touched nodes. With fewer, the columns of one step would replace each
+        // other, and every step would compute all of them again.
         const std::size_t most = std::max({std::size_t(1), column_memory / (size() * sizeof(Mat3)), touched_.size()});
         ++columns_made_;
         if (node_in_.size() < std::min(most, size())) {
@@ -429,7 +433,8 @@ void StiffBody::find_responses() {
         std::ranges::fill(responses_, 0);
         return;
     }
-    // Marks existing columns of the touched nodes as used, so that new columns replace those of other nodes.
+    // Marks the stored columns of the touched nodes as just used, so that new columns replace only those of untouched
+    // nodes.
     ++uses_;
     for (const Index node : touched_)
         if (const Index slot = slot_of_[static_cast<std::size_t>(node)]; slot != no_index)

@@ -33,15 +33,16 @@ struct NewtonCounts {
 /// State of one step of a body at large strain, by position of the nodes in the elimination order
 /// (docs/methods/implicit_bodies.md 8).
 struct LargeStep {
-    std::vector<Vec3> carried;   // displacements at the end of the step if the nodes did not move [m]
+    std::vector<Vec3> carried;   // displacements, in the frame at the end of the step, of nodes that stand still [m]
     std::vector<Vec3> impulse;   // momentum at the start plus impulses of loads and weight [N s]
     std::vector<Vec3> velocity;  // node velocities in the step, without contacts [m/s]
-    std::vector<Vec3> force;     // gradient dU/du of the elastic energy within the step [N]
+    std::vector<Vec3> force;     // gradient dU/du of the elastic energy and the energy of the spin at `within` [N]
     std::vector<Vec3> before;  // velocities at the start of the step, without rigid motion, after Coriolis forces [m/s]
+    // Newton's method: gradient [N s], search direction [m/s], and the displacements at which forces are computed [m].
     std::vector<Vec3> gradient, direction, within;
     // Angular momentum of a free body in the frame of its mesh; zero for a held body [kg m^2/s].
     Vec3 angular_momentum = Vec3::Zero();
-    // Shape within the step if angular_momentum is not zero. Outside of steps it is work memory.
+    // Shape with the displacements `within`, set only if angular_momentum is not zero. Between steps it is work memory.
     BodyShape shape;
     NewtonCounts counts;
     bool failed = false;  // true if Newton's method found no velocity
@@ -64,15 +65,16 @@ struct LongStep {
     bool rests = false;  // true if the body is asleep in this short step
     // Values at the start of the long step:
     std::vector<Vec3> start, start_velocity;  // [m], [m/s]
-    std::vector<Vec3> start_force;            // K u [N]
+    std::vector<Vec3> start_force;            // elastic forces K u at the displacements `start` [N]
     std::vector<Vec3> impulse, free;  // impulses without contacts [N s], and the velocities that they cause [m/s]
-    // Velocities [m/s] and impulses [N s] of the contacts of the last long step, which are assumed to continue.
+    // Velocities [m/s] that the contacts of the last long step caused, and their impulses [N s]. This long step starts
+    // with the assumption that these contacts continue.
     std::vector<Vec3> left, left_impulse;
     // Contributions of contacts from the start of the long step to the start of this short step; columns `_next`: to
     // the end of this short step.
     std::vector<Vec3> answer, answer_next;    // velocities caused by contacts [m/s]
     std::vector<Vec3> contact, contact_next;  // impulses of contacts, in the frame of the mesh [N s]
-    Real elastic = 0, elastic_next = 0;       // elastic energy [J]
+    Real elastic = 0, elastic_next = 0;       // elastic energy at the start and at the end of this short step [J]
 
     void resize(std::size_t count) {
         for (std::vector<Vec3>* column : {&start, &start_velocity, &start_force, &impulse, &free, &left, &left_impulse,
@@ -115,8 +117,9 @@ public:
     /// One of two conditions suffices. First, the spin would stretch a bar by small_strain. Second, |F - 1| exceeds
     /// small_strain in an element with deformation gradient F, and in addition the energies or the spin are inaccurate.
     /// The energies are inaccurate if the energies by linear elasticity and by the material laws differ, summed over
-    /// the elements, by more than energy_share of the linear energy. The spin is inaccurate if its energy exceeds the
-    /// same bound and the inertia of the present shape changes the spin by more than the fraction small_strain.
+    /// the elements, by more than energy_share of the linear energy. The spin is inaccurate if its energy exceeds
+    /// energy_share of the linear energy, and the inertia of the present shape instead of that at rest changes the spin
+    /// by more than the fraction small_strain.
     ///
     /// Always false if all material laws are linear.
     bool becomes_large(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
@@ -126,19 +129,20 @@ public:
     /// nodes have moved far enough since the last evaluation for strain to become large.
     bool becomes_large_in_places(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     /// True if linear elasticity and the moments of inertia at rest are accurate enough again. The energy of the spin
-    /// must be below a quarter of the bound in becomes_large(). In addition all strains must be below a tenth of
-    /// small_strain, or all other bounds of becomes_large() must be met with a quarter of their values.
+    /// must be below a quarter of the bound in becomes_large(). In addition all strains |F - 1| must be below a tenth
+    /// of small_strain, or the energies and the spin must be accurate by the bounds of becomes_large() divided by four.
     bool becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     static constexpr Real small_strain = 0.02, energy_share = 0.01;
     /// Elastic energy [J]: u.K u / 2 for the displacements u, or by the material laws of the elements if strain is
     /// `large`. `displacement`: by node of the body [m].
     Real elastic_energy(std::span<const Vec3> displacement, bool large) const;
-    /// Removes from the velocities of the nodes of the body [m/s] their rigid-body motion about the rest shape.
+    /// Removes rigid-body motion from node velocities, with the masses and lever arms of the rest shape. `velocity`: by
+    /// node of the body [m/s].
     void take_rigid_motion(std::span<Vec3> velocity) const;
     /// Computes node positions and lever arms (BodyShape) of the shape with the given displacements.
     void find_shape(const Displacements& displacement, BodyShape& shape) const;
-    /// Sets the shape by its displacements. respond() then removes the rigid-body motion of this shape from the
-    /// velocities, if its matrix is a tangent.
+    /// Sets the shape by its displacements. If the matrix of respond() is a tangent, respond() removes the rigid-body
+    /// motion of this shape.
     void stand_in(const Displacements& displacement);
     /// Removes momentum and angular momentum from node velocities, for the shape that stand_in() has set. `velocity`:
     /// by position in the elimination order [m/s].
@@ -153,8 +157,9 @@ public:
     /// nodes in A have only a diagonal entry.
     bool prepare(Real inertia, Real stiffness);
     /// Makes A = inertia M + stiffness d2U/du2 the matrix of respond(). d2U/du2 is the second derivative of the elastic
-    /// energy at these displacements (by position in the elimination order), without its negative part. Always computes
-    /// a new factor, and forces the next prepare() to compute one. Returns false if A is not positive definite.
+    /// energy at `displacement` (by position in the elimination order), without the negative eigenvalues of single
+    /// elements. Always computes a new factor, and forces the next prepare() to compute one. Returns false if A is not
+    /// positive definite.
     bool prepare_tangent(Real inertia, Real stiffness, std::span<const Vec3> displacement);
     /// True if prepare_tangent() has computed the present factor.
     bool is_tangent() const { return tangent_; }
@@ -173,15 +178,15 @@ public:
     void respond(std::span<Vec3> impulse) const;
 
     /// Velocities of all nodes per unit impulse on one node, by position in the elimination order, computed by
-    /// respond() [1/kg]. The result is computed once for a matrix factor, and stored while there is room.
+    /// respond() [1/kg]. The result is stored until the matrix factor changes or newer results need its memory
+    /// (column_memory).
     std::span<const Mat3> column(std::size_t node);
     /// Velocities of the given nodes per unit impulse on these nodes, computed by respond() [1/kg]. The result is a
-    /// symmetric matrix, stored column by column with three numbers for each node. It is zero if there is no matrix
-    /// factor. It is reused while the list of nodes stays the same. `nodes` ascend; `first` is the first node of the
-    /// body in the same numbering.
+    /// symmetric matrix, stored column by column, with three rows and three columns for each node. It is zero if there
+    /// is no matrix factor. It is reused while the matrix factor and the list of nodes stay the same. `nodes` ascend;
+    /// `first` is the first node of the body in the same numbering.
     std::span<const Real> responses(std::span<const Index> nodes, Index first);
-    /// Memory limit for stored columns of responses. The limit is exceeded if one call of responses() needs more
-    /// columns.
+    /// Memory limit for the results of column(). It is exceeded if one call of responses() needs more columns.
     static constexpr std::size_t column_memory = std::size_t(64) << 20;  // [bytes]
     std::uint64_t columns_made() const { return columns_made_; }
 
@@ -202,7 +207,7 @@ private:
     }
     bool is_beyond(const Displacements& displacement, const Vec3& angular_momentum);
     /// Computes the corrections that remove rigid motion from responses with a tangent matrix. They are needed because
-    /// a tangent, unlike the stiffness K at rest, gives forces for rigid motion.
+    /// a tangent matrix, unlike the stiffness K at rest, gives elastic forces also for rigid motion.
     void find_rigid_answers();
     template <class X>
     void take_rigid_answer(std::span<X> velocity) const;
@@ -211,7 +216,7 @@ private:
 
     std::vector<Index> place_;  // position of each node of the body in the elimination order
     std::vector<Index> node_;   // node of the body at each position
-    std::vector<Real> mass_;    // by place [kg]
+    std::vector<Real> mass_;    // by position in the elimination order [kg]
     std::vector<Vec3> arm_;  // rest position relative to the centre of mass, by position in the elimination order [m]
     // 1 for held nodes, by position in the elimination order; empty if no node is held.
     std::vector<std::uint8_t> held_;
@@ -225,7 +230,8 @@ private:
     // m^2)].
     Mat3 inverse_arm_inertia_ = Mat3::Zero();
     BlockRows stiffness_, matrix_;
-    // Coefficients of the masses and of the stiffness in the factored matrix.
+    // Coefficients of the masses and of the stiffness in the factored matrix; 0 if there is no factor or if it is a
+    // tangent.
     Real inertia_factor_ = 0, stiffness_factor_ = 0;
     BlockCholesky factor_;
     BodyElements elements_;
@@ -236,7 +242,7 @@ private:
     // Inverse of the matrix of total momenta and angular momenta of shifts_ and turns_.
     Eigen::Matrix<Real, 6, 6> rigid_inverse_;
     // Inputs and results of the last evaluation in becomes_large_in_places(). evaluated_at_ is empty before the first
-    // evaluation.
+    // evaluation, and after one with a strain that is not finite.
     std::vector<Vec3> evaluated_at_;  // displacements at the last evaluation, by position in the elimination order [m]
     Vec3 evaluated_with_ = Vec3::Zero();  // angular momentum at the last evaluation [kg m^2/s]
     Real strain_there_ = 0;

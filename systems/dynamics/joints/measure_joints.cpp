@@ -6,8 +6,8 @@ namespace skerry {
 
 namespace {
 
-/// Sum of the velocities of one body before and after the step, at the point of a joint block [m/s]; for a block of
-/// rotations, sum of the angular velocities of the body [rad/s].
+/// Velocity of one body at the point of a joint block before the step plus that after the step [m/s]; for a block of
+/// rotations, the same sum of angular velocities [rad/s].
 Vec3 twice_mean(const JointWorkInputs& joints, const JointBlock& block, Index body) {
     const auto r = static_cast<std::size_t>(body);
     const Vec3 angular = 2 * joints.angular_momentum[r] + joints.moment_kick[r] + joints.contact_moment[r];

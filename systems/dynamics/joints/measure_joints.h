@@ -12,10 +12,10 @@ namespace skerry {
 
 struct JointMeasures {
     Vec3 impulse = Vec3::Zero();  // impulse that joints transmit from the world and from held bodies [N s]
-    Real work = 0;                // work of motors and moving held bodies, minus work absorbed by stops [J]
+    Real work = 0;  // work of all joint impulses: motors, springs, dampers, friction, stops, held bodies [J]
 };
 
-/// Joint blocks, and rigid bodies by row of RigidBodyTable, after the contact solve.
+/// Joint blocks by row of JointBlockTable, and columns of RigidBodyTable, after the contact solve.
 struct JointWorkInputs {
     std::span<const JointBlock> block;
     std::span<const Vec3> impulse;  // by joint block
@@ -44,8 +44,8 @@ struct JointWorkInputs {
     }
 };
 
-/// Sums the work of all joints, and the impulses that joints transmit from the world and from held bodies, without the
-/// joints of ghosts. Sequential, in block order.
+/// Sums the work of joints, and the impulses that joints transmit from the world and from held bodies. A joint that
+/// moves a ghost does not count, because the owner of the ghost counts it. Sequential, in block order.
 JointMeasures measure_joints(const JointWorkInputs& joints);
 
 }  // namespace skerry

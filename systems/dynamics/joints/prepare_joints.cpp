@@ -17,14 +17,14 @@ Real angle_between(const Mat3& first, const Mat3& second) {
     return std::atan2(first.col(0).dot(second.col(1)), first.col(0).dot(second.col(0)));
 }
 
-/// Rotation vector of the first frame relative to the second, in axes of the second frame [rad]. For a hinge, the
-/// vector contains only the misalignment of the two hinge axes.
+/// Rotation vector of the first frame relative to the second, in axes of the second frame [rad]. For a hinge it is
+/// replaced by the cross product of the two hinge axes, so that a rotation about the hinge is no error.
 Vec3 turning_error(JointKind kind, const Mat3& first, const Mat3& second) {
     if (kind != JointKind::hinge) return second.transpose() * rotation_vector(first * second.transpose());
     return second.transpose() * second.col(2).cross(first.col(2));
 }
 
-/// Lengths of the step and of its force interval, and start of the step [s].
+/// Start `t` and length `h` of the step, and length `kick` of its force interval [s].
 struct StepTimes {
     Real t, h, kick;
 };
@@ -47,11 +47,11 @@ AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, const
     return axis;
 }
 
-/// Vector from the point of joint `j` to the point of its equations, along the axes of the second frame [m]. Two bodies
-/// that cannot rotate relative to each other have the same relative velocity at all points, and two bodies on a hinge
-/// at all points of its axis, so the equations may use any of these points. They use the one next to the centre of
-/// mass, which couples the equations of velocity and spin least. The centres of two moving bodies are weighted by their
-/// inverse inertia.
+/// Vector from the point of joint `j` to the point of its equations, along the axes of the second frame [m]. The
+/// relative velocity of two bodies is the same at all points if they cannot rotate relative to each other, and at all
+/// points of the axis if a hinge joins them. So the equations may use any such point. They use the one nearest to the
+/// centre of mass, because velocity and spin are coupled least there. If both bodies move, the mean of their centres of
+/// mass is used, weighted by the sums of their inverse principal moments of inertia.
 Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPlace& first, const JointPlace& second) {
     if (joints.kind[j] == JointKind::ball) return Vec3::Zero();
     Vec3 sum = Vec3::Zero();
@@ -67,7 +67,7 @@ Vec3 shift_of(const JointInputs& joints, std::size_t j, const JointPlace& first,
     return joints.kind[j] == JointKind::hinge ? Vec3(0, 0, shift.z()) : shift;
 }
 
-/// Block for the axis of joint `j` in a mimic row, and the coordinate of the joint.
+/// Block of joint `j` in a mimic equation (MimicShare), and the coordinate of the joint.
 struct MimicAxis {
     JointBlock block;
     Real coordinate;
@@ -90,7 +90,7 @@ struct MimicAxis {
     }
 };
 
-/// Appends the two blocks of the row by which joint `j` mimics its leader.
+/// Appends the two blocks of the mimic equation of joint `j`: first its own block, then that of its leader.
 void add_mimic(const JointInputs& joints, std::size_t j, Real kick, JointBlockTable& blocks) {
     const auto leader = static_cast<std::size_t>(joints.leader[j]);
     const MimicRow& mimic = joints.mimic[j];

@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Present pose of a joint frame, attached to one of its bodies or to the world, in world coordinates.
+/// Present pose of a joint frame in world coordinates. The frame is fixed to one body of the joint, or to the world.
 struct JointPlace {
     Vec3 point;
     Mat3 axes;
@@ -76,13 +76,14 @@ struct JointInputs {
     Index rigid(Index body) const {
         return body == no_index ? no_index : body_rigid[static_cast<std::size_t>(body)].begin;
     }
-    /// First node of a body that impulses can move; no_index for the world and for a body that an attachment holds.
+    /// First node of a body; no_index for the world and for a body held by an attachment, which impulses cannot move.
     Index moving_node(Index body) const {
         const Index row = rigid(body);
         if (row == no_index || holder[static_cast<std::size_t>(row)] != no_index) return no_index;
         return body_nodes[static_cast<std::size_t>(body)].begin;
     }
-    /// True if some body is asleep and neither body of joint `j` can move in this step.
+    /// True if each body of joint `j` is asleep, held by an attachment, or the world. Always false while no body at all
+    /// is asleep.
     bool rests(std::size_t j) const {
         const auto is_out = [&](Index body) {
             return moving_node(body) == no_index || body_asleep[static_cast<std::size_t>(body)] != 0;
@@ -90,7 +91,7 @@ struct JointInputs {
         return !body_asleep.empty() && is_out(first[j]) && is_out(second[j]);
     }
     JointPlace place(Index body, const JointFrame& frame) const;
-    /// Target of the motor of joint `j` at time `t`.
+    /// Target of the motor of joint `j` at time `t`: a speed or a position, with the unit of JointMotorRow::target.
     Real target(std::size_t j, Real t) const;
     /// True if joint `j` has a motor whose target changes in the step of length `h` that starts at time `t`.
     bool target_moves(std::size_t j, Real t, Real h) const;
@@ -108,7 +109,7 @@ Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace&
 /// motors [s]. Returns false if there is no joint (skipped).
 bool prepare_joints(const JointInputs& joints, Real t, Real h, Real kick, JointBlockTable& blocks);
 
-/// Marks the bodies of joints whose motor has a target that changes in this step. Returns false if there is none.
+/// Marks the bodies of joints whose motor has a target that changes in this step. Returns false if no target changes.
 bool mark_driven(const JointInputs& joints, Real t, Real h, std::span<std::uint8_t> marked);
 
 /// Columns of JointTable that a committed step stores for the next step.
@@ -130,7 +131,8 @@ struct JointMemory {
     }
 };
 
-/// Stores the coordinates and impulses of the joints for the next step. Returns false if there is no joint (skipped).
+/// Stores the coordinates and impulses of the joints for the next step, and the time `kick` for which the impulses
+/// acted [s]. Joints that rest keep their old values. Returns false if there is no joint (skipped).
 bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& out);
 
 }  // namespace skerry

@@ -8,7 +8,7 @@ namespace skerry {
 
 namespace {
 
-/// Appends elements to another list. In the appended elements tetrahedron t becomes tetrahedra[t].
+/// Appends the elements of `from` to `to`. `tetrahedra[t]`: number in `to` of the tetrahedron t of `from`.
 void append(const ElementList& from, std::span<const Index> tetrahedra, ElementList& to) {
     const auto append_all = [](const auto& more, auto& column) {
         column.insert(column.end(), more.begin(), more.end());

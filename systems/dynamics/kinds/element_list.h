@@ -16,10 +16,10 @@ namespace skerry {
 struct ElementList {
     std::vector<std::size_t> first_node{0};         // first entry of element e in node and gradient; size() + 1 entries
     std::vector<Index> node;                        // nodes of each element; the first node is the reference x_0 of F
-    std::vector<Vec3> gradient;                     // the gradients of an element have the sum zero [1/m]
+    std::vector<Vec3> gradient;                     // by entry of `node`, at rest; sum over an element: zero [1/m]
     std::vector<std::size_t> first_tetrahedron{0};  // first entry of element e in tetrahedron; size() + 1 entries
     std::vector<Index> tetrahedron;                 // tetrahedra that each element covers
-    std::vector<Real> volume;                       // m^3, at rest
+    std::vector<Real> volume;                       // rest volume [m^3]; 0 for inversion barriers
     std::vector<ElementPart> part;
     std::vector<Index> material;  // row of MaterialTable
 
@@ -71,7 +71,7 @@ std::vector<std::uint8_t> sliver_tetrahedra(const RestMesh& mesh);
 
 /// Limit on the volume of a tetrahedron with an inversion barrier (guard), as a fraction of the mean volume of all
 /// tetrahedra of the mesh. A tetrahedron below this limit has little effect on the smoothed F around its edges and
-/// nodes (docs/methods/elasticity.md 7.7).
+/// nodes, so the smoothed elements hardly resist its inversion (docs/methods/elasticity.md 7.7).
 inline constexpr Real guarded_volume = 0.5;
 
 /// Adds an inversion barrier (guard) for every small tetrahedron in the zones of smoothed elements, except slivers.

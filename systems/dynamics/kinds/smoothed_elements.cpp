@@ -12,9 +12,10 @@ namespace skerry {
 
 namespace {
 
-/// Collects the groups of tetrahedra that the elements cover. Item i belongs to tetrahedron i / items_of_tetrahedron,
-/// and `first_alike[i]` is the first item of the same group. Groups are ordered by their first items, so that
-/// neighbouring elements stay close in memory. The tetrahedra of a group ascend.
+/// Collects the groups of tetrahedra that the elements cover. An item is one edge (or node) of one tetrahedron. Item i
+/// belongs to tetrahedron i / items_of_tetrahedron, and `first_alike[i]` is the first item at the same edge (or node)
+/// of the mesh. Groups are ordered by their first items, so that neighbouring elements stay close in memory. The
+/// tetrahedra of a group ascend.
 Ragged<Index> groups_of(std::span<const Index> first_alike, Index items_of_tetrahedron) {
     std::vector<Index> group(first_alike.size());
     Ragged<Index> groups;
@@ -50,8 +51,8 @@ struct Gradients {
     }
 
     /// Removes the nodes whose gradients cancel, such as an inner node in its own element. Rounding errors leave about
-    /// 1e-16 of a gradient. This remainder moves nothing, but would count in the bound on the step, however small it
-    /// is.
+    /// 1e-16 of a gradient g. This remainder moves nothing, but would count in full in the bound on the step, which
+    /// contains g g^T / |g|^2 (stiffness_share.cpp).
     void drop_nothings() {
         constexpr Real nothing = 1e-12;
         Real largest = 0;
@@ -71,7 +72,7 @@ void add_groups(const RestMesh& mesh, const Ragged<Index>& groups, Real share, E
     std::vector<TetrahedronGradients> rest;
     rest.reserve(mesh.tetrahedra.size());
     for (const auto& tetrahedron : mesh.tetrahedra) rest.push_back(tetrahedron_gradients(tetrahedron, mesh.position));
-    // n tetrahedra around an edge have at most n + 3 nodes in a manifold mesh, and those around a node have fewer.
+    // In a manifold mesh, n tetrahedra around an edge or a node have at most n + 3 nodes.
     const std::size_t most_nodes = list.node.size() + groups.item.size() + 3 * groups.size();
     list.node.reserve(most_nodes);
     list.gradient.reserve(most_nodes);
@@ -93,7 +94,8 @@ void add_groups(const RestMesh& mesh, const Ragged<Index>& groups, Real share, E
                 element.add(mesh.tetrahedra[static_cast<std::size_t>(t)][a], (share * of.volume / volume) * of.g[a]);
         }
         element.drop_nothings();
-        // The gradient of node 0 is computed with the same operations as in the kernel, so that it is bitwise equal.
+        // The force on node 0 is minus the sum of the other forces (for_each_force), as if node 0 had this gradient.
+        // The sum of the tetrahedron gradients differs from it by rounding errors and dropped nodes.
         Vec3 others = Vec3::Zero();
         for (std::size_t k = 1; k < element.gradient.size(); ++k) others += element.gradient[k];
         element.gradient.front() = -others;
@@ -121,8 +123,8 @@ void add_edge_elements(const RestMesh& mesh, ElementPart part, ElementList& list
             sides.push_back({std::min(node[a], node[b]), std::max(node[a], node[b]), static_cast<Index>(sides.size())});
     const auto node_count = static_cast<Index>(mesh.position.size());
     counting_sort(sides, spare, node_count, [](const Side& side) { return side.low; });
-    // Edges with the same lower node follow each other. Among them, `seen` finds the first one with the same upper
-    // node.
+    // The sort has placed edges with one lower node next to each other. `seen[n]` is the first of these edges with the
+    // upper node n; an entry with another lower node is out of date.
     std::vector<Index> first_alike(sides.size());
     std::vector<Side> seen(mesh.position.size(), {no_index, no_index, no_index});
     for (const Side& side : sides) {

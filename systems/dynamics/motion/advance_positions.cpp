@@ -25,12 +25,12 @@ void drift(std::span<const Vec3> velocity, Real h, std::span<Vec3> position) {
 }
 
 /// Drift in a step in which contacts push nodes out of an overlap: moves positions by the velocities and push
-/// velocities. Most nodes are not pushed, so push_out is cleared only in blocks with a pushed node.
+/// velocities. Then clears push_out, but only in blocks with a pushed node: in most blocks it is already zero.
 void drift_pushed(std::span<const Vec3> velocity, Real h, std::span<Vec3> push_out, std::span<Vec3> position) {
     const Real *v = velocity.data()->data(), *p = push_out.data()->data();
     Real* x = position.data()->data();
     const std::size_t count = 3 * position.size();
-    std::uint64_t pushed = 0;  // bitwise OR of all push velocities; the sign bit is ignored
+    std::uint64_t pushed = 0;  // bitwise OR of all push velocities; the sign bits are ignored, since -0 pushes nothing
 #pragma omp simd reduction(| : pushed)
     for (std::size_t i = 0; i < count; ++i) {
         x[i] += h * (v[i] + p[i]);

@@ -17,7 +17,7 @@ struct AdvanceInputs {
     std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
     std::span<const std::uint8_t> body_asleep = {};             // column of BodyTable; empty if no body is asleep
     std::span<const Vec3> velocity_next;                        // [m/s]
-    std::span<const Vec3> displacement_origin;                  // [m]
+    std::span<const Vec3> displacement_origin;                  // node positions at the last reset of displacement [m]
     std::span<const MovingFrame> body_frame = {};               // column of BodyTable; empty if all frames are at rest
 
     /// `velocity`: column of the velocities with which nodes move. `any_asleep`: true if some body is asleep.

@@ -31,13 +31,13 @@ bool is_damped(const DampingInputs& bodies, std::size_t body) {
            !(bodies.body_unstrained[body] > 0 && keeps_rigid_motion(bodies, body));
 }
 
-/// First node of a body. Its position and velocity are the reference for the sums over the body, because sums of
-/// absolute values would lose digits far from the world's origin.
+/// First node of a body. Its position and velocity are the reference for the sums over the body, because sums of world
+/// coordinates would lose digits far from the origin.
 std::size_t first_node(const DampingInputs& bodies, std::size_t body) {
     return static_cast<std::size_t>(bodies.block_begin[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)]);
 }
 
-/// Position of a node at the time of its velocity, which is earlier than its present position `x` by `lag`.
+/// Position of a node at the time to which its velocity belongs. This is `lag` before the time of its position `x`.
 template <class T>
 T earlier(const T& x, const T& velocity, Real lag) {
     return x - lag * velocity;
@@ -99,12 +99,13 @@ void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const 
 
 /// Angular velocity omega of a body's rigid motion. It solves (tr(S) I - S) omega = L with the unit matrix I, the
 /// angular momentum L about the present positions x, and S = sum m y x^T over nodes of mass m with the earlier
-/// positions y. If all nodes are on one line, omega has no component along this line.
+/// positions y. The left side is the sum of m x cross (omega cross y), the angular momentum of a rotation. If all nodes
+/// are on one line, omega has no component along this line.
 Vec3 angular_velocity_of(const NodeBlockSums& total) {
     const Mat3 inertia = total.second_moment.trace() * Mat3::Identity() - total.second_moment;
     const Real mean = inertia.trace() / 3;
-    // Least ratio of the determinant to the cube of the mean moment of inertia. Above this ratio the inverse loses at
-    // most ten digits; for most bodies it loses none.
+    // Least ratio of the determinant to the cube of the mean moment of inertia for which the inverse is used. The
+    // inverse then loses at most about six of 16 digits; for most bodies it loses none.
     constexpr Real well_shaped = 1e-6;
     if (inertia.determinant() > well_shaped * mean * mean * mean) return inertia.inverse() * total.angular_momentum;
     const Eigen::JacobiSVD<Mat3> turned(inertia, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -117,8 +118,8 @@ Vec3 angular_velocity_of(const NodeBlockSums& total) {
     return omega;
 }
 
-/// Rigid motion towards which node velocities are damped, and the fraction of the velocity difference that damping
-/// removes.
+/// Rigid motion towards which node velocities are damped: `linear` at the point `origin` + `centre`, and `angular`.
+/// `fraction`: fraction of the difference from this motion that damping removes.
 struct DampedTowards {
     Vec3 linear, angular, origin, centre;
     Real lag, fraction;
@@ -149,8 +150,8 @@ void damp_free(const DampedTowards& rigid, std::size_t count, const Vec3* positi
     }
 }
 
-/// Damps velocity_next of a node block by `fraction` towards the rigid motion given by the sums of the body. Returns
-/// the removed kinetic energy [J].
+/// Damps velocity_next of a node block by `fraction` towards the rigid motion given by the sums of the body, or towards
+/// zero velocity if the body has pinned nodes. Returns the removed kinetic energy [J].
 Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, const NodeBlockSums& total,
                 std::span<const Vec3> velocity, std::span<Vec3> velocity_next) {
     const std::size_t body = static_cast<std::size_t>(bodies.block_body[block]);

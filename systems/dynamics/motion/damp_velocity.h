@@ -1,4 +1,5 @@
-// Damping that preserves momentum and angular momentum (docs/methods/time_stepping.md 3.1).
+// Damping that preserves momentum and angular momentum of bodies without pinned nodes (docs/methods/time_stepping.md
+// 3.1).
 #pragma once
 
 #include <cstdint>
@@ -50,15 +51,15 @@ struct DampingInputs {
 };
 
 /// Removes the fraction 1 - exp(-damping kick) of the deformation velocity v - v_rigid from velocity_next. `velocity`
-/// is v at the start of the step, and not the predicted velocity: damping must not act on a body at rest under load.
-/// `kick`: time between `velocity` and velocity_next [s]. `dissipated`: removed kinetic energy, without that of ghosts
-/// [J].
+/// is v at the start of the step, and not the predicted velocity: under load the prediction is not zero even for a body
+/// at rest, and damping must not act on such a body. `kick`: time between `velocity` and velocity_next [s].
+/// `dissipated`: removed kinetic energy, without that of ghosts [J].
 ///
 /// Damps every body with damping > 0 that is not idle, not in unstrained flight and not in RigidBodyTable. A body with
 /// pinned nodes is damped towards zero velocity. For any other body v_rigid is the rigid motion with the momentum and
 /// angular momentum of the body, at the node positions of the time `lag` ago, to which the velocities belong. So a body
-/// that rotates with constant centrifugal stretch has no deformation velocity. Angular momentum is taken about the
-/// present positions, where the removed velocity then has none.
+/// that rotates with constant centrifugal stretch has no deformation velocity. The moment arms of the angular momentum
+/// are the present positions, so that damping leaves it unchanged at these positions.
 ///
 /// Returns false if no body has damping (skipped). Parallel over node blocks; sums in block order.
 bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real kick,

@@ -29,16 +29,17 @@ void for_each_held(const AxisHoldInputs& inputs, Real h, auto&& visit) {
     }
 }
 
-/// Calls visit(node) for each node of a stencil with a weight.
+/// Calls visit(node, weight) for each node of a stencil whose weight is not zero.
 void for_each_node(const Stencil& stencil, auto&& visit) {
     for (std::size_t a = 0; a < 4; ++a)
         if (stencil.weight[a] != 0) visit(static_cast<std::size_t>(stencil.node[a]), stencil.weight[a]);
 }
 
-/// True if the contact touches a held node, and motion of its nodes across the held directions changes its gap.
+/// True if motion across the directions along which nodes are held can change the gap of contact `c`. Always true for a
+/// contact without held nodes.
 bool moves_held_nodes(const AxisHoldInputs& inputs, const ContactTable& contacts, std::size_t c,
                       std::span<const HeldRows::Node> node) {
-    // If the held directions leave a smaller share of the mobility along the normal, it counts as zero.
+    // The node mobility along the normal counts as zero if the held directions leave a smaller share of it.
     constexpr Real least_share = 1e-6;
     Real all = 0, left = 0;
     for_each_node(contacts.stencil[c], [&](std::size_t n, Real weight) {
@@ -49,7 +50,8 @@ bool moves_held_nodes(const AxisHoldInputs& inputs, const ContactTable& contacts
     return left > least_share * all;
 }
 
-/// Key of a row: greater than all keys of contacts and ties.
+/// Key of the row for one held direction of an entry. It is greater than all keys of contacts and ties, because
+/// ContactTable is in key order and these rows are its last. The key also contains the axis nearest to the direction.
 ContactKey key_of_held(std::size_t entry, const Vec3& direction) {
     Index longest = 0;
     direction.cwiseAbs().maxCoeff(&longest);
@@ -69,9 +71,10 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
         velocity_next[n] += impulse * inputs.inverse_mass[n] * direction;
         held_impulse[i] += impulse * direction;
         sum.impulse += impulse * direction;
-        // The forces that this impulse balances do their work over the displacement at the end velocity, or with
-        // leapfrog (lag = 0) at the mean velocity. The kinetic energy changes with the mean of the velocities before
-        // and after.
+        // The work is the change of kinetic energy minus the work of the other forces. The energy changes by mass
+        // gained (speed - gained / 2). The other forces have the impulse mass gained - impulse. Their work is counted
+        // at the end velocity, or with leapfrog (lag = 0) at the mean velocity, and for gravity and loads over h
+        // instead of kick (measure_work).
         const Real during = lag == 0 ? speed - gained / 2 : speed;
         sum.work += impulse * during;
         if (lag != 0) sum.work -= inputs.mass[n] * gained * gained / 2;

@@ -54,9 +54,9 @@ struct AxisHoldInputs {
 
 /// Gives nodes that are held along single directions the prescribed velocities along these directions. The prescribed
 /// velocity leads to the position of the attachment at the end of the step, as in drive_nodes. Writes the impulses by
-/// entry of AttachmentTable::node, zero for nodes that are held completely [N s]. Returns their sum and their work,
-/// which is measured as in measure_work with the same `h`, `kick` and `lag`. Nodes of sleeping bodies are left out.
-/// Sequential.
+/// entry of AttachmentTable::node, zero for nodes that are held completely [N s]. Returns the sum and the work of these
+/// impulses, without those on ghosts. The work is measured as in measure_work, which explains `h`, `kick` and `lag`.
+/// Nodes of sleeping bodies are left out. Sequential.
 ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag, std::span<Vec3> velocity_next,
                        Column<Vec3>& held_impulse);
 
@@ -68,13 +68,13 @@ struct HeldRows {
         Vec3 impulse = Vec3::Zero();  // sum of the impulses with which the solver starts at the node [N s]
         bool in_region = false;       // true if a contact, tie or cable can move the node
     };
-    Column<Index> entry;  // by row of the problem: row of AttachmentTable::node
+    Column<Index> entry;  // for each held row, in their order: row of AttachmentTable::node
     Column<Node> node;    // working memory: by row of NodeTable
 };
 
 /// Appends rows to the contacts for the held nodes that contacts, ties or solved cables can move: one row for each held
-/// direction of such a node. The row demands the prescribed velocity along the direction. Contacts that no motion
-/// across the held directions can open request no rows, because no impulses satisfy both the contact and the row.
+/// direction of such a node. The row demands the prescribed velocity along the direction. A contact whose gap only
+/// motion along held directions can change requests no rows, because no impulses satisfy both the contact and the row.
 /// Sequential.
 void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cables, Real h, ContactTable& contacts,
                        HeldRows& rows);

@@ -15,10 +15,10 @@ constexpr std::size_t displaced_bodies_per_job = 16;
 
 // Displacement at which the displacement origins move to the nodes, as a fraction of the mean edge.
 //
-// A list of pairs that was made while the two bodies had the displacements a and b is valid for a travel of skin - 2 (a
-// + b) (contact_reach.h). With this limit, at most 4 x 0.01 = 0.04 mean edges of the skin of 0.3125 mean edges are
-// lost. Candidates are then tested again too early by this travel. A body that vibrates by less than this displacement
-// adds nothing to its travel in the long run.
+// A list of pairs is valid until its two bodies have travelled by skin - 2 (a + b), where `skin` is the margin of the
+// list, and a and b are the displacements of the bodies when the list was made (contact_reach.h). With this limit on a
+// and b, at most 4 x 0.01 = 0.04 mean edges of the skin of 0.3125 mean edges are lost. A greater limit makes lists
+// expire sooner. With a smaller limit more vibrating bodies exceed it; each reset then adds to their travel.
 constexpr Real longest_displacement = 0.01;
 
 void move_on(MovingFrame& frame, Real seconds) {
@@ -72,7 +72,7 @@ void measure_displacement(Executor& executor, const DisplacementInputs& bodies, 
             out.frame[b].offset = Vec3::Zero();
             const Range nodes = bodies.nodes(b);
             out.frame[b].velocity = mean_velocity(bodies.velocity, nodes);
-            // The contact search of the next step uses the frame updated here (step_reach.cpp).
+            // This speed must belong to the new frame: the contact search of the next step uses both (step_reach.cpp).
             out.frame_speed[b] = greatest_speed(bodies.velocity, nodes, out.frame[b].velocity);
             const auto first = static_cast<std::ptrdiff_t>(nodes.begin), last = static_cast<std::ptrdiff_t>(nodes.end);
             std::copy(bodies.position.begin() + first, bodies.position.begin() + last, out.origin.begin() + first);

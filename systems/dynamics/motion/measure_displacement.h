@@ -1,5 +1,5 @@
-// Displacement and travel (distance moved) of each body. These distances limit how long results of the collision stages
-// remain valid.
+// Displacement of each body in its moving frame, and its travel, which is the sum of the changes of displacement. Both
+// limit how long results of the collision stages remain valid.
 #pragma once
 
 #include <cstdint>
@@ -48,7 +48,6 @@ struct DisplacementOutputs {
     std::span<MovingFrame> frame;  // BodyTable
     std::span<Real> frame_speed, displacement, travel;
 
-    /// `rebase`: by body.
     static DisplacementOutputs bind(const Binder& binder, NodeTable& node, Column<std::uint8_t>& rebase,
                                     BodyTable& body) {
         return {.origin = binder.write(node.displacement_origin),

@@ -24,8 +24,8 @@ RigidMotion motion_of_step(const MotionScript& script, std::span<const Keyframe>
                            Real t, Real h);
 
 /// Rotation vector from the rotation of one key to the rotation of another key, about a fixed axis [rad]. If the
-/// rotation vectors of both keys have one axis, the result is their difference and may contain full rotations.
-/// Otherwise the result is the shorter rotation.
+/// rotation vectors of both keys are parallel, the result is their difference and may contain full rotations. Otherwise
+/// the result is the shorter rotation.
 Vec3 turn_between(const Vec3& a, const Vec3& b);
 
 /// Greatest angular speed of a motion script [rad/s].
@@ -50,7 +50,7 @@ struct NodeMotionInputs {
     std::span<const Range> nodes;         // by attachment: range of its entries in `node` and `anchor`
     std::span<const Index> node;          // rows of NodeTable
     std::span<const Vec3> anchor;         // position in the frame of the attachment [m]
-    std::span<const Mat3> held;           // by attachment
+    std::span<const Mat3> held;           // by attachment; columns: held directions
 
     static NodeMotionInputs bind(const Binder& binder, const AttachmentTable& attachment) {
         return {.motion = binder.read(attachment.motion),

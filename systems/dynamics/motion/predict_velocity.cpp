@@ -67,7 +67,7 @@ private:
         for (std::size_t n = begin; n < end; ++n) held |= static_cast<unsigned>(!(inverse_mass[n] > 0));
         return held == 0;
     }
-    /// Updates the velocities of nodes that are neither held nor loaded by a force, several nodes at a time.
+    /// Updates the velocities of nodes that are not held and have no applied force, several nodes at a time.
     void all_free(std::size_t begin, std::size_t end) const {
         std::array<Real, 3 * nodes_per_block + 1> force_on;
         const std::size_t count = end - begin;

@@ -15,7 +15,7 @@ namespace skerry {
 
 struct KickInputs {
     std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
-    // Columns of ElementPatches:
+    // `slots_of_node`, `patch_force`: columns of ElementPatches. `mass`, `inverse_mass`: columns of NodeTable.
     RaggedView<Index> slots_of_node;
     std::span<const PaddedVec3> patch_force;
     std::span<const Real> mass, inverse_mass;
@@ -49,8 +49,8 @@ struct KickInputs {
 ///
 /// Held nodes (inverse mass 0) keep their velocity. F is written to `force` for held nodes only; the holding force is
 /// the opposite of F. To store F of all nodes and to read it again would take as long as the kick itself, so one pass
-/// does everything. In an unstrained body without loads and held nodes, equal velocities stay bitwise equal. Parallel
-/// over node blocks.
+/// does everything. If all nodes of an unstrained body without loads and held nodes have one velocity, their new
+/// velocities are bitwise equal too (find_unstrained.h). Parallel over node blocks.
 void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real kick,
                       std::span<Vec3> force, std::span<Vec3> velocity_next);
 

@@ -14,8 +14,8 @@ namespace {
 namespace limits = own_sleep_limits;
 
 /// Number of measurements of the drift (displacement of the nodes) that are due after the fraction `part` of one half
-/// of the sleep time. The intervals between measurements differ: with equal intervals, an oscillation of the same
-/// period would seem still.
+/// of the sleep time. Measurement i is due at the fraction (i + frac(i golden)) / looks. With equal intervals, an
+/// oscillation whose period is the interval would seem still.
 int looks_due(Real part) {
     constexpr Real golden = 0.6180339887498949;
     const int slot = static_cast<int>(part * limits::looks);
@@ -76,12 +76,14 @@ public:
     }
 
 private:
-    /// True if the mean forces over the last two halves of the sleep time are in balance. Damping forces are not
-    /// counted, since no damping force acts on a body at rest. The mean acceleration of a node, with triangular weights
-    /// over both halves, is the difference of its displacements in the two halves divided by the squared length of a
-    /// half. The sum of the drifts is an upper bound of this difference.
+    /// True if the mean forces without damping, over the last two halves of the sleep time, are in balance. Damping
+    /// must not support a body, because it does not act at rest. The force without damping on a mass m is m (a + c v)
+    /// with the acceleration a, the velocity v and the damping rate c. The mean of a, with triangular weights over both
+    /// halves, is the difference of the displacements in the two halves divided by the squared length of a half. The
+    /// sum of the drifts is an upper bound of this difference.
     bool is_balanced(Real half) const {
-        // A body with held nodes is damped towards zero velocity, and not towards its rigid motion.
+        // With held nodes damping acts on the complete velocity, else only on the velocity relative to the rigid
+        // motion.
         const bool held = bodies_.pinned_count[body_] > 0;
         const Real drift = std::abs(state_.drift[body_]), damped = held ? drift : state_.shape_drift[body_];
         const Real acceleration = (drift + state_.drift_before[body_]) / (half * half);

@@ -12,11 +12,11 @@ namespace skerry {
 
 namespace {
 
-// Number of bodies per job if the bodies move; a still body takes a few microseconds.
+// Number of bodies per job. A moving body takes little time, a still body a few microseconds.
 constexpr std::size_t watched_per_block = 64;
 
-/// Joins touching bodies and bodies connected by joints into groups. Marks bodies that touch a moving collider in
-/// `restless`.
+/// Joins bodies that touch, and bodies that BodyLinks connects (for example by a joint), into sets. Marks bodies that
+/// touch a moving collider in `restless`.
 void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMemory& memory) {
     for (std::size_t c = 0; c < touches.state.size(); ++c) {
         if (touches.state[c] == ContactState::open) continue;
@@ -88,7 +88,7 @@ bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> press
                  std::span<const std::uint8_t> driven, std::span<const Index> attached_body,
                  std::span<const RigidMotion> attached_motion, std::span<std::uint8_t> asleep,
                  std::span<Real> still_time) {
-    // The usual case returns early, because the update of positions waits for this function.
+    // Usually no body sleeps. This case returns early, because the update of positions waits for this function.
     if (std::ranges::all_of(asleep, [](std::uint8_t each) { return each == 0; })) return false;
     bool any = false;
     const auto wake = [&](Index body) {

@@ -32,7 +32,7 @@ struct SleepSettings {
     bool on() const { return speed > 0 || (own_limits && gravity > 0); }
 };
 
-/// Contacts of this step after the solve, and bodies connected by joints.
+/// Contacts of this step after the solve, and bodies that are connected, for example by joints (BodyLinks).
 struct TouchInputs {
     std::span<const Index> first_body, second_body;
     std::span<const ContactState> state;
@@ -71,9 +71,9 @@ struct PressInputs {
 /// impulses are stored, every contact counts.
 void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed);
 
-/// Wakes a body if it is marked in `pressed` or `driven`, if a contact of this step has an impulse or an overlap, if a
-/// joint connects it to an awake body, or if an attachment moves it. Contacts between sleeping bodies are not searched,
-/// so each contact has an awake body or a moving collider. Returns false if no body was woken.
+/// Wakes a body if it is marked in `pressed` or `driven`, if a contact of this step has an impulse or an overlap, if
+/// BodyLinks connects it to an awake body, or if an attachment moves it. Contacts between sleeping bodies are not
+/// searched, so each contact has an awake body or a moving collider. Returns false if no body was woken.
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const std::uint8_t> driven, std::span<const Index> attached_body,
                  std::span<const RigidMotion> attached_motion, std::span<std::uint8_t> asleep,
@@ -102,7 +102,8 @@ struct RestInputs {
     std::span<const Mat3> rigid_rotation = {};
     std::span<const Index> rigid_holder = {};  // empty if no body is held
     std::span<const Index> body_core_nodes = {};
-    // For each body, nonzero if a load or a joining object of the body changes in this step. May be empty.
+    // For each body, nonzero if a value that acts on the body changes in this step: of a load, motor, spring, cable,
+    // cavity or family of fibres. May be empty.
     std::span<const std::uint8_t> driven = {};
     GhostMarks ghosts = {};
 
@@ -139,7 +140,7 @@ struct RestInputs {
     Range telling_nodes(std::size_t b) const {
         return body_core_nodes.empty() ? nodes[b] : step_nodes_of(nodes[b], body_core_nodes[b]);
     }
-    /// Row of RigidBodyTable of a body; no_index for other bodies.
+    /// Row of RigidBodyTable; no_index for a body that is neither rigid nor implicit.
     Index rigid(std::size_t b) const {
         return body_rigid.empty() || body_rigid[b].size() == 0 ? no_index : body_rigid[b].begin;
     }
@@ -176,8 +177,8 @@ struct RestOutputs {
     }
 };
 
-/// Energy and momentum removed from the bodies that fall asleep in this step, without ghosts, and the number of these
-/// bodies.
+/// Energy and momentum removed from the bodies that fall asleep in this step, without ghosts. `bodies`: number of all
+/// bodies that fall asleep, with ghosts.
 struct TakenByRest {
     Real energy = 0;               // kinetic energy [J]
     Vec3 momentum = Vec3::Zero();  // [kg m/s]
@@ -187,18 +188,18 @@ struct TakenByRest {
 struct SleepMemory {
     bool any_ready = false;  // true if a body has been still long enough; otherwise there are no sets
     UnionFind touching;      // sets of bodies that touch each other
-    // for each body: nonzero for the first body of a set if a body of the set must stay awake
+    // For each body: nonzero if the body must stay awake. For the root of a set: nonzero if any body of the set must.
     Column<std::uint8_t> restless;
 };
 
 /// Counts the time for which each body has been still. If a body has been still long enough, finds the sets of bodies
 /// that touch each other, directly or through other bodies, and the sets that must stay awake. A body that has not been
-/// still long enough, touches a moving collider, is held by a moving attachment or has a changing load stays awake.
+/// still long enough, touches a moving collider, is held by a moving attachment or is marked in `driven` stays awake.
 /// Parallel over bodies; sequential over contacts once a body has been still long enough.
 void find_still_sets(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
                      const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);
 
-/// Puts the bodies of all sets to sleep that need not stay awake. The velocities of these bodies become zero.
+/// Stops the bodies of each set and puts them to sleep, unless the set must stay awake.
 TakenByRest rest_bodies(const RestInputs& bodies, SleepMemory& memory, const RestOutputs& state);
 
 }  // namespace skerry

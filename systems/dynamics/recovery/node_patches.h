@@ -56,9 +56,10 @@ private:
     std::vector<std::optional<NodeKind>> kind_;   // by node; empty until first used
 };
 
-/// Elements that cover at least one of the chosen tetrahedra. A place is the index of a lane in the listed blocks.
+/// Blocks with elements that cover at least one of the chosen tetrahedra. A *place* p stands for lane p % element_lanes
+/// of the block `block[p / element_lanes]`.
 struct ElementsNear {
-    std::vector<Index> block;     // counted from the first block of the body, ascending
+    std::vector<Index> block;     // block numbers, counted from the first block of the body, ascending
     Ragged<Index> of_tetrahedra;  // by tetrahedron: places of the elements that cover it
 
     ElementsNear() = default;

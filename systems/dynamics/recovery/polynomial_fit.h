@@ -25,12 +25,13 @@ public:
         normal_.noalias() += weight * row.transpose() * row;
     }
 
-    /// Returns the row with which the fitted polynomial has the value sum of weight * (row . terms at the offset) *
-    /// sample at the origin, summed over the samples. Without samples the row is zero. `rank`: number of terms that
-    /// were kept; a term that nearly depends on earlier ones is dropped.
+    /// Returns the row r for which the fitted polynomial has the value sum_i weight_i (r . row_at(offset_i)) sample_i
+    /// at the origin. It is r = N^-1 (1, 0, 0, ...) with the normal matrix N of the fit. Without samples r is zero.
+    /// `rank`: number of terms that were kept; a term that nearly depends on earlier ones is dropped.
     Eigen::Matrix<Real, 1, terms> row_of_origin(int& rank) const {
-        // Cholesky decomposition, row by row. The diagonal after elimination of the earlier terms, over its first
-        // value, is the squared sine of the angle between a term and the earlier terms, over all samples.
+        // Cholesky decomposition, row by row. Elimination of the earlier terms reduces a diagonal entry by the factor
+        // sin^2, where the angle is that between the term and the span of the earlier terms, over all samples. A term
+        // with a smaller sin^2 than `dependent` is dropped.
         constexpr Real dependent = 1e-3;
         Eigen::Matrix<Real, terms, terms> lower = Eigen::Matrix<Real, terms, terms>::Zero();
         Eigen::Matrix<Real, terms, 1> value = Eigen::Matrix<Real, terms, 1>::Unit(0);

@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Present state of the body of a plan, whose elements are those for which the plan was made.
+/// Present state of the body for which a plan was made. The elements must be those of that time.
 struct RecoveryState {
     ElementInputs elements;
     Range blocks;                    // element blocks of the body
@@ -28,7 +28,8 @@ struct NodeFields {
 /// values do not depend on the choice of nodes. `of_blocks`: the kernel element_fields.
 ///
 /// - Inner node: least-squares fit of the stresses of the elements around the node, quadratic for smoothed elements and
-///   linear for others. Elements with only the volumetric part of the stress have a linear fit of their own.
+///   linear for others. Elements with only the volumetric part of the stress have a linear fit of their own, which is
+///   added.
 /// - Node of a smooth surface: stress that balances the traction, and agrees with the stretch of the surface.
 /// - Node at an edge, a corner or an interface of materials: linear fit of the values at the nodes within two rings of
 ///   tetrahedra, for each material. The results of the materials are averaged by volume.

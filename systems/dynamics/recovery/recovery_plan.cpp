@@ -43,10 +43,10 @@ public:
     RecoveryPlan take() { return std::move(plan_); }
 
 private:
-    /// Rotates the rest positions into the frame of the gradients, which were rotated with the body when it was added.
-    /// The elements have the inverse of this rotation as deformation gradient in the rest shape of the mesh. Elements
-    /// that yield are skipped, because plastic flow has changed their gradients. A body of such elements alone needs no
-    /// rotation, because fits do not depend on the frame.
+    /// Rotates the rest positions X into the frame of the gradients g. The gradients were rotated by R with the body
+    /// when it was added, so every element has F = sum_k X_k g_k^T = R^T in the rest shape of the mesh. One element
+    /// thus gives R. Elements that yield are skipped, because plastic flow has changed their gradients. If all elements
+    /// yield, no rotation is needed, because fits do not depend on the frame.
     void turn_rest() {
         for (Index b = body_.blocks.begin; b < body_.blocks.end; ++b) {
             const auto block = static_cast<std::size_t>(b);
@@ -106,7 +106,7 @@ private:
     }
 
     /// Numbers the nodes at which the force of the elements is needed, and lists the element corners at these nodes.
-    /// All tetrahedra around these nodes are near, so the lists are complete.
+    /// All tetrahedra around these nodes are marked in near_, so no corner is missing.
     void list_corners() {
         force_row_.assign(rest_.size(), no_index);
         Index count = 0;
@@ -143,7 +143,8 @@ private:
             smoothed = smoothed || (has_strain(place) &&
                                     near_elements_.covered(body_.cover, static_cast<std::size_t>(place)).size() > 1);
         }
-        // The traction gives no elastic deformation gradient at the surface of a material that yields.
+        // The traction does not determine F where the material yields, because the stress also depends on the plastic
+        // strain.
         const bool is_face = patches_.kind(n) == NodeKind::face &&
                              !body_.elements.material_of(block_of(static_cast<std::size_t>(places.front()))).yields();
         plan_.smooth.push_back(is_face ? static_cast<Index>(plan_.faces.size()) : no_index);
@@ -257,7 +258,7 @@ private:
     const RecoveryMesh& body_;
     std::vector<Vec3> rest_;  // m
     NodePatches patches_;
-    std::vector<Index> smooth_;       // by node: row of RecoveryPlan::smooth; no_index if the node is not needed
+    std::vector<Index> smooth_;       // by node: row of RecoveryPlan::smooth, 0 before add_smooth; no_index: not needed
     std::vector<std::uint8_t> near_;  // by tetrahedron: 1 if the elements that cover it are needed
     ElementsNear near_elements_;
     std::vector<Index> force_row_;  // by node: its row among the nodes whose force is needed, or no_index

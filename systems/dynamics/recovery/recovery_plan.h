@@ -26,49 +26,51 @@ struct RecoveryMesh {
 };
 
 /// Plan of recover_nodes for some nodes of a body. Blocks are counted from the first block of the body, so that a plan
-/// stays valid when the rows of the body move in the tables. A place is the index of a lane in the listed blocks.
-/// Lengths are measured in the frame of the element gradients.
+/// stays valid when the rows of the body move in the tables. A *place* p stands for lane p % element_lanes of the block
+/// `block[p / element_lanes]`. Vectors are in the frame of the element gradients.
 struct RecoveryPlan {
     std::vector<Index> nodes;  // nodes to recover, in the order of the results
     std::vector<Index> block;  // blocks whose elements are needed, ascending
     std::vector<Vec3> center;  // by place: centroid of the tetrahedra that the element covers [m]
 
-    /// Factor of one value in a weighted sum.
+    /// Term of a weighted sum: `factor` times the value with the index `from`.
     struct Share {
         Index from;
         Real factor;
     };
-    // Inner nodes, and nodes of a smooth part of the surface. For each one its row of `faces`, or no_index if it is an
-    // inner node. The value of an inner node is a sum of values of the elements around it.
+    // Inner nodes, and nodes of a smooth part of the surface. For each one its row of `faces`; or no_index for inner
+    // nodes and for materials that yield. The value is then a sum of values of the elements around the node.
     std::vector<Index> smooth;
-    // For each row of `smooth`: factors of the elements around its node, by place, ascending. They are those of the fit
-    // of an inner node, and of the mean at a face. `strained`: elements with strain. `volumetric`: elements that have
-    // only the volumetric part of the stress.
+    // For each row of `smooth`: factors of the elements around its node, by place, ascending. For a node without a row
+    // of `faces` they are the factors of a fit, else those of the mean, which starts Newton's method and replaces its
+    // result if it fails. `strained`: elements with strain. `volumetric`: elements that have only the volumetric part
+    // of the stress.
     Ragged<Share> strained, volumetric;
 
     struct Face {
         SurfaceAround around;
-        Index place;  // place of any element around the node
-        // Volume of the node divided by the volume of the inner nodes of the tetrahedra around it; 0 if there are none.
+        Index place;  // place of one element around the node; gives the material
+        // Volume of the node (NodePatches::node_volume) divided by the sum of the volumes of the inner nodes in the
+        // tetrahedra around it; 0 if there are no inner nodes.
         Real inner_share;
     };
     std::vector<Face> faces;
     Ragged<SurfaceTriangle> triangles;  // by face
-    // Rows of nodes whose force is needed, for each face: first the row of the face's own node, then the rows of the
-    // inner nodes of the tetrahedra around this node.
+    // For each face: numbers (Corner::row) of the nodes whose force is needed; first that of the face's own node, then
+    // those of the inner nodes in the tetrahedra around this node.
     Ragged<Index> force;
     /// Corner of an element at a node whose force is needed.
     struct Corner {
         Index place, corner;
-        Index row;  // row of the node
+        Index row;  // number of the node among those whose force is needed
     };
     std::vector<Corner> corners;  // ascending by place
     std::size_t force_count = 0;  // number of nodes whose force is needed
 
     // For each of `nodes`: its row of `smooth`, or no_index for a node at an edge, corner or interface of materials.
     std::vector<Index> smooth_of;
-    // The values of these latter nodes are sums over `donors`, which are rows of `smooth`, and over places. There are
-    // places only for materials with too few donors for a fit.
+    // Terms of the values of nodes with no_index in `smooth_of`. `donors`: from rows of `smooth`. `strained_around`,
+    // `volumetric_around`: from places, only for materials with too few donors for a fit.
     Ragged<Share> donors, strained_around, volumetric_around;
 };
 

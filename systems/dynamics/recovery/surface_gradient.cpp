@@ -15,7 +15,8 @@ namespace skerry {
 
 namespace {
 
-/// Change of the first Piola-Kirchhoff stress by a change of F [Pa].
+/// Change of the first Piola-Kirchhoff stress if F changes by `of_F`, computed in principal axes as Tangent explains
+/// [Pa].
 Mat3 change_of_stress(const Tangent& tangent, const Mat3& of_F) {
     const Mat3 x = tangent.left.transpose() * of_F * tangent.right;
     Mat3 change = Mat3::Zero();
@@ -52,7 +53,7 @@ Real modulus_of(const MaterialConstants& material) {
     return 2 * material.shear_modulus + std::abs(material.lame_lambda);
 }
 
-/// Slope d(P N)/db for F = base + b across^T, as the sum of the terms of add_stiffness of a law.
+/// Slope d(P N)/db for F = base + b across^T. The function add_stiffness of a material law adds its terms.
 struct SlopeTerms {
     LaneVec3<Real8> across, normal;
     LaneMat3<Real8> sum{};

@@ -28,8 +28,9 @@ struct SurfaceAround {
     Vec3 normal = Vec3::Zero();  // unit vector along `area`
     bool smooth = false;         // false if the surface has an edge or corner at the node
     // Terms of a least-squares fit for a smooth surface: `inverse` and `across`. Among all F with a given product b = F
-    // N, F = stretch inverse + b across^T differs least from the deformation gradients within the triangles.
-    Mat3 inverse = Mat3::Zero();  // inverse of the summed projectors onto the planes of the triangles [1/m^2]
+    // N, F = stretch inverse + b across^T differs least from the deformation gradients within the triangles. Here
+    // `stretch` is the result of surface_stretch.
+    Mat3 inverse = Mat3::Zero();  // inverse of the sum of area times projector, in the tangent plane [1/m^2]
     Vec3 across = Vec3::Zero();
 };
 

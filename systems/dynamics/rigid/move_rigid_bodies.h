@@ -78,7 +78,7 @@ struct ElasticMotion {
     // Columns of RigidBodyTable, used only for implicit bodies:
     std::span<const std::uint8_t> large;
     std::span<const Vec3> moments;
-    std::span<const Mat3> axes, rotation;  // value of `rotation` before the rotation of this step
+    std::span<const Mat3> axes, rotation;  // `rotation`: of the new principal axes, before the turn of this step
 
     static ElasticMotion bind(const Binder& binder, const ImplicitNodeTable& implicit, const RigidBodyTable& rigid) {
         return {.displacement = binder.read(implicit.displacement_next),

@@ -18,7 +18,7 @@ Mat3 turn_of_step(const Mat3& rotation, const Vec3& moments, const Vec3& angular
 }
 
 Mat3 without_strain(const Mat3& rotation) {
-    // One Newton step, which squares the deviation of the matrix from a rotation.
+    // One Newton step to the nearest rotation. It squares the deviation of the matrix from a rotation.
     return 0.5 * rotation * (3 * Mat3::Identity() - rotation.transpose() * rotation);
 }
 

@@ -26,8 +26,9 @@ struct PrincipalInertia {
     explicit PrincipalInertia(const Mat3& inertia);
 };
 
-/// Rotation from the principal frame to the world at the end of a step of length `h`. The body rotates freely, and in
-/// addition at the angular velocity `push_spin` by which contacts push bodies out of overlaps [rad/s].
+/// Rotation from the principal frame to the world at the end of a step of length `h` [s]. `rotation` is its value at
+/// the start. The body rotates freely, and in addition at the angular velocity `push_spin` by which contacts push
+/// bodies out of overlaps [rad/s].
 Mat3 turn_of_step(const Mat3& rotation, const Vec3& moments, const Vec3& angular_momentum, const Vec3& push_spin,
                   Real h);
 

@@ -1,9 +1,9 @@
 // Bounds the largest eigenvalue of M^-1/2 K M^-1/2 for an element with mass matrix M and stiffness K.
 //
-// The nonzero eigenvalues are those of the 9x9 matrix A(Y) = V H(Y L^T) L. Y is a 3x3 matrix, V the volume, H = dP/dF,
-// and L L^T = Q the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms, each of which gives
-// a closed-form term of A. The bound is lambda_max(A) <= (tr A^16)^(1/16). A cheaper test shows that lambda_max(A) < c
-// for a given c: c I - A is positive definite.
+// The nonzero eigenvalues are those of V A, with the volume V and the 9x9 matrix A(Y) = H(Y L^T) L. Y is a 3x3 matrix,
+// H = dP/dF, and L L^T = Q the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms, each of
+// which gives a closed-form term of A. The bound is lambda_max(A) <= (tr A^16)^(1/16). A cheaper test shows that V
+// lambda_max(A) < c for a given c: c I - V A is positive definite.
 #include "systems/dynamics/stability/element_stiffness.h"
 
 #include <array>
@@ -21,8 +21,8 @@ struct Matrix9 {
     T a[9][9];
 };
 
-/// Selects the part number `part` of the lanes, as many lanes as a register contains. 9x9 matrices of more lanes would
-/// go through memory twice.
+/// Selects the part number `part` of the eight lanes, as many lanes as a register contains. Each entry of a 9x9 matrix
+/// is then one register.
 [[gnu::always_inline]] inline KernelReal lanes_in(const Real8& x, std::size_t part) {
     Lanes<Real, element_lanes> all;
     store(x, all);
@@ -40,7 +40,7 @@ LaneSymmetric<KernelReal> lanes_in(const LaneSymmetric<Real8>& s, std::size_t pa
 }
 
 /// Cholesky factor of Q: lower triangular L with L L^T = Q. A pivot lost to rounding is raised to a small positive
-/// number, which only enlarges Q.
+/// number. This only enlarges Q, so the result stays an upper bound.
 template <class T>
 LaneMat3<T> cholesky(const LaneMat3<T>& Q) {
     const T least = 1e-14 * (Q.c0.x + Q.c1.y + Q.c2.z) + 1e-300;
@@ -139,8 +139,8 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
-/// Adds the mass b (R:X)^2 of an element, where R is a rotation and X = Y L^T the displacement gradient. The mass of Y
-/// was |Y|^2 before. With s = R L as a vector of nine entries, R:X = s.Y. So A becomes D A D, where
+/// Adds the mass b (R:X)^2 of an element, where R is a rotation and X = Y L^T the displacement gradient. Without it the
+/// mass of Y is |Y|^2. With s = R L as a vector of nine entries, R:X = s.Y. So A becomes D A D, where
 ///     D = (1 + b s s^T)^-1/2 = 1 - c s s^T     with a scalar c.
 template <class T>
 void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
@@ -228,9 +228,9 @@ LaneMat3<KernelReal> everywhere(const Mat3& m) {
 using BlockMatrices = std::array<Matrix9<KernelReal>, kernel_parts>;
 using BlockReals = std::array<KernelReal, kernel_parts>;
 
-/// Upper bounds on the largest eigenvalue of volume * A in each lane, by bisection between `low` and `high`. For an
-/// eigenvalue below `low` the bound is close to `low`. Every lane is bisected by itself, so that the register width
-/// changes no bit.
+/// Upper bounds on the largest eigenvalue of volume * A in each lane, by bisection between `low` and `high` with
+/// geometric means. `high` must be an upper bound. For an eigenvalue below `low` the bound is close to `low`. Every
+/// lane is bisected by itself, so that the register width changes no bit.
 BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals low, BlockReals high, int halvings) {
     for (std::size_t part = 0; part < kernel_parts; ++part)
         for (int i = 0; i < halvings; ++i) {
@@ -262,7 +262,7 @@ BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real
     for (std::size_t part = 0; part < kernel_parts; ++part) {
         Matrix9<KernelReal> powers = A[part];
         most[part] = volume[part] * largest_eigenvalue_bound(powers);
-        least[part] = most[part] / 1.1472026904398771;  // 9^(1/16)
+        least[part] = most[part] / 1.1472026904398771;  // 9^(1/16), since tr A^16 <= 9 lambda_max^16
     }
     return bisected(A, volume, least, most, 6);
 }

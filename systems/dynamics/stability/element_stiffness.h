@@ -29,7 +29,7 @@ struct FramePart {
 /// Accuracy of frequency_squared_bound().
 enum class Sharpness {
     trace,     // the bound is at most 15 % too large
-    bisected,  // the bound is at most 0.3 % too large, but takes twice the time
+    bisected,  // the bound is at most 0.3 % too large, but takes twice the time of `trace`
     compared,  // the bound is infinite unless the eigenvalues of all eight lanes are below `enough`
     // The bound is one of `enough`, 1.1 `enough`, 1.21 `enough` ... and at most 10 % too large. It is infinite beyond
     // ten times `enough`.
@@ -39,8 +39,8 @@ enum class Sharpness {
 /// volume.
 ///
 /// The stiffness is K = V G^T H G with the volume V, the gradients G at rest and H = dP/dF. M is the diagonal matrix of
-/// the mass shares m_a of the corners a, and `Q` is the sum of g_a g_a^T / m_a over the corners. With `frame` the
-/// elements have that additional mass.
+/// the mass shares m_a of the corners a, and `Q` is the sum of g_a g_a^T / m_a over the corners; or M is the mass form
+/// of `Q` (mass_forms.h). With `frame` the elements have that additional mass.
 ///
 /// If the material law has a corotational frame, `q` is the initial guess of the frame and receives the frame found. If
 /// all eight lanes are below `enough` [1/s^2], all lanes get `enough` instead, in a tenth of the time.

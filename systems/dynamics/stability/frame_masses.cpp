@@ -1,9 +1,10 @@
 // Divides the masses of nodes among elements in proportion to a stiffness at rest (docs/methods/stable_step.md 2.4).
 //
-// The stiffness K_e of an element is computed with H = 2 mu 1 + lambda 1 1^T, an upper bound on dP/dF of the material
-// law at rest. Unlike the law, this H resists rotations. The highest modes of a mesh rotate little, so the highest
-// frequency with H is within a few per cent of the true one. Each element gets the mass K_e / c. If c is above the
-// highest eigenvalue of the complete body, these masses add up to no more than the masses of the nodes.
+// The stiffness K_e of an element is computed with H X = 2 mu X + lambda tr(X) I, an upper bound on dP/dF of the
+// material law at rest, with the unit matrix I. Unlike the law, this H resists rotations. The highest modes of a mesh
+// rotate little, so the highest frequency with H is within a few per cent of the true one. Each element gets the mass
+// K_e / c. These masses add up to no more than the masses of the nodes if c is above the highest eigenvalue of the
+// complete body.
 #include "systems/dynamics/stability/frame_masses.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ namespace skerry {
 namespace {
 
 // Estimated ratio of the step with frame masses to the step that the bounds of single elements allow. It decides how
-// much springs relax in a step (RestModuli).
+// much the springs of Maxwell elements relax in a step (RestModuli).
 constexpr Real longer_in_frame = 2;
 
 // The sum is written out term by term, so that the bits do not depend on how a library vectorises it.
@@ -32,8 +33,8 @@ Real product_of(const auto& a, const auto& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Matrix M^-1/2 K M^-1/2 of a body at rest, with the mass M and the stiffness K for H = 2 mu 1 + lambda 1 1^T. Row 3 n
-/// + i belongs to component i of node n, where nodes are numbered by position along the longest side of the body.
+/// Matrix M^-1/2 K M^-1/2 of a body at rest, with the mass M and the stiffness K for H X = 2 mu X + lambda tr(X) I. Row
+/// 3 n + i belongs to component i of node n, where nodes are numbered by position along the longest side of the body.
 class RestStiffness {
 public:
     RestStiffness(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
@@ -102,7 +103,8 @@ public:
         return decomposition.is_below({3 * nodes_, 3 * width_, 3, add_rows}, limit);
     }
 
-    /// Computes the masses q and b of all elements from an upper bound on the eigenvalues [1/s^2].
+    /// Computes the entries q and b of all frame masses (frame_masses.h) from an upper bound on the eigenvalues
+    /// [1/s^2].
     void share(Real bound, std::span<FrameMass> mass) const {
         for (std::size_t i = 0; i < mass.size(); ++i) {
             const std::size_t block = static_cast<std::size_t>(blocks_.begin) + i;
@@ -133,8 +135,8 @@ private:
         }
     };
 
-    /// Adds the entries of one node to three rows that are zero so far. `place`: number of the node along the body.
-    /// Each row begins at its diagonal.
+    /// Adds the matrix entries of one node to its three rows, which are zero so far. `place`: number of the node along
+    /// the body. Each row begins at its diagonal.
     void add(std::size_t place, Real* rows, std::size_t stride) const {
         for (const ElementCorner& corner : corners_[place]) {
             const BlockNodes nodes = elements_.nodes_of(corner.block);
@@ -224,7 +226,7 @@ private:
             std::size_t end;  // end of the range of the element's corners in `corner`
         };
         struct Corner {
-            Real4 gradient;  // gradient over the square root of the node's mass; a zero pads the register
+            Real4 gradient;  // gradient divided by the square root of the node's mass; a zero pads the register
             std::size_t node;
         };
         std::vector<Element> element;

@@ -1,13 +1,13 @@
 // Chooses the matrix Q of the mass form G Q^-1 G^T of each element (docs/methods/stable_step.md 2.3). G contains the
 // gradients of the element at rest, V is its volume.
 //
-// With the bound w on omega^2 and W = w Q^-1 / V, the stiffness of the element is at most G V W G^T. This stiffness is
-// the same for x, y and z, so the matrix of all elements is a third as wide as the true stiffness matrix. Its
-// eigenvalues are sharper bounds than the worst single element.
+// With the bound w on omega^2 and W = w Q^-1 / V, the stiffness of the element is at most w G Q^-1 G^T = G V W G^T.
+// This bound is the same for x, y and z, so the matrix of all elements is a third as wide as the true stiffness matrix.
+// Its eigenvalues are sharper bounds than the worst single element.
 //
-// For every positive definite Z, W = 2 mu 1 + lambda tr(Z) Z^-1 is an upper bound on dP/dF at rest, with Lame's mu and
-// lambda. A good Z is the square root of the mean of grad u grad u^T over the highest modes u. Rounds of iteration find
-// Z and these modes together.
+// For every positive definite Z, W = 2 mu I + lambda tr(Z) Z^-1 bounds H = dP/dF at rest: X:H X <= X:X W for every X,
+// with Lame's mu and lambda. A good Z is the square root of the mean of grad u grad u^T over the highest modes u.
+// Rounds of iteration find Z and these modes together.
 #include "systems/dynamics/stability/mass_forms.h"
 
 #include <algorithm>
@@ -60,12 +60,12 @@ Real sum_of(const Real4& x) {
 }
 
 // Estimated ratio of the step with mass forms to the step that the bounds of single elements allow. It decides how much
-// springs relax in a step (RestModuli).
+// the springs of Maxwell elements relax in a step (RestModuli).
 constexpr Real longer_by_forms = 1.5;
 
 // Number of blocks of elements above which a body counts as large. Such a body is cut into so many groups that the
-// modes between the groups determine the step. More rounds of iteration then gain little: with 16 rounds, the steps of
-// three meshes of 280,000 to 310,000 tetrahedra were as long, 4 % longer and 2 % shorter.
+// modes between the groups determine the step. More than one round of iteration then gains little: with 16 rounds, the
+// steps of three meshes of 280,000 to 310,000 tetrahedra were as long, 4 % longer and 2 % shorter than with one.
 constexpr std::size_t blocks_of_large = 30'000;
 
 /// Group of elements. The group's share of the mass of its nodes is divided among the elements of this group alone.
@@ -76,7 +76,7 @@ struct ElementGroup {
     std::size_t width = 0;         // bandwidth: greatest difference of the numbers of two nodes of an element, plus 1
     std::vector<Real> mass{};      // share of the group in the mass of each of its nodes [kg]
     std::vector<Real> diagonal{};  // diagonal of sum_e G V W G^T
-    std::vector<Real4> vector{};   // approximate highest modes
+    std::vector<Real4> vector{};   // by node: values of four approximate highest modes
     Real highest = 0;              // lower bound on the highest eigenvalue of the group [1/s^2]
 };
 
@@ -254,8 +254,8 @@ private:
         }
     }
 
-    /// Splits the elements into compact groups. A group is as large as the allowed cost of decomposing its matrix
-    /// permits.
+    /// Splits the elements into groups. Halves ranges of blocks until the matrix of each group can be decomposed at the
+    /// allowed cost.
     void cut(Range blocks, std::vector<ElementGroup>& groups) {
         ElementGroup group{.blocks = blocks};
         for_each_node(blocks, [&](Index node) {
@@ -292,8 +292,8 @@ private:
         for (const Index n : group.node) place_[static_cast<std::size_t>(n)] = no_index;
     }
 
-    /// Divides the masses of nodes that several groups share. The parts are balanced like the mass shares of elements
-    /// (stable_step.h).
+    /// Divides the mass of each node among the groups that contain the node. The shares are balanced like the mass
+    /// shares of elements (find_mass_shares in stable_step.h).
     void share(std::vector<ElementGroup>& groups) {
         constexpr int rounds = 4, products = 8;
         std::vector<Real> of_nodes(vector_.size()), share(groups.size(), 1);

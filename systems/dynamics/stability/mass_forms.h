@@ -1,5 +1,5 @@
-// Finds mass forms, which are matrices of the mass shares of elements, for the bound on the step. A mass form couples
-// the nodes of an element (docs/methods/stable_step.md 2.3).
+// Finds mass forms for the bound on the step. The mass form of an element is its share in the masses of the nodes, as a
+// matrix that couples the nodes of the element (docs/methods/stable_step.md 2.3).
 #pragma once
 
 #include <span>
@@ -12,8 +12,9 @@ namespace skerry {
 /// about 0.1 s, enough for some 15,000 tetrahedra of a block-shaped body.
 inline constexpr Real products_of_group = 4e8;
 
-/// Diagonal entries of Q for an implicit element, which belongs to a cluster. This element gets no mass and bounds no
-/// step. The entries are not 0, because 0 means that a block has no mass forms [1/(kg m^2)].
+/// Diagonal entries of Q for an implicit element, which belongs to a cluster. With so small a Q the bound of the
+/// element limits no step. The element takes no part in the division of the masses. The entries are not 0, because 0
+/// means that a block has no mass forms [1/(kg m^2)].
 inline constexpr Real form_of_implicit = 1e-100;
 
 /// Finds the matrices Q of the explicit elements of a body (docs/methods/stable_step.md 2.3). Sequential, about 10 us
@@ -23,9 +24,9 @@ inline constexpr Real form_of_implicit = 1e-100;
 /// these forms is at most the matrix of the nodal masses, diag(mass). A Cholesky decomposition verifies this for the
 /// complete body, or for groups of elements if it would cost more than `most_products` multiplications.
 ///
-/// The stiffness K and the mass M of the body then satisfy K <= max_e lambda_max(A) M with A = V H (Q x 1), the volume
-/// V and H = dP/dF. The matrices do not depend on the shape, and the bound is valid for every shape. It is sharp for
-/// the rest shape.
+/// The stiffness K and the mass M of the body then satisfy K <= max_e lambda_max(A) M with the Kronecker product in A =
+/// V H (Q x I), the volume V and H = dP/dF. Q does not depend on the shape, and the bound is valid for every shape. It
+/// is sharp for the rest shape.
 ///
 /// `position`: any shape that is not degenerate, for sorting the nodes [m]. `form`: Q by block; 0 if nothing was found
 /// [1/(kg m^2)].

@@ -27,7 +27,8 @@ Real8 RestModuli::of_explicit(std::size_t block) const {
 }
 
 RestModuli::Moduli RestModuli::of(std::size_t block) const {
-    // Least shear modulus over the greatest modulus; even elements without stiffness get some mass.
+    // Least shear modulus, as a fraction of the greatest modulus. With it even elements without stiffness get some
+    // mass.
     constexpr Real least = 1e-9;
     const MaterialConstants material = elements_.material_of(block);
     Moduli moduli{Real8{} + std::max(2 * material.shear_modulus, least * stiffest_),

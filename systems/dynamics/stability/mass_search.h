@@ -89,7 +89,7 @@ public:
     bool is_below(const BandMatrix& matrix, Real limit);
 
 private:
-    // number of pivot rows used at once; every other row is loaded and stored once for all of them
+    // number of pivot rows used at once; each later row is loaded and stored once for all four of them
     static constexpr std::size_t pivots = 4;
     static constexpr std::size_t row_step = 8;  // number of entries in the widest register
 

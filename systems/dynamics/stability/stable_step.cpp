@@ -32,8 +32,8 @@ Index sums_of(Range blocks) {
 enum class PieceWork : std::uint8_t { sum, bound_in_frame, bound };
 
 /// Consecutive pieces of a stable-step check that do not wait for each other: sums, or bounds for one *wave* of blocks.
-/// Waves contain 1, 1, 2, 4, 8... blocks. A block in a wave rarely exceeds the greatest bound of the waves before, and
-/// can then be tested faster.
+/// Waves contain 1, 1, 2, 4, 8... blocks. Most blocks stay below the greatest bound of the waves before, which a fast
+/// test shows.
 struct PieceRun {
     PieceWork work;
     bool opens_wave;
@@ -41,7 +41,8 @@ struct PieceRun {
     std::uint64_t end;  // number of the piece after the last one
 };
 
-/// Run of consecutive pieces of the same work, from piece `from` up to `until` or before.
+/// Run of pieces of the same work, from piece `from` on. It ends before piece `until`, or earlier where the work or the
+/// wave changes.
 PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t until) {
     const Index sums = sums_of(blocks);
     const auto place = static_cast<Index>(from);

@@ -14,7 +14,7 @@ namespace skerry {
 
 /// Stable step of a body, and the element that limits the step.
 struct StableStep {
-    Real step = 0;             // 0.9 * 2 / omega_max; infinite for a body without elements [s]
+    Real step = 0;             // 0.9 * 2 / omega_max; infinite without elements; 0 if the shape is not finite [s]
     Index element = no_index;  // element that limits the step: lane e % 8 of block e / 8 of ElementBlockTable
 };
 
@@ -39,9 +39,9 @@ void continue_check(Executor& executor, const ElementInputs& elements, Range blo
 /// Result of a stable-step check, available when all of its pieces are done.
 StableStep result_of(const StepEvaluation& check);
 
-/// Step that each element of these blocks would allow alone, with its mass shares [s]. It is infinite for elements that
-/// limit no step and in unused lanes. If the body has neither mass forms nor frame masses, the shortest of these steps
-/// equals the result of stable_step().
+/// Step that each element of these blocks would allow alone, with its mass shares [s]. It is infinite for inversion
+/// barriers (guards), elements without stiffness and unused lanes. If the body has neither mass forms nor frame masses,
+/// the shortest of these steps equals the result of stable_step().
 void element_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> step);
 
@@ -64,9 +64,9 @@ struct ElementBounds {
 
 /// Sharpens the bound of stable_step() by shifting mass from elements of low frequency to elements of high frequency
 /// (docs/methods/stable_step.md 2.1). In each of four rounds the share s of an element becomes s omega / omega_max,
-/// where omega is the frequency of the element alone, and omega_max the highest of these frequencies. The bound is
-/// rigorous with any positive shares, so the shares found for the rest shape serve for every shape. `mass_share`:
-/// shares of the blocks, set by start_mass_shares() before. Sequential, for new bodies.
+/// where omega is the frequency of the element with its present mass, and omega_max the highest omega of all elements.
+/// The bound is rigorous with any positive shares, so the shares found for the rest shape serve for every shape.
+/// `mass_share`: shares of the blocks, set by start_mass_shares() before. Sequential, for new bodies.
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share);
 

@@ -24,7 +24,7 @@ LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t b
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const std::size_t n = static_cast<std::size_t>(nodes.node[k][l]);
             // A node without mass never moves. A node without stiffness is padding, or the element exerts no force on
-            // it.
+            // it. A stiffness that is NaN is kept: the bound of the element must become NaN.
             if (!(mass[n] > 0 && elements.volume[block][l] > 0)) continue;
             if (stiffness_sum.empty())
                 inverse[l] = 1 / mass[n];
@@ -42,8 +42,8 @@ ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const
             springs_in(twice_green_strain(F), elements.spring_strain[block]).sum()};
 }
 
-/// Sets the parts of their stiffness with which the springs of Maxwell elements count in steps of length `step` [s]. In
-/// longer steps a spring counts less, because it relaxes more.
+/// Sets the fractions of the spring stiffnesses of Maxwell elements that count in steps of length `step` [s]. In longer
+/// steps a spring counts less, because it relaxes more.
 void count_springs(const ElementInputs& elements, std::size_t block, const Real8& step, ViscousPart& viscous) {
     viscous.strain_share = springs_that_count(elements.relaxation_rate[block], step);
     viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
@@ -60,9 +60,9 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
         return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness, frame) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
     const auto count_in = [&](const Real8& step) { count_springs(elements, block, step, viscous); };
-    // Most elements are stable at the step that other elements allow, so their exact bounds are not needed. This quick
-    // test would fail for nearly all elements with unrelaxed springs, since all elements at rest allow about the same
-    // step.
+    // Most elements are stable at the step to which `enough` belongs, so their exact bounds are not needed. This quick
+    // test lets the springs relax for that step. With unrelaxed springs it would fail for nearly all elements, since
+    // all elements at rest allow about the same step.
     if (enough > 0) {
         count_in(Real8{} + step_times_frequency / std::sqrt(enough));
         const Real8 compared =

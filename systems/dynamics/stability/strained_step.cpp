@@ -40,7 +40,8 @@ struct Memory {
     }
 };
 
-/// Finds the excess of omega^2 of each element over the base [1/s^2]. Returns true if any element has an excess.
+/// Finds the excess of omega^2 of each element over the base [1/s^2]. `stands`: step during which springs relax [s].
+/// Returns true if any element has an excess.
 bool find_excess(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Real base, Real stands,
                  std::span<Real> excess) {
     LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
@@ -129,8 +130,9 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         }
         least = std::min(least, bound);
         if (!(bound > 0) || !std::isfinite(bound)) break;
-        // Each node weight d is multiplied by the square root of r / r_max, where r is the row sum over mass times d,
-        // and r_max the greatest r. Nodes at which the entries of E are small need only a small weight.
+        // Each node weight d is multiplied by sqrt(r / r_max), or at least by 1e-3 so that it stays positive. r is the
+        // row sum divided by (mass times d), and r_max the greatest r. Nodes at which the entries of E are small need
+        // only a small weight.
         for (std::size_t n = 0; n < of_nodes.size(); ++n)
             of.weight[n] *= std::sqrt(std::max(of.row[n] / bound, Real(1e-6)));
     }

@@ -1,5 +1,5 @@
-// Stable step of a strained body with mass forms. It is sharper than stable_step() if few elements have stiffened, or
-// only some regions (docs/methods/stable_step.md 2.5).
+// Stable step of a strained body with mass forms. It is sharper than stable_step() if only few elements, or only the
+// elements of some regions, have stiffened (docs/methods/stable_step.md 2.5).
 #pragma once
 
 #include <span>
@@ -17,7 +17,8 @@ struct StableStepGoal {
 std::size_t strained_step_memory(Range nodes, Range blocks);
 
 /// Stable step of the explicit elements of a body with mass forms, in the present shape [s]. The result is valid if it
-/// is longer than `goal.stable`. `nodes`: range of all nodes of the elements. Sequential.
+/// is longer than `goal.stable`, because springs are assumed to relax for that time. `nodes`: range of all nodes of the
+/// elements. Sequential.
 ///
 /// One bound, the base, holds for all elements whose mass forms suffice for steps near `goal.longest`. For all other
 /// elements, the excess of omega^2 over the base forms a matrix, which is bounded by its row sums.

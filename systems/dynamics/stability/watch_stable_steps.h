@@ -25,7 +25,7 @@ struct WatchInputs {
     }
 };
 
-/// Body whose stable step is being computed in a step, and the progress of this computation.
+/// Stable-step check of one body, which this time step continues, and the progress of the check.
 struct WatchPart {
     Index body = no_index;
     std::uint64_t until = 0;  // number of pieces done by the end of the step

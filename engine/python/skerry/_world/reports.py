@@ -106,7 +106,7 @@ class Energy:
     kinetic: kinetic energy [J].
     elastic: elastic energy [J].
     potential: energy of the weight, relative to the origin [J].
-    dissipated: energy dissipated by contacts, damping, material losses and plastic flow since the start [J].
+    dissipated: energy lost since the start; see WorldReport.dissipated [J].
     """
 
     kinetic: float
@@ -293,8 +293,9 @@ class WorldReport:
     largest_region: largest number of contacts of a region.
     worst_error: largest relative solver error of a region in any step.
     worst_region: number of contacts of the region with `worst_error`.
-    dissipated: energy dissipated by contacts, damping, material losses and plastic flow [J].
-    plastic_work: part of dissipated: plastic flow of elements in steps, not when positions are set [J].
+    dissipated: energy dissipated by contacts, dampers of springs, friction of cables, damping, material losses and
+        plastic flow, and lost when bodies fall asleep [J]. Losses in joints are not included.
+    plastic_work: part of `dissipated`: by plastic flow of elements in steps [J].
     max_penetration: largest overlap of surfaces in any step [m].
     max_gap_violation: largest penetration into the contact distance in any step [m].
     start_penetration: value of max_penetration in the first step alone [m].
@@ -303,7 +304,7 @@ class WorldReport:
     bodies: number of bodies.
     colliders: number of colliders.
     nodes: number of nodes.
-    elements: number of elements.
+    elements: number of tetrahedra.
     clusters: number of groups of nodes that are coupled by implicit elements of explicit bodies.
     cluster_nodes: number of nodes in clusters.
     implicit_elements: number of implicit elements in clusters.

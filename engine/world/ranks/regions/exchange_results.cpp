@@ -1,5 +1,5 @@
-// Exchange of results after the solve. All ranks that hold a body get its velocities and impulses from the rank that
-// has solved its region.
+// Exchange of results after the solve. The rank that has solved a region sends the velocities and impulses of its
+// bodies to all other ranks that hold these bodies.
 #include <cstddef>
 
 #include "engine/world/ranks/regions/rank_regions.h"
@@ -11,13 +11,14 @@ namespace skerry {
 
 namespace {
 
-/// Velocities of a node after the solve. A record with the default name ends a list.
+/// Velocities of a node after the solve. A record with name.body == no_index ends a list.
 struct MailedNode {
     NodeName name;
     Vec3 velocity = Vec3::Zero(), push = Vec3::Zero();  // NodeTable: velocity_next, push_out [m/s]
 };
 
-/// Impulses on the frame of a rigid or implicit body (RigidBodyTable). A record with body == no_index ends a list.
+/// Contact impulse and moment, push-out velocity and push-out spin of the frame of a rigid or implicit body
+/// (RigidBodyTable). A record with body == no_index ends a list.
 struct MailedBody {
     Index body = no_index;  // row of the body in the undivided world
     Index deforming = 0;    // number of records MailedDeformation that follow
@@ -26,20 +27,21 @@ struct MailedBody {
 
 /// Contact impulse on a node of an implicit body (ImplicitNodeTable) [N s].
 struct MailedDeformation {
-    Index node = no_index;  // number within the body
+    Index node = no_index;  // number of the node within the body
     Vec3 impulse = Vec3::Zero();
 };
 
-/// Impulse of a row that holds a node along a single direction. A record with body == no_index ends a list.
+/// Impulse of a row of the contact table that holds a node along a single direction. A record with body == no_index
+/// ends a list.
 struct MailedHold {
     Index body = no_index;  // row of the body in the undivided world
-    Index entry = 0;        // number of the held node among those of all attachments of the body
+    Index entry = 0;        // index in the joined node lists of all attachments of the body
     Vec3 impulse = Vec3::Zero();
 };
 
-/// Rows that hold nodes along single directions. They follow the rows of ties.
+/// Rows of the contact table that hold nodes along single directions (hold rows). They come after the rows of ties.
 struct HoldRows {
-    std::span<const Index> entry;  // by row: row of AttachmentTable::node
+    std::span<const Index> entry;  // by hold row: row of AttachmentTable::node
     std::span<const Index> body;   // by attachment: row of BodyTable
     std::span<const Range> nodes;  // by attachment: rows of AttachmentTable::node
     std::span<Vec3> impulse;       // by row of AttachmentTable::node [N s]
@@ -57,7 +59,8 @@ struct HoldRows {
         for (std::size_t a = 0; a < body.size(); ++a)
             if (body[a] == of_body) visit(nodes[a]);
     }
-    /// Number of a held node among those of all attachments of its body.
+    /// Index of a held node in the joined node lists of all attachments of its body. `row`: row of
+    /// AttachmentTable::node.
     Index number(Index of_body, Index row) const {
         Index before = 0, found = no_index;
         for_each_range(of_body, [&](const Range& range) {
@@ -66,7 +69,7 @@ struct HoldRows {
         });
         return found;
     }
-    /// Row of AttachmentTable::node of the held node with this number.
+    /// Inverse of number().
     Index row(Index of_body, Index number) const {
         Index found = no_index;
         for_each_range(of_body, [&](const Range& range) {
@@ -77,7 +80,7 @@ struct HoldRows {
     }
 };
 
-/// Bodies, nodes and rows of the regions.
+/// Nodes, bodies and contact rows whose results are exchanged.
 struct SolvedRows {
     std::span<const Real> inverse_mass;  // by node [1/kg]
     const NodeClusters& clusters;
@@ -132,8 +135,8 @@ public:
 private:
     bool is_solved_here(Index body) const { return regions_.elsewhere.empty() || !regions_.elsewhere[body]; }
 
-    /// Sets the impulses of held nodes to zero where another rank solves the rows of the node's unit. Such rows are in
-    /// no region of this rank.
+    /// Sets the impulses of hold rows that are in no region of this rank to zero. Another rank solves them; here they
+    /// still contain the impulses with which a solver starts.
     void zero_left_out_rows() {
         for (std::size_t row = regions_.contact_count + rows_.tie_count; row < rows_.region.size(); ++row)
             if (rows_.region[row] == no_index) out_.impulse[row].setZero();
@@ -186,7 +189,8 @@ private:
     }
 
     /// Calls visit(unit, number) for the results of all rows of joints, ties and cables of the units for which
-    /// wants(unit) is true. `unit`: first body of the unit. All ranks that hold a unit have its rows in the same order.
+    /// wants(unit) is true. `unit`: first body of the unit. All ranks that hold a unit have its rows in the same order,
+    /// so messages need not name the rows.
     void for_each_result_of_units(auto&& wants, auto&& visit) {
         if (regions_.unit.empty()) return;
         const auto wanted_unit = [&](Index body) {
@@ -213,8 +217,9 @@ private:
         }
     }
 
-    /// Writes the messages. Each has a flag, the impulses of the contacts that the peer has sent, and lists of nodes,
-    /// bodies and units, which end with an empty record. The results of the rows of the units follow.
+    /// Writes the messages. Each has RegionTable::pushed, the impulses of the contacts that the peer has sent, and then
+    /// lists of nodes, bodies, hold rows and units. An empty record ends each list. The results of the joints, ties and
+    /// cables of these units come last.
     void send() {
         const std::size_t peers = bodies_.peers.size();
         RankMail& mail = regions_.mail;

@@ -1,4 +1,4 @@
-// Exchange of contacts before the solve: each region is solved by one rank.
+// Exchange of contacts before the solve: the rank that solves a region gets all contacts of the region.
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -38,7 +38,8 @@ public:
     }
 
 private:
-    /// Peer that solves the region of a group, or -1 if this rank solves it.
+    /// Index in `peers` of the rank that solves the region of a group of nodes. -1: this rank. Below -1: a rank that is
+    /// no peer (no_peer). `group`: first node of the group.
     int solver_of(Index group) {
         const Index root = regions_.sets.root(group);
         const int owner = regions_.label[root].owner;
@@ -48,7 +49,8 @@ private:
     /// Result of solver_of for a rank that shares no body with this rank: a number below -1.
     static int no_peer(int owner) { return -2 - owner; }
 
-    /// True if the peer holds the body. Otherwise the body is requested for it.
+    /// True if the solver of a region holds the body. All ranks hold kinematic bodies. Otherwise requests a copy of the
+    /// body for the solver. `peer`: result of solver_of.
     bool reaches(int peer, Index body) {
         if (body == no_index || bodies_.kind[static_cast<std::size_t>(body)] == BodyKind::kinematic) return true;
         if (peer >= 0 && bodies_.is_held_by(peer, body)) return true;
@@ -57,8 +59,8 @@ private:
         return false;
     }
 
-    /// Sends the units of this rank whose rows another rank solves. Units of other ranks count as solved elsewhere
-    /// until a message of their owner assigns them to this rank.
+    /// Tells each peer for which units of this rank it must solve the joints, ties and cables. Units of other ranks
+    /// count as solved elsewhere until a message of their owner assigns them to this rank.
     void send_units() {
         regions_.elsewhere.assign(regions_.unit.size(), 1);
         regions_.unit_count.assign(bodies_.peers.size(), 0);
@@ -80,7 +82,7 @@ private:
                 visit(static_cast<Index>(b), solver_of(bodies_.nodes[b].begin));
     }
 
-    /// Copies the value of the first body of each unit to its other bodies.
+    /// Copies `elsewhere` of the first body of each unit to the other bodies of the unit.
     void spread_over_units() {
         for (std::size_t b = 0; b < regions_.unit.size(); ++b)
             regions_.elsewhere[b] = regions_.unit[b] != no_index && regions_.elsewhere[regions_.unit[b]];
@@ -148,7 +150,8 @@ private:
         }
     }
 
-    /// Replaces the contact table by the contacts that this rank solves, in key order.
+    /// Moves the contacts that this rank has found to RankRegions::found, and fills the contact table with those that
+    /// it solves, in key order.
     void merge() {
         std::swap(contacts_, regions_.found);
         const ContactTable& found = regions_.found;
@@ -215,7 +218,8 @@ void exchange_rows(const SharedBodies& bodies, const RegionGroups& nodes, const 
     mine.bodies_missing = !requests.empty();
 }
 
-/// Puts the contacts that this rank has found into the contact table again. Their impulses are known by now.
+/// Puts the contacts that this rank has found back into the contact table. exchange_results has received the impulses
+/// of those that other ranks solved; the other impulses are copied here.
 void take_back_rows(RankRegions& regions, ContactTable& contacts) {
     if (!regions.exchanged) return;
     for (std::size_t c = 0; c < regions.found.size(); ++c) {

@@ -16,7 +16,7 @@
 
 namespace skerry {
 
-/// Identifies a node on all ranks, whose table rows differ.
+/// Names a node in the same way on all ranks. The row of the node in NodeTable differs between ranks.
 struct NodeName {
     Index body = no_index;  // row of the body in the undivided world
     Index node = no_index;  // number of the node within the body
@@ -24,7 +24,8 @@ struct NodeName {
     auto operator<=>(const NodeName&) const = default;
 };
 
-/// Label of a region: the least name among its groups of nodes. The owner of the body with this name solves the region.
+/// Label of a region: the least name among the first nodes of its groups (nodes that move together). The owner of the
+/// body `least.body` solves the region.
 struct RegionLabel {
     NodeName least;
     std::int32_t owner = 0;  // rank
@@ -41,7 +42,7 @@ struct MailedContact {
 
 /// The bodies of a rank and the other ranks that hold them.
 struct SharedBodies {
-    std::span<const Index> place;                  // RankState
+    std::span<const Index> place;                  // by body: its row in the undivided world
     std::span<const std::int32_t> owner;           // RankState
     const std::vector<std::vector<int>>& holders;  // RankState
     const std::vector<int>& peers;                 // RankState
@@ -64,7 +65,8 @@ struct SharedBodies {
         const auto body = static_cast<std::size_t>(body_of(node));
         return {place[body], node - nodes[body].begin};
     }
-    /// Row of BodyTable of the body in a row of the undivided world; no_index if this rank does not hold the body.
+    /// Row of BodyTable of the body with the row `of_place` in the undivided world; no_index if this rank does not hold
+    /// it.
     Index row_of(Index of_place) const { return row_of_place(place, of_place); }
     /// Row of NodeTable; no_index if this rank does not hold the body.
     Index node_of(const NodeName& name) const {
@@ -76,14 +78,14 @@ struct SharedBodies {
 /// Data of an attempt at a step about regions that several ranks touch, and working memory.
 struct RankRegions {
     RankMail mail;
-    // For each body: first body of its unit, which is the set of bodies that rows of joints, ties or cables join.
-    // no_index: no such row acts on the unit. Empty if there are no such rows.
+    // For each body: first body of its unit, a set of bodies that joints, ties, cables, springs or other rows connect.
+    // no_index: no joint, tie or cable acts on the unit. Empty if there are no joints, ties and cables.
     Column<Index> unit;
     // For each body: 1 if the rows of joints, ties and cables of its unit are solved by another rank. Empty if `unit`
     // is empty.
     Column<std::uint8_t> elsewhere;
-    // True if this rank solves other contacts than those that it has found. `found` then has the contacts that it has
-    // found, and the contact table has those that it solves, until take_back_rows exchanges the tables.
+    // True if the contacts that this rank solves are not those that it has found. The contact table then contains the
+    // solved ones and `found` the found ones, until take_back_rows exchanges the tables.
     bool exchanged = false;
     ContactTable found;
     // For each row of `found`: row in the contact table, or -1 - p for a row that was sent to peer p.
@@ -92,24 +94,26 @@ struct RankRegions {
     Column<Index> received_end;      // by peer: end of its contacts in `received`
     Column<Index> received_row;      // for each row of `received`: row in the contact table
     std::size_t contact_count = 0;   // number of contacts that this rank solves; rows of ties follow
-    // Bodies that contacts of other ranks touch in this attempt. A body may be listed several times.
+    // Bodies with nodes whose velocities this rank has sent or received after the solve of this attempt. A body may be
+    // listed several times.
     Column<Index> touched_bodies;
-    bool pushed = false;  // true if another rank has pushed nodes of this rank apart in this attempt
+    bool pushed = false;  // true if another rank has computed a push-out of nodes of this rank in this attempt
 
-    UnionFind sets;                // sets of groups of nodes in contact; later reused to mark visited nodes
-    UnionFind body_sets;           // sets of joined bodies
-    Column<std::uint8_t> in_unit;  // by body: 1 if a row of a joint, tie or cable acts on it
-    Column<RegionLabel> label;     // by node; valid for groups of nodes that contacts of this rank touch
-    Column<Index> group;           // first nodes of these groups
-    Column<Index> group_of;        // by contact: a group that it touches, or no_index
-    // by node; valid at the roots of `sets`: 1 if another rank touches the region too
+    UnionFind sets;       // sets of groups of nodes in contact; later reused to mark visited nodes
+    UnionFind body_sets;  // sets of joined bodies
+    // by body; valid at the roots of `body_sets`: 1 if a joint, tie or cable acts on the set
+    Column<std::uint8_t> in_unit;
+    Column<RegionLabel> label;  // by node; valid at the nodes in `group`
+    Column<Index> group;        // first nodes of the groups that contacts of this rank touch, and of own units
+    Column<Index> group_of;     // by contact: first node of one of its groups, which are all in one region; or no_index
+    // by node; valid at the roots of `sets`: 1 if another rank has sent a label for a group of the region
     Column<std::uint8_t> open;
     Column<int> changed;           // by node; valid at the roots of `sets`: last round in which the label changed
-    Column<Index> unit_count;      // by peer: number of units whose rows it solves
-    Column<Index> order, source;   // used to merge contacts
+    Column<Index> unit_count;      // by peer: number of own units that the peer solves
+    Column<Index> order, source;   // working memory of RowExchange::merge
     Column<Index> nodes, bodies;   // nodes and bodies that the regions of this rank have moved
-    Column<std::uint8_t> visited;  // by body
-    Column<int> unit_from;         // by body that is first in its unit: peer that has solved the rows of the unit
+    Column<std::uint8_t> visited;  // by body: 1 if listed in `bodies`
+    Column<int> unit_from;         // by first body of a unit: peer that has solved the rows of the unit; -1: none
 };
 
 }  // namespace skerry

@@ -92,7 +92,8 @@ public:
 private:
     bool is_touched(Index group) const { return regions_.sets.node[group].stamp == regions_.sets.now; }
 
-    /// Returns the first node of the group of a node that can move.
+    /// Returns the first node of the group that contains a node. For a body of a unit, all nodes of the unit are one
+    /// group.
     Index leader(Index node) const {
         if (regions_.unit.empty()) return nodes_.groups.leader(node);
         const Index unit = regions_.unit[bodies_.body_of(node)];
@@ -134,7 +135,7 @@ private:
         }
     }
 
-    /// Returns true if the label of a region changes.
+    /// Applies a label that another rank has sent. Returns true if it replaces the label of a region.
     bool receive(const NamedLabel& named, int round) {
         const Index group = bodies_.node_of(named.group);
         if (group == no_index || !is_touched(group)) return false;

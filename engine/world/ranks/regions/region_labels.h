@@ -1,4 +1,5 @@
-// Labels of regions. Ranks that hold common bodies exchange the labels until they agree (docs/methods/ranks.md 3).
+// Labels of regions. Ranks that hold common bodies exchange the labels in a given number of rounds, in which they
+// usually come to agree (docs/methods/ranks.md 3).
 #pragma once
 
 #include <array>
@@ -10,10 +11,10 @@
 
 namespace skerry {
 
-/// Rows other than contacts that belong to regions, and the bodies on which they act.
+/// Bodies on which joints, ties and cables act. These rows belong to regions as contacts do.
 struct JoinedBodies {
     const BodyLinks& links;
-    std::array<std::span<const Index>, 5> body;  // columns of joints, ties and cables
+    std::array<std::span<const Index>, 5> body;  // rows of BodyTable: columns of JointTable, TieTable and CableTable
 
     static JoinedBodies bind(const Binder& binder, const Model& model) {
         return {
@@ -23,8 +24,8 @@ struct JoinedBodies {
     }
 };
 
-/// Nodes, and the groups of nodes that move together. All moving nodes of a unit count as one group, so that one rank
-/// solves all rows of its joints, ties and cables.
+/// Nodes, and the groups of nodes that move together (NodeGroups). label_regions also treats all moving nodes of a unit
+/// as one group, so that one rank solves all joints, ties and cables of the unit.
 struct RegionGroups {
     std::span<const Real> inverse_mass;  // by node [1/kg]
     NodeGroups groups;
@@ -44,7 +45,8 @@ void find_units(const JoinedBodies& joined, std::size_t bodies, RankRegions& reg
 
 /// Joins the groups of nodes of each contact to regions, and labels them. The units of this rank are regions even
 /// without contacts. The ranks exchange the labels in `rounds` rounds; a label that has changed is sent in the next
-/// round. Returns the number of rounds after which no label changes, or more than `rounds` if this is not known.
+/// round. Returns the number of rounds that were needed, the last of which changes no label on this rank. The result is
+/// rounds + 1 if a label changed in the last round.
 int label_regions(const SharedBodies& bodies, const RegionGroups& nodes, std::span<const Stencil> stencil, int rounds,
                   RankRegions& regions, RankChannel& channel);
 

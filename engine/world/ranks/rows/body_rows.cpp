@@ -48,7 +48,7 @@ void copy_records(const Model& model, std::span<const std::uint8_t> marked, Body
 
 namespace {
 
-/// Moves the tables of bodies, attachments and joining rows to another model.
+/// Moves the tables of bodies, of attachments and of rows that join bodies to another model.
 void move_tables(Model& from, Model& to) {
     to.bodies = std::move(from.bodies);
     to.nodes = std::move(from.nodes);
@@ -102,8 +102,8 @@ std::vector<std::uint8_t> find_exchanged(std::span<const OfBodyTables<Range>> ro
     return exchanged;
 }
 
-/// Makes the next step search the candidates of all pairs of marked bodies again, because another rank has measured the
-/// motion bounds of these bodies.
+/// Makes the next step search the candidates of all pairs of marked bodies again, because valid_until refers to
+/// BodyTable::travel, which another rank has measured for these bodies.
 void forget_candidates(std::span<const std::uint8_t> marked, PairTable& pairs) {
     for (std::size_t p = 0; p < pairs.size(); ++p)
         if (marked[static_cast<std::size_t>(pairs.first[p])] ||
@@ -111,15 +111,15 @@ void forget_candidates(std::span<const std::uint8_t> marked, PairTable& pairs) {
             pairs.valid_until[p] = SearchState::forgotten;
 }
 
-/// Lets the handles of a table refer to its present rows. Handles of absent rows keep their slots. `slot`: slot of each
-/// row.
+/// Lets the handles of a table refer to its present rows. Handles of rows on other ranks keep their slots.
+/// `count_before`: number of rows before. `slot`: slot of each present row.
 void find_rows_of_handles(auto& map, std::size_t count_before, std::span<const std::uint32_t> slot) {
     map.rows_moved(std::vector<Index>(count_before, no_index));
     for (std::size_t row = 0; row < slot.size(); ++row)
         if (slot[row] != no_slot) map.rename(map.handle_of_slot(slot[row]), static_cast<Index>(row));
 }
 
-/// Adapts all data that refer to rows of bodies, and computes all data that are not stored. `before`: the old tables.
+/// Adapts all data that refer to rows of bodies, and computes all derived data again. `before`: the old tables.
 class RowsReplaced {
 public:
     RowsReplaced(WorldState& world, Model& before, std::span<const Index> place_before, const RowMoves& moves)
@@ -215,7 +215,8 @@ private:
     const RowMoves& moves_;
 };
 
-/// Enables the pairs that ties released on another rank (release_ties).
+/// Enables the collisions of pairs that another rank has enabled after the ties between the bodies had broken
+/// (release_ties).
 void enable_pairs(std::span<const std::uint64_t> keys, WorldState& world) {
     Column<std::uint64_t>& disabled = world.model.disabled_pairs.key;
     Column<std::uint64_t>& known = world.ranks.enabled_pairs;
@@ -228,7 +229,8 @@ void enable_pairs(std::span<const std::uint64_t> keys, WorldState& world) {
     }
 }
 
-/// Stores the self-crossings of bodies that were added. Their sender has made the last checks of these bodies.
+/// Stores the self-crossings that came with added bodies. They replace the entries of this rank, because the sender has
+/// made the later checks.
 void take_self_crossings(std::span<const FoundSelfCrossing> added, WorldState& world) {
     std::vector<SelfCrossing>& crossings = world.record.self_crossings;
     for (const FoundSelfCrossing& found : added) {
@@ -252,7 +254,8 @@ void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::sp
                   const WantsPair& keeps_pair) {
     Model& model = world.model;
     RankState& ranks = world.ranks;
-    // Copies of data that are needed below, because the composition frees all tables of the world except BodyTable.
+    // Copies of data that are needed below: compose_rows frees all tables of bodies except BodyTable, and ranks.place
+    // is overwritten.
     const Column<Index> place_before = ranks.place, body_of_node = model.nodes.body;
     std::vector<OfBodyTables<Range>> rows_before;
     for (std::size_t b = 0; b < place_before.size(); ++b) rows_before.push_back(rows_of_body(model, b));

@@ -1,4 +1,4 @@
-// Rows of some bodies with all that belongs to them. Bodies move between the ranks of a divided world in this form.
+// All data of some bodies. Bodies move between the ranks of a divided world in this form.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Progress of the checks of the stable steps, for the rows of BodyRows (StepWatch).
+/// Members of StepWatch with the progress of the stable-step checks. `body` and `kept` are rows of BodyRows::model.
 struct WatchProgress {
     Index body = 0, kept = 0;
     StepEvaluation evaluation;
@@ -25,11 +25,11 @@ struct FoundSelfCrossing {
 };
 
 /// Rows of bodies, of their attachments, and of the tables that join bodies (Model::for_each_joining). No row refers to
-/// a body that is not among them. Handles, colliders and materials are on every rank.
+/// any other body. Handles, colliders and materials are not included, because every rank has them.
 struct BodyRows {
     Model model;                  // only these rows, node clusters and the columns of StepWatch
-    Column<Index> place;          // by row of BodyTable (WholeWorld)
-    Column<WatchProgress> watch;  // one row
+    Column<Index> place;          // by row of BodyTable: row in the undivided world
+    Column<WatchProgress> watch;  // one row; a column, as message_of() needs it
     Column<Real> valid_until;     // SearchState::body_valid_until
     WarmStartTable warm_start;
     RestingContactTable resting;
@@ -41,23 +41,22 @@ struct BodyRows {
     std::vector<BodyRecord> records;
 };
 
-/// Contact data that are copied with rows of bodies: those of all pairs for which the function returns true. It gets
-/// the key of the pair (ContactKey::pair).
+/// Returns true for pairs whose contact data are copied with rows of bodies. `pair`: ContactKey::pair.
 using WantsPair = std::function<bool(std::uint64_t pair)>;
 
-/// Returns copies of the rows of marked bodies of a settled world. The marked bodies must be complete units. `marked`:
-/// by row of BodyTable.
+/// Returns copies of the rows of marked bodies. The world must have no pending changes (WorldState::settle). The marked
+/// bodies must be complete units. `marked`: by row of BodyTable.
 BodyRows rows_of_bodies(WorldState& world, std::span<const std::uint8_t> marked, const WantsPair& wants_pair);
 /// Adds the records of the marked bodies to their rows, for a rank other than 0.
 void copy_records(const Model& model, std::span<const std::uint8_t> marked, BodyRows& to);
 
-/// Removes all bodies of a settled world that are not marked, and adds bodies. Removes contact data of all pairs for
-/// which `keeps_pair` is false. Changes no other state and wakes no body. Afterwards the rows of all tables are in the
-/// order of the undivided world, and `added` is empty.
+/// Removes all bodies that are not marked in `kept`, and adds bodies. The world must have no pending changes. Removes
+/// contact data of all pairs for which `keeps_pair` is false. Changes no other state and wakes no body. Afterwards the
+/// rows of all tables are in the order of the undivided world, and `added` is empty.
 void replace_rows(WorldState& world, std::span<const std::uint8_t> kept, std::span<BodyRows> added,
                   const WantsPair& keeps_pair);
 
-/// Message with all columns of the rows, for a rank that runs the same program.
+/// Binary message with all columns of the rows. Only the same program can read it.
 RankMessage message_of(BodyRows& rows);
 /// Reads a message of message_of.
 BodyRows rows_of_message(std::span<const std::byte> message);

@@ -43,7 +43,7 @@ void append_row_with_lists(Table& from, std::size_t row, Table& to) {
     }
 }
 
-/// A single column in the form of a table.
+/// A single column in the form of a table, as free_column() needs it.
 struct ColumnTable {
     Column<Index>& column;
     void for_each_column(auto&& visit) { visit("", column); }
@@ -56,7 +56,8 @@ void free_column(std::size_t number, auto& table) {
     });
 }
 
-/// Frees a column that columns_by_body_table lists at [table][number].
+/// Frees a column that columns_by_body_table lists at [table][number]. The arguments of free_in must be in the order of
+/// that list.
 void free_column(std::size_t table, std::size_t number, Model& model) {
     SurfaceTables& surface = model.surface;
     const auto free_in = [&](auto&... tables) {
@@ -69,7 +70,7 @@ void free_column(std::size_t table, std::size_t number, Model& model) {
             model.rigid_bodies, model.implicit_nodes);
 }
 
-/// A row of one of the sources, and its position in the order of the new rows.
+/// Row `row` of the source with the index `source`. New rows are sorted by `order`.
 struct Pick {
     Index order;
     std::size_t source, row;
@@ -187,7 +188,8 @@ private:
         }
     }
 
-    /// Appends the progress of the checks of stable steps. All ranks have done the checks up to the same piece.
+    /// Appends the progress of the checks of stable steps. All ranks have done the checks up to the same piece, so they
+    /// go on at the first new row whose source has not checked it.
     void append_watch() {
         StepWatch& watch = to_.watch;
         for (const Pick& pick : picks_) {
@@ -237,7 +239,7 @@ private:
         }
     }
 
-    /// Order of a row with a handle slot; rows without a handle come last.
+    /// Number by which a row is sorted: its row in the undivided world. Rows without a handle come last.
     static Index order_of(std::span<const Index> place_of_slot, std::uint32_t slot) {
         return slot < place_of_slot.size() ? place_of_slot[slot] : std::numeric_limits<Index>::max();
     }
@@ -280,8 +282,8 @@ private:
         return *found;
     }
 
-    /// Rows to copy from a source: those that connect a body that is copied from this source. The world itself also
-    /// provides the rows that connect no body.
+    /// Rows to copy from a source: those that connect a body that is copied from this source. A source with
+    /// gives_common also provides the rows that connect no body.
     template <class Table>
     static std::vector<std::size_t> rows_given(Table& table, const RowSource& source) {
         std::vector<std::uint8_t> gives(table.slot.size(), source.gives_common ? 1 : 0);

@@ -28,12 +28,12 @@ struct RowSource {
     bool gives(std::size_t body) const { return marked.empty() || marked[body] != 0; }
 };
 
-/// Fills the tables of bodies, attachments and rows that join bodies of an empty model with the rows that the sources
-/// give, in the order of the undivided world. Sets RowSource::moves. Returns the row of each body in the undivided
-/// world.
+/// Copies the rows that the sources give to the empty model `to`: rows of bodies, of attachments and of tables that
+/// join bodies. The new rows are in the order of the undivided world. Sets RowSource::moves. Returns the row of each
+/// body in the undivided world.
 Column<Index> compose_rows(std::span<RowSource> sources, const WholeWorld& whole, Model& to);
 
-/// Appends a row to all columns that have one row per row of the table.
+/// Appends a row of `from` to the table `to`. Columns that contain lists (has_row_each is false) are left out.
 void append_row(AnyTable from, std::size_t row, AnyTable to);
 
 }  // namespace skerry

@@ -19,8 +19,8 @@ void copy_rows(AnyTable from, std::size_t count, auto&& wants, AnyTable to) {
         if (wants(row)) append_row(from, row, to);
 }
 
-/// Converts between the rows of a rank and the rows of the undivided world, which are the same on all ranks. Nodes are
-/// then numbered within their bodies; a node of the second body has the number ~n.
+/// Converts between rows of this rank and numbers that are valid on all ranks. These name a body by its row in the
+/// undivided world, node n of the first body by n, and node n of the second body by ~n.
 class PlacesOfContacts {
 public:
     PlacesOfContacts(const Model& model, std::span<const Index> place) : model_(model), place_(place) {}
@@ -93,7 +93,8 @@ std::vector<std::size_t> ascending(const Column<Key>& key) {
     return order;
 }
 
-/// Reorders the rows of a table: new row k is old row order[k]. Columns of another length stay unchanged.
+/// Reorders the rows of a table: new row k is old row order[k]. Columns whose length is not that of `order`, such as
+/// lists, stay unchanged.
 void reorder(std::span<const std::size_t> order, AnyTable table) {
     for (const ColumnInfo& info : table.columns()) {
         const AnyColumn column = table.column(info);
@@ -125,7 +126,7 @@ std::vector<Range> unwanted(std::size_t count, auto&& wants) {
     return gone;
 }
 
-/// Renumbers crossings that earlier attempts at the present step have found.
+/// Renumbers crossings that earlier attempts at the present step have found. Removes those of bodies without a new row.
 void renumber_crossings(const RowMoves& moves, std::span<const Index> body_of_node, Column<ContactRow>& crossings) {
     const auto now = [&](Index body) {
         return body == no_index ? no_index : moves.body_now[static_cast<std::size_t>(body)];

@@ -12,8 +12,8 @@ namespace skerry {
 /// undivided world.
 void copy_contacts(WorldState& world, const WantsPair& wants, BodyRows& to);
 
-/// Removes the contact data of pairs for which `keeps` is false, and renumbers the others. `body_of_node`: body row of
-/// each node before the rows are moved.
+/// Removes the contact data of removed bodies and of pairs for which `keeps` is false, and renumbers all other data.
+/// `body_of_node`: body row of each node before the rows are moved.
 void keep_contacts(const RowMoves& moves, std::span<const Index> body_of_node, const WantsPair& keeps,
                    WorldState& world);
 

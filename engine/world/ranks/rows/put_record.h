@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// True for a vector, a column or a text of rows of plain data.
+/// True for a list of plain data: std::vector, Column or std::string.
 template <class List>
 concept RowList = requires(List& list) {
     list.clear();
@@ -44,7 +44,7 @@ void take_value(MailReader& message, T& value) {
 void put_record(const BodyRecord& record, RankMessage& message);
 /// Reads a record that put_record has written.
 BodyRecord take_record(MailReader& message);
-/// Returns the record of a body that this rank does not hold, and of which it stores only the name.
+/// Returns a record with only a name, for a body that this rank does not hold.
 BodyRecord record_of_name(std::string name);
 
 }  // namespace skerry
