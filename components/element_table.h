@@ -196,7 +196,15 @@ struct ElementPatches {
 struct BlockNodes {
     const NodeLane* node;
     const ElementGradient* gradient;
-    Index count;
+    Index count;  // number of rows: the largest number of nodes of an element of the block
+
+    /// Number of nodes of the element in a lane. Later rows are padding: they repeat nodes of this element.
+    Index count_in_lane(std::size_t lane) const {
+        for (Index k = 1; k < count; ++k)
+            for (Index earlier = 0; earlier < k; ++earlier)
+                if (node[k][lane] == node[earlier][lane]) return k;
+        return count;
+    }
 };
 
 }  // namespace skerry

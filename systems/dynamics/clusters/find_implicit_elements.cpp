@@ -226,11 +226,7 @@ Real ImplicitSearch::estimate_volume(Real stable) const {
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
         const BlockNodes nodes = elements_.nodes_of(b);
         Real mass = 0;
-        for (Index k = 0; k < nodes.count; ++k) {
-            const Index node = nodes.node[k][l];
-            // skips repeats: padding
-            if (k == 0 || node != nodes.node[0][l]) mass += mass_[static_cast<std::size_t>(node)];
-        }
+        for (Index k = 0; k < nodes.count_in_lane(l); ++k) mass += mass_[static_cast<std::size_t>(nodes.node[k][l])];
         demands.push_back({need(b, l, stable) * mass, elements_.volume[b][l]});
         sum.mass += demands.back().mass;
         sum.volume += demands.back().volume;

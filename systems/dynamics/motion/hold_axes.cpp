@@ -10,8 +10,16 @@ namespace skerry {
 
 namespace {
 
-/// Calls visit(entry, node, direction, speed) for each direction along which an attachment holds a node, with the speed
-/// that is prescribed along the direction.
+/// A direction along which an attachment holds a node.
+struct HeldDirection {
+    std::size_t entry;   // row of AttachmentTable::node
+    std::size_t column;  // column of AttachmentTable::held
+    std::size_t node;    // row of NodeTable
+    Vec3 direction;      // unit vector
+    Real speed;          // prescribed velocity along the direction [m/s]
+};
+
+/// Calls visit(HeldDirection) for each direction along which an attachment holds a node.
 void for_each_held(const AxisHoldInputs& inputs, Real h, auto&& visit) {
     for (std::size_t a = 0; a < inputs.nodes.size(); ++a) {
         if (holds_completely(inputs.held[a])) continue;
@@ -23,8 +31,12 @@ void for_each_held(const AxisHoldInputs& inputs, Real h, auto&& visit) {
             const auto n = static_cast<std::size_t>(inputs.node[i]);
             if (!(inputs.inverse_mass[n] > 0) || inputs.resting.contain(n)) continue;
             const Vec3 velocity = (end + rotation * inputs.anchor[i] - inputs.position[n]) / h;
-            for (const Vec3 direction : inputs.held[a].colwise())
-                if (!direction.isZero(0)) visit(i, n, direction, direction.dot(velocity));
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3 direction = inputs.held[a].col(static_cast<Eigen::Index>(k));
+                if (!direction.isZero(0))
+                    visit(
+                        {.entry = i, .column = k, .node = n, .direction = direction, .speed = direction.dot(velocity)});
+            }
         }
     }
 }
@@ -51,11 +63,9 @@ bool moves_held_nodes(const AxisHoldInputs& inputs, const ContactTable& contacts
 }
 
 /// Key of the row for one held direction of an entry. It is greater than all keys of contacts and ties, because
-/// ContactTable is in key order and these rows are its last. The key also contains the axis nearest to the direction.
-ContactKey key_of_held(std::size_t entry, const Vec3& direction) {
-    Index longest = 0;
-    direction.cwiseAbs().maxCoeff(&longest);
-    return {~std::uint64_t{0}, 3 * static_cast<std::uint64_t>(entry) + static_cast<std::uint64_t>(longest)};
+/// ContactTable is in key order and these rows are its last.
+ContactKey key_of(const HeldDirection& held) {
+    return {~std::uint64_t{0}, 3 * static_cast<std::uint64_t>(held.entry) + static_cast<std::uint64_t>(held.column)};
 }
 
 }  // namespace
@@ -64,22 +74,22 @@ ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, Real lag
                        Column<Vec3>& held_impulse) {
     ExternalWork all, of_ghosts;
     held_impulse.assign(inputs.node.size(), Vec3::Zero());
-    for_each_held(inputs, h, [&](std::size_t i, std::size_t n, const Vec3& direction, Real speed) {
-        ExternalWork& sum = inputs.ghosts.contain(inputs.body[n]) ? of_ghosts : all;
-        const Real impulse = inputs.mass[n] * (speed - direction.dot(velocity_next[n]));
-        const Real gained = speed - direction.dot(inputs.velocity[n]);
-        velocity_next[n] += impulse * inputs.inverse_mass[n] * direction;
-        held_impulse[i] += impulse * direction;
-        sum.impulse += impulse * direction;
+    for_each_held(inputs, h, [&](const HeldDirection& held) {
+        ExternalWork& sum = inputs.ghosts.contain(inputs.body[held.node]) ? of_ghosts : all;
+        const Real impulse = inputs.mass[held.node] * (held.speed - held.direction.dot(velocity_next[held.node]));
+        const Real gained = held.speed - held.direction.dot(inputs.velocity[held.node]);
+        velocity_next[held.node] += impulse * inputs.inverse_mass[held.node] * held.direction;
+        held_impulse[held.entry] += impulse * held.direction;
+        sum.impulse += impulse * held.direction;
         // The work is the change of kinetic energy minus the work of the other forces. The energy changes by mass
-        // gained (speed - gained / 2). The other forces have the impulse mass gained - impulse. Their work is counted
-        // at the end velocity, or with leapfrog (lag = 0) at the mean velocity, and for gravity and loads over h
-        // instead of kick (measure_work).
-        const Real during = lag == 0 ? speed - gained / 2 : speed;
+        // gained (held.speed - gained / 2). The other forces have the impulse mass gained - impulse. Their work is
+        // counted at the end velocity, or with leapfrog (lag = 0) at the mean velocity, and for gravity and loads over
+        // h instead of kick (measure_work).
+        const Real during = lag == 0 ? held.speed - gained / 2 : held.speed;
         sum.work += impulse * during;
-        if (lag != 0) sum.work -= inputs.mass[n] * gained * gained / 2;
-        sum.work -= (h - kick) * inputs.mass[n] * direction.dot(inputs.gravity) * during;
-        if (!inputs.load.empty()) sum.work -= (h - kick) * direction.dot(inputs.load[n]) * during;
+        if (lag != 0) sum.work -= inputs.mass[held.node] * gained * gained / 2;
+        sum.work -= (h - kick) * inputs.mass[held.node] * held.direction.dot(inputs.gravity) * during;
+        if (!inputs.load.empty()) sum.work -= (h - kick) * held.direction.dot(inputs.load[held.node]) * during;
     });
     return all;
 }
@@ -89,8 +99,8 @@ void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cabl
     rows.entry.clear();
     rows.node.assign(inputs.mass.size(), {});
     const std::span<HeldRows::Node> node = rows.node.span();
-    for_each_held(inputs, h, [&](std::size_t, std::size_t n, const Vec3& direction, Real) {
-        node[n].held += direction * direction.transpose();
+    for_each_held(inputs, h, [&](const HeldDirection& held) {
+        node[held.node].held += held.direction * held.direction.transpose();
     });
     for (std::size_t c = 0; c < contacts.size(); ++c)
         if (moves_held_nodes(inputs, contacts, c, node))
@@ -101,25 +111,25 @@ void prepare_held_rows(const AxisHoldInputs& inputs, const CableBlockTable& cabl
     for (const CableBlock& cable : cables.solved())
         for (const Stencil& of : rows_of(cables.stencil.span(), cable.points))
             for_each_node(of, [&](std::size_t n, Real) { node[n].in_region = true; });
-    for_each_held(inputs, h, [&](std::size_t i, std::size_t n, const Vec3& direction, Real speed) {
-        if (!node[n].in_region) return;
-        const auto row = static_cast<Index>(n);
-        rows.entry.push_back(static_cast<Index>(i));
-        append_row({.key = key_of_held(i, direction),
+    for_each_held(inputs, h, [&](const HeldDirection& held) {
+        if (!node[held.node].in_region) return;
+        const auto row = static_cast<Index>(held.node);
+        rows.entry.push_back(static_cast<Index>(held.entry));
+        append_row({.key = key_of(held),
                     .kind = ContactKind::point_collider,
                     .stencil = {{row, row, row, row}, {1, 0, 0, 0}},
-                    .point = inputs.position[n],
-                    .normal = direction,
+                    .point = inputs.position[held.node],
+                    .normal = held.direction,
                     .gap = 0,
                     .distance = 0,
-                    .surface_velocity = speed * direction,
+                    .surface_velocity = held.speed * held.direction,
                     .static_friction = 0,
                     .dynamic_friction = infinity,
                     .restitution = 0,
-                    .first_body = inputs.body[n],
+                    .first_body = inputs.body[held.node],
                     .second_body = no_index,
                     .collider = no_index},
-                   -direction.dot(node[n].impulse) * direction, contacts);
+                   -held.direction.dot(node[held.node].impulse) * held.direction, contacts);
     });
 }
 
@@ -142,17 +152,17 @@ ExternalWork take_held_rows(const AxisHoldInputs& inputs, std::span<const Vec3> 
 ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec3> velocity_next,
                              std::span<Vec3> push_out, std::span<Vec3> held_impulse) {
     ExternalWork all, of_ghosts;
-    for_each_held(inputs, h, [&](std::size_t i, std::size_t n, const Vec3& direction, Real speed) {
-        ExternalWork& sum = inputs.ghosts.contain(inputs.body[n]) ? of_ghosts : all;
-        push_out[n] -= direction.dot(push_out[n]) * direction;
-        const Real before = direction.dot(velocity_next[n]);
-        const Real impulse = inputs.mass[n] * (speed - before);
+    for_each_held(inputs, h, [&](const HeldDirection& held) {
+        ExternalWork& sum = inputs.ghosts.contain(inputs.body[held.node]) ? of_ghosts : all;
+        push_out[held.node] -= held.direction.dot(push_out[held.node]) * held.direction;
+        const Real before = held.direction.dot(velocity_next[held.node]);
+        const Real impulse = inputs.mass[held.node] * (held.speed - before);
         // The impulse times the inverse mass would leave rounding errors, which move a node that touches a plane
         // through the plane.
-        velocity_next[n] += (speed - before) * direction;
-        held_impulse[i] += impulse * direction;
-        sum.impulse += impulse * direction;
-        sum.work += impulse * (before + speed) / 2;
+        velocity_next[held.node] += (held.speed - before) * held.direction;
+        held_impulse[held.entry] += impulse * held.direction;
+        sum.impulse += impulse * held.direction;
+        sum.work += impulse * (before + held.speed) / 2;
     });
     return all;
 }

@@ -154,6 +154,22 @@ TEST_CASE("few forces are added to a node shortly after another force on this no
     CHECK(2 * waits_now < waits_in_order);
 }
 
+TEST_CASE("the nodes of a lane are counted without the rows that pad its block", "[unit]") {
+    const ElementKind kind = GENERATE(ElementKind::linear, ElementKind::edge_smoothed, ElementKind::edge_node_smoothed);
+    const ElasticBody body(jittered_box({3, 3, 3}, 0.1, 0.1, 1), rubber(), Mat3::Identity(), kind);
+    std::size_t padded = 0;
+    for (std::size_t b = 0; b < body.elements.count.size(); ++b) {
+        const BlockNodes nodes = body.inputs().nodes_of(b);
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            const Index e = body.element_at[element_lanes * b + l];
+            if (e == no_index) continue;
+            CHECK(nodes.count_in_lane(l) == static_cast<Index>(body.list.nodes_of(static_cast<std::size_t>(e))));
+            padded += nodes.count_in_lane(l) < nodes.count;
+        }
+    }
+    CHECK((padded > 0) == (kind != ElementKind::linear));
+}
+
 TEST_CASE("no tetrahedra make no blocks", "[unit]") {
     TetrahedronBlockTable tetrahedra;
     ElementBlockTable elements;
