@@ -288,7 +288,8 @@ class WorldReport:
     large_strain_steps: number of steps of implicit bodies of large strain.
     newton_steps: number of Newton steps of implicit bodies of large strain.
     tangent_factors: number of factorisations of their tangent stiffness.
-    max_contacts: largest number of contacts in a step.
+    max_contacts: largest number of contacts in a step. If it is 0, nothing has touched in the whole run, and the text
+        of the report says so; World.nearest_points() finds how far a tool was away.
     max_regions: largest number of regions in a step.
     largest_region: largest number of contacts of a region.
     worst_error: largest relative solver error of a region in any step.
@@ -434,9 +435,11 @@ class WorldReport:
     distrust: str
 
     def __repr__(self) -> str:
+        apart = self.steps > 0 and self.max_contacts == 0 and self.bodies + self.colliders > 1
+        doubts = (", no contact in the whole run" if apart else "") + (f", {self.distrust}" if self.distrust else "")
         return (
             f"<skerry.WorldReport at {self.time:.6g} s, {self.steps:,} steps, {self.bodies:,} bodies, "
-            f"worst error {self.worst_error:.3g}{f', {self.distrust}' if self.distrust else ''}>"
+            f"worst error {self.worst_error:.3g}{doubts}>"
         )
 
 
