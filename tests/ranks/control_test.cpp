@@ -44,6 +44,21 @@ TEST_CASE("a call that one rank stops ends on all ranks after the same step", "[
     }
 }
 
+TEST_CASE("a call of one step that one rank stops is reported as stopped on all ranks", "[ranks]") {
+    std::vector<StepReport> reports(3);
+    run_on_ranks(3, [&](Ranks& ranks) {
+        World world = balls({});
+        const Real step = world.stable_step() / 2;
+        hold_everywhere(world, ranks);
+        reports[static_cast<std::size_t>(ranks.rank())] =
+            world.advance(step, [&](const StepReport&) { return ranks.rank() != 1; });
+    });
+    for (const StepReport& report : reports) {
+        CHECK(report.status == StepStatus::stopped);
+        CHECK(report.steps == 1);
+    }
+}
+
 TEST_CASE("the balance of energy and momentum over ranks is that of an undivided world", "[ranks]") {
     constexpr Real seconds = 0.1;
     World whole = balls({});
