@@ -133,7 +133,7 @@ def status_of(answer: bytes) -> int:
 
 
 def advance(client: Client, dt: float = 0.01) -> None:
-    """Advances by dt and waits until the client has a frame of the new state. One of the state before may still come."""
+    """Advances by dt and waits for a frame of the new state. One of the state before may still come."""
     world, count = client.view.world, len(client.frames)
     world.advance(dt)
     client.wait(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -327,6 +328,7 @@ def test_ctrl_c_ends_a_rollout_and_leaves_the_world_whole() -> None:
     program = """
         import threading
         import skerry as sk
+        from worlds import wait_until_busy
         world = sk.World()
         for i in range(4):
             world.add_body(sk.Mesh.ball(0.1, 6), sk.Material(young_modulus=1e6), position=(0, 0, 0.2 + 0.3 * i))
@@ -334,11 +336,8 @@ def test_ctrl_c_ends_a_rollout_and_leaves_the_world_whole() -> None:
         before = world.state_hash
 
         def tell() -> None:
-            try:
-                while True:
-                    world.time
-            except sk.BusyError:
-                print("running", flush=True)
+            wait_until_busy(world)
+            print("running", flush=True)
 
         threading.Thread(target=tell).start()
         try:
@@ -348,7 +347,8 @@ def test_ctrl_c_ends_a_rollout_and_leaves_the_world_whole() -> None:
             world.advance(0.01)
             print("whole")
     """
-    process = subprocess.Popen([sys.executable, "-c", textwrap.dedent(program)], stdout=subprocess.PIPE, text=True)
+    command, folder = [sys.executable, "-c", textwrap.dedent(program)], os.path.dirname(__file__)
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=folder)
     try:
         assert process.stdout is not None
         assert process.stdout.readline() == "running\n"
