@@ -25,6 +25,11 @@ endif()
 if(SKERRY_ARCH)
     skerry_arch_options(skerry_arch_flags ${SKERRY_ARCH})
     target_compile_options(skerry_flags INTERFACE ${skerry_arch_flags})
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        # With this optimisation gcc 12 makes fused multiply-adds (vfmaddsub) of straight-line code despite
+        # -ffp-contract=off, and results would depend on the instruction set. check_kernels finds such instructions.
+        target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fno-tree-slp-vectorize>)
+    endif()
 endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
     # The order of Eigen's sums, and its use of fused multiply-add, depend on the instruction set. Without these macros
