@@ -131,8 +131,8 @@ class MpirunTest(ProgramCase):
             errors = job.communicate(timeout=60)[1]
         self.assertNotEqual(job.returncode, 0)
         self.assertIn("process rank 1", errors)
-        number, prefix = re.search(r"continue from the checkpoint at ([\d.]+) ([mk]?)s: skerry run --restart .*run.skerry",
-                                   errors).groups()
+        said = re.search(r"from the checkpoint at ([\d.]+) ([mk]?)s: skerry run --restart .*run.skerry", errors)
+        number, prefix = said.groups()
         end = ("--seconds", 1.01 * float(number) * {"m": 1e-3, "": 1, "k": 1e3}[prefix] + 0.2)
         expected = self.stats_of(self.skerry, self.scene, *end)
         found = self.stats_of(lambda *arguments: self.ranks(3, *arguments), "--restart", self.checkpoint, *end)
