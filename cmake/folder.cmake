@@ -74,6 +74,16 @@ function(skerry_folder name)
     endforeach()
 endfunction()
 
+# skerry_never_fuse(source...): compiles sources of this folder without the optimisation with which gcc 12 makes fused
+# multiply-adds (vfmaddsub) despite -ffp-contract=off. Such instructions would make results depend on the instruction
+# set. check_kernels finds them.
+function(skerry_never_fuse)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        set_source_files_properties(${ARGN} PROPERTIES
+            COMPILE_OPTIONS -fno-tree-slp-vectorize SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
+    endif()
+endfunction()
+
 # skerry_uses(library...): libraries that Skerry and all programs with Skerry link.
 function(skerry_uses)
     set_property(GLOBAL APPEND PROPERTY skerry_uses ${ARGN})

@@ -113,7 +113,7 @@ std::string errors_text(const std::vector<ErrorEstimate>& errors) {
             [](const ErrorEstimate& of) { return of.deflection; });
     add(" and ", text.empty() ? "mesh " : "", "the largest stress", [](const ErrorEstimate& of) { return of.stress; });
     add(", ", "steps ", "the motion", [](const ErrorEstimate& of) { return of.step; });
-    add(", ", "contacts ", "the forces", [](const ErrorEstimate& of) { return of.contact; });
+    add(", ", "contact solver ", "the forces", [](const ErrorEstimate& of) { return of.contact; });
     return text;
 }
 

@@ -90,8 +90,8 @@ int view(const ViewOptions& options) {
                                 .paused = options.paused,
                                 .sliders = scene.sliders,
                                 .probes = scene.recorded});
-    std::cout << scene.name << ": open " << live.address() << " in a browser; Ctrl-C ends" << std::endl;
     const SignalGuard guard;
+    std::cout << scene.name << ": open " << live.address() << " in a browser; Ctrl-C ends" << std::endl;
     std::optional<LeadingPage> page;
     if (options.open && has_desktop() && page.emplace(live.address()).is_complete()) open_in_browser(page->path());
     const Stopwatch watch;

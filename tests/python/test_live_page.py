@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -82,13 +81,17 @@ def time_of(tab: Tab) -> float:
     return float(tab.marks()["time"])
 
 
-def settled_time(tab: Tab) -> float:
-    """Simulated time of the picture when it has not changed for a second [s]."""
-    found = math.nan
-    while (now := time_of(tab)) != found:
-        found = now
-        time.sleep(1)
-    return found
+def times_of(world: sk.World) -> list[float]:
+    """List to which each step appends the time of the world [s]. Other threads cannot read it while the view runs."""
+    times: list[float] = []
+    world.watch_steps(lambda _: times.append(world.time))
+    return times
+
+
+def settled_time(tab: Tab, times: list[float]) -> float:
+    """Simulated time of the picture as soon as it shows the last step before a pause [s]."""
+    tab.wait(f"Math.abs(Number(document.documentElement.dataset.time) - {times[-1]!r}) < 1e-9")
+    return time_of(tab)
 
 
 def test_the_page_shows_the_run_and_hides_its_token(tab: Tab) -> None:
@@ -110,15 +113,15 @@ def test_the_page_shows_the_run_and_hides_its_token(tab: Tab) -> None:
 
 def test_the_run_pauses_steps_and_starts_again(tab: Tab) -> None:
     world, _, _ = ball_world()
-    step = world.stable_step
+    step, times = world.stable_step, times_of(world)
     with running(tab, world):
         tab.click("#play")
         tab.wait(PAUSED)
         tab.wait("document.getElementById('play').getAttribute('aria-label') === 'Play'")
-        paused = settled_time(tab)
+        paused = settled_time(tab, times)
         tab.click("#step")
         tab.wait(f"Number(document.documentElement.dataset.time) > {paused}")
-        assert settled_time(tab) - paused == pytest.approx(step, rel=0.5)
+        assert settled_time(tab, times) - paused == pytest.approx(step, rel=0.5)
         tab.press("Home")
         tab.wait("Number(document.documentElement.dataset.time) === 0")
         assert tab.marks()["playing"] == "false"
@@ -129,6 +132,7 @@ def test_the_run_pauses_steps_and_starts_again(tab: Tab) -> None:
 
 def test_slow_motion_takes_shorter_calls(tab: Tab) -> None:
     world, ball, _ = ball_world()
+    times = times_of(world)
     with world.recorder({"ball": sk.BodyProbe(ball)}) as recorder, running(tab, world):
         tab.evaluate(
             "((select) => { select.value = '0.1'; select.dispatchEvent(new Event('change')); })"
@@ -137,7 +141,7 @@ def test_slow_motion_takes_shorter_calls(tab: Tab) -> None:
         tab.wait("window.sent.some((message) => message.do === 'rate' && message.value === 0.1)")
         tab.click("#play")
         tab.wait(PAUSED)
-        paused = settled_time(tab)
+        paused = settled_time(tab, times)
         tab.click("#play")
         tab.wait(f"Number(document.documentElement.dataset.time) > {paused}")
     assert np.diff(recorder.table()["time"])[-1] == pytest.approx(0.1 / 60, rel=1e-6)

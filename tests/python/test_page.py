@@ -2,9 +2,7 @@
 
 import gc
 import html
-import os
 import re
-import subprocess
 import tempfile
 import urllib.parse
 import webbrowser
@@ -13,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import skerry as sk
-from browser import PROGRAM
+from browser import open_browser
 from worlds import ball_world
 
 
@@ -73,38 +71,20 @@ def test_a_film_leaves_no_files(monkeypatch: pytest.MonkeyPatch, tmp_path: Path)
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
 def test_a_browser_runs_the_page_inside_a_notebook(tmp_path: Path) -> None:
     world, _, _ = ball_world()
     with world.record() as film:
         world.run(0.1)
     listener = "<script>addEventListener('message', e => document.title = e.data)</script>"
     report = (
-        "<script>addEventListener('load', () => setTimeout(() => parent.postMessage("
-        "document.querySelectorAll('canvas').length + ' canvases at ' + location.href, '*'), 500))</script>"
+        "<script>setInterval(() => parent.postMessage("
+        "document.querySelectorAll('canvas').length + ' canvases at ' + location.href, '*'), 20)</script>"
     )
     page = sk.Page(film.show().html.replace("</body>", report + "</body>"), 400)
     (tmp_path / "notebook.html").write_text(f"<html><body>{listener}{page._repr_html_()}</body></html>", "utf-8")
-    done = subprocess.run(
-        [
-            PROGRAM or "",
-            "--headless",
-            "--no-sandbox",
-            "--use-gl=swiftshader",
-            "--enable-unsafe-swiftshader",
-            "--virtual-time-budget=4000",
-            f"--user-data-dir={tmp_path / 'profile'}",
-            "--dump-dom",
-            (tmp_path / "notebook.html").as_uri(),
-        ],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        env={**os.environ, "HOME": str(tmp_path)},
-        check=True,
-    )
-    title = re.search("<title>(.*?)</title>", done.stdout)
-    assert title is not None and re.fullmatch(r"[1-9]\d* canvases at about:srcdoc", title[1])
+    with open_browser() as tab:
+        tab.open((tmp_path / "notebook.html").as_uri())
+        tab.wait(r"/^[1-9]\d* canvases at about:srcdoc$/.test(document.title)")
 
 
 def test_a_film_records_only_in_its_block() -> None:

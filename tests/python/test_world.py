@@ -480,6 +480,10 @@ def test_reports_have_short_texts() -> None:
     assert re.fullmatch(r"<skerry.StepReport ok, \d+ steps, \d+ contacts, worst error \S+>", repr(report))
     text = repr(world.report())
     assert re.fullmatch(r"<skerry.WorldReport at 0.06 s, \d+ steps, 1 bodies, worst error \S+>", text)
+    apart = ball_world()[0]
+    assert "no contact" not in repr(apart.report())  # before the first step
+    apart.advance(0.001)
+    assert repr(apart.report()).endswith(", no contact in the whole run>")
     velocities = ball.velocities
     velocities[0] = (1e100, 0, 0)
     ball.velocities = velocities

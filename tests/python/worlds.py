@@ -59,6 +59,13 @@ def busy(world: sk.World) -> Iterator[None]:
     world.watch_steps(None)
 
 
+def wait_until_busy(world: sk.World) -> None:
+    """Returns as soon as another thread uses the world."""
+    with contextlib.suppress(sk.BusyError):
+        while True:
+            _ = world.time
+
+
 def run_program(program: str, *, check: bool = True, **options: Any) -> subprocess.CompletedProcess[str]:
     """Runs a Python program, which must end well and silently: nanobind reports leaks at the end of a program."""
     done = subprocess.run(

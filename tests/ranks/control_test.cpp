@@ -44,6 +44,25 @@ TEST_CASE("a call that one rank stops ends on all ranks after the same step", "[
     }
 }
 
+TEST_CASE("a call of one step that one rank stops is reported as stopped on all ranks", "[ranks]") {
+    std::vector<StepReport> reports(2);
+    run_on_ranks(2, [&](Ranks& ranks) {
+        World world;
+        const auto rubber = world.add_material({.young_modulus = 2e4});
+        // far apart, so that the ranks repeat no attempt
+        for (const Real x : {0, 10}) world.add_body(mesh::ball(0.1, 2), {.material = rubber, .position = {x, 0, 0}});
+        const Real step = world.stable_step() / 2;
+        distribute(world, ranks);
+        world.advance(step);
+        reports[static_cast<std::size_t>(ranks.rank())] =
+            world.advance(step, [&](const StepReport&) { return ranks.rank() != 1; });
+    });
+    for (const StepReport& report : reports) {
+        CHECK(report.status == StepStatus::stopped);
+        CHECK(report.steps == 1);
+    }
+}
+
 TEST_CASE("the balance of energy and momentum over ranks is that of an undivided world", "[ranks]") {
     constexpr Real seconds = 0.1;
     World whole = balls({});

@@ -35,7 +35,7 @@ class MpirunTest(ProgramCase):
     def ranks(self, ranks, *arguments, code=0, apart=()):
         """`apart`: command line of one more rank."""
         command = self.command(ranks, *arguments) + [":", "-n", "1", *map(str, apart)] * bool(apart)
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
         self.assertEqual(done.returncode, code, f"{command}\n{done.stdout}\n{done.stderr}")
         return done
 
@@ -126,16 +126,16 @@ class MpirunTest(ProgramCase):
         self.assertRegex(done.stderr, r"skerry: rank 1 on \S+: .*--bogus")
 
     def test_a_killed_run_goes_on_with_another_number_of_ranks_and_the_same_bits(self):
-        expected = self.stats_of(self.skerry, self.scene, "--seconds", 1.2)
-        with self.job(2, "--seconds", 1.2) as job:
+        with self.job(2, "--seconds", 1e6) as job:
             os.kill(self.process_of(job, 1), signal.SIGKILL)
-            start = time.monotonic()
             errors = job.communicate(timeout=60)[1]
-        self.assertLess(time.monotonic() - start, 60)
         self.assertNotEqual(job.returncode, 0)
         self.assertIn("process rank 1", errors)
-        self.assertRegex(errors, r"continue from the checkpoint at .*s: skerry run --restart .*run.skerry")
-        found = self.stats_of(lambda *arguments: self.ranks(3, *arguments), "--restart", self.checkpoint)
+        said = re.search(r"from the checkpoint at ([\d.]+) ([mk]?)s: skerry run --restart .*run.skerry", errors)
+        number, prefix = said.groups()
+        end = ("--seconds", 1.01 * float(number) * {"m": 1e-3, "": 1, "k": 1e3}[prefix] + 0.2)
+        expected = self.stats_of(self.skerry, self.scene, *end)
+        found = self.stats_of(lambda *arguments: self.ranks(3, *arguments), "--restart", self.checkpoint, *end)
         self.assertGreater(found["restarted_at"], 0)
         self.assertEqual(found["state_hash"], expected["state_hash"])
 

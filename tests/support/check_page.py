@@ -346,7 +346,7 @@ def main(folder):
     check(folder, "page.html", "#time=1.17", {**ready, "frame": "70"}, "narrow.png", (520, 1100))
     # In a small window, whose pictures cost little: on a machine with other work the browser's own time passes between
     # few of them.
-    for seconds in [10, 40]:
+    for seconds in [10, 40, 160]:
         playing = marks(browse(page, "#play=1&frame=0&rate=1", size=(400, 300), seconds=seconds))
         if "error" in playing or int(playing["frame"]) > 0:
             break

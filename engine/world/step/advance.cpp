@@ -343,6 +343,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         stops |= !heard;
         if (!heard && !world.ranks.on()) break;
     }
+    // The last step of a call informs the ranks too late for the check before the next step.
+    if (!(left > 0) && world.ranks.all.stop) report.status = StepStatus::stopped;
     clock.long_step = {};                // at the end of a call, implicit bodies have reached the present time
     world.cache.search.end_step(false);  // only has an effect if the last attempt was not committed
     if (report.steps == 0) {

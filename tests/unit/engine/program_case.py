@@ -41,6 +41,16 @@ class ProgramCase(unittest.TestCase):
         self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
         return done
 
+    def job(self, *arguments):
+        """Starts a run and returns after its first line of progress: signals are handled and steps are made."""
+        process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   text=True)
+        line = process.stderr.readline()
+        while " steps; about " not in line:
+            self.assertNotEqual(line, "", "the run ended early")
+            line = process.stderr.readline()
+        return process
+
     def assert_refused(self, *arguments, said):
         """Exit code 2, one line on standard error, nothing on standard output, no file that was not there."""
         before = sorted(self.folder.rglob("*"))

@@ -217,9 +217,7 @@ class ProgramTest(ProgramCase):
 
     def test_an_interrupt_writes_what_there_is(self):
         stats = self.folder / "stats.json"
-        with subprocess.Popen([PROGRAM, "run", self.scene, "--seconds", "1e6", "--stats", stats],
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-            time.sleep(1.5)
+        with self.job("run", self.scene, "--seconds", "1e6", "--stats", stats) as process:
             process.send_signal(signal.SIGINT)
             _, stderr = process.communicate(timeout=120)
         self.assertEqual(process.returncode, 130, stderr)
@@ -252,7 +250,7 @@ class ProgramTest(ProgramCase):
         with subprocess.Popen([PROGRAM, "view", self.scene, "--paused"], stdout=subprocess.PIPE, text=True,
                               env=own) as view:
             address = re.search(r"http\S+", view.stdout.readline())[0]
-            end = time.monotonic() + 10
+            end = time.monotonic() + 60
             while not told.exists() and time.monotonic() < end:
                 time.sleep(0.01)
             view.send_signal(signal.SIGINT)

@@ -153,8 +153,7 @@ class SeriesTest(ProgramCase):
     def test_a_run_that_is_killed_leaves_whole_rows_and_goes_on_with_them(self):
         series, checkpoint = self.folder / "series.csv", self.folder / "run.skerry"
         whole = self.folder / "whole.csv"
-        self.skerry("run", self.scene, "--seconds", 2, "--probes", whole)
-        run = subprocess.Popen([PROGRAM, "run", self.scene, "--seconds", "2", "--probes", series, "--checkpoint",
+        run = subprocess.Popen([PROGRAM, "run", self.scene, "--seconds", "1e6", "--probes", series, "--checkpoint",
                                 checkpoint, "--every", "0.05"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             end = time.monotonic() + 60
@@ -171,7 +170,9 @@ class SeriesTest(ProgramCase):
         self.assertGreater(len(rows["time [s]"]), 4)
         with open(series, "a", encoding="utf-8") as file:
             file.write("0.0")  # as if it had been cut off within a row
-        self.skerry("run", "--restart", checkpoint, "--probes", series)
+        seconds = (round(60 * rows["time [s]"][-1]) + 6) / 60
+        self.skerry("run", "--restart", checkpoint, "--seconds", seconds, "--probes", series)
+        self.skerry("run", self.scene, "--seconds", seconds, "--probes", whole)
         self.assertEqual(series.read_text(), whole.read_text())
 
     def test_a_full_disk_leaves_whole_rows_and_takes_no_other_output_with_it(self):
