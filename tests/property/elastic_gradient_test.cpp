@@ -1,4 +1,5 @@
 // Derivatives against finite differences, and properties of the stress for simple deformations.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "jobs/executor.h"

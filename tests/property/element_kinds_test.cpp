@@ -1,4 +1,5 @@
 // Properties that every kind of element must have, and those that smoothed elements add (docs/methods/elasticity.md 7).
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "jobs/executor.h"

@@ -1,5 +1,6 @@
 #include "systems/dynamics/stability/frame_masses.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>

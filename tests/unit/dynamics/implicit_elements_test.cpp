@@ -1,5 +1,5 @@
 // Implicit elements and their matrices against dense textbook matrices (docs/methods/clusters.md 2, 3).
-#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>

@@ -1,6 +1,6 @@
 // Selection of the clusters that stiffen with their elements, against a test of every element (docs/methods/clusters.md
 // 3).
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>

@@ -1,5 +1,5 @@
 // Global problems: M v = H r + f, u = H^T v + w, condensed to the contacts.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <functional>
 #include <initializer_list>

@@ -1,5 +1,5 @@
 // The factorisation for Newton steps on contacts between bodies, against Eigen's dense one.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <random>
 #include <vector>

@@ -1,5 +1,5 @@
 // Contacts on nodes that are coupled by one matrix (docs/methods/clusters.md 4).
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 
 #include "tests/support/contact_scene.h"
