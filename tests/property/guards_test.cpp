@@ -1,4 +1,5 @@
 // Inversion barriers that keep small tetrahedra of smoothed elements from inverting (docs/methods/elasticity.md 7.7).
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <catch2/catch.hpp>
