@@ -1,5 +1,5 @@
-// Decompositions of dense matrices. They are compiled once and optimised: their templates take long to compile, and
-// tests with hundreds of nodes spend most of their time in them.
+// Decompositions of dense matrices. Their templates take long to compile, so they are compiled once. They are
+// optimised, because tests decompose matrices of hundreds of rows.
 #pragma once
 
 #include <Eigen/Core>
