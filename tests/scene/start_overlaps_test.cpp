@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "systems/geometry/rotation.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/random.h"
 #include "tests/support/surfaces_cross.h"
 #include "tests/support/worlds.h"
@@ -259,7 +260,7 @@ TEST_CASE("a body that something sharp is in between its nodes is lifted off it"
         for (Real depth : {0.0, 0.004}) {
             Stage s(StartOverlaps::resolve);
             const Vec3 out = c.out.normalized();
-            const Mat3 turned = Eigen::Quaternion<Real>::FromTwoVectors(Vec3::UnitZ(), out).toRotationMatrix();
+            const Mat3 turned = rotation_between(Vec3::UnitZ(), out);
             const Vec3 position = c.tip + (0.1 - depth) * out + turned * Vec3(0.03, 0.045, 0);
             const auto body = s.world.add_body(
                 mesh,

@@ -290,7 +290,7 @@ def check_acting(folder, fragment, script, size=(900, 700), before="", page="pag
         text = text.replace("img-src data:", "img-src data:; media-src blob:", 1)
         file.write(text.replace("<head>", f"<head><script>{before}</script>", 1)
                    .replace("</body>", f"<script>{ACTING % script if script else ''}</script></body>"))
-    for seconds in [60, 600, 6000] if script else [12]:
+    for seconds in [600, 6000] if script else [12]:
         found = marks(browse(acting, fragment, size=size, seconds=seconds))
         if "error" in found or "done" in found:
             break

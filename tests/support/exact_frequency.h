@@ -2,10 +2,11 @@
 // of stable_step with it.
 #pragma once
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <cmath>
 
 #include "systems/dynamics/stability/stable_step.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/elastic_body.h"
 
 namespace skerry::test {
@@ -30,8 +31,7 @@ inline Real exact_frequency_squared(ElasticBody& body) {
         for (Eigen::Index j = 0; j < size; ++j)
             K(i, j) /=
                 std::sqrt(body.mass[static_cast<std::size_t>(i / 3)] * body.mass[static_cast<std::size_t>(j / 3)]);
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (K + K.transpose()), Eigen::EigenvaluesOnly)
-        .eigenvalues()[size - 1];
+    return symmetric_eigenvalues(0.5 * (K + K.transpose()))[size - 1];
 }
 
 /// Longest step for which symplectic Euler is stable [s].

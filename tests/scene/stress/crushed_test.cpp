@@ -1,8 +1,8 @@
 // Stress suite: bodies deformed as strongly as users do it have to recover, at little more than the usual cost (items
 // 29 to 31 of docs/stress.md).
-#include <Eigen/SVD>
 #include <catch2/catch.hpp>
 
+#include "tests/support/dense_algebra.h"
 #include "tests/support/stress.h"
 #include "tests/support/worlds.h"
 
@@ -54,8 +54,7 @@ struct OneBody {
         Mat3 product = Mat3::Zero();
         for (std::size_t n = 0; n < rest.size(); ++n)
             product += (x[n] - middle()) * (rest[n] - rest_middle).transpose();
-        const Eigen::JacobiSVD<Mat3> svd(product, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
+        const Mat3 rotation = orthogonal_factor(product);
         Real most = 0;
         for (std::size_t n = 0; n < rest.size(); ++n)
             most = std::max(most, (x[n] - middle() - rotation * (rest[n] - rest_middle)).norm());

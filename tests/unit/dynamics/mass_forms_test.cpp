@@ -1,12 +1,12 @@
 #include "systems/dynamics/stability/mass_forms.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "systems/dynamics/stability/stable_step.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/elastic_body.h"
 #include "tests/support/element_kinds.h"
 #include "tests/support/exact_frequency.h"
@@ -41,7 +41,7 @@ Real part_of_mass_taken(const ElasticBody& body) {
                     body.gradient(e, j).dot(inverse * body.gradient(e, k)) /
                     std::sqrt(body.mass[body.node(e, j)] * body.mass[body.node(e, k)]);
     }
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(sum, Eigen::EigenvaluesOnly).eigenvalues()[size - 1];
+    return symmetric_eigenvalues(sum)[size - 1];
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 
+#include "tests/support/dense_algebra.h"
 #include "tests/support/elastic_body.h"
 
 namespace skerry::test::yield_elements_test {
@@ -42,7 +43,7 @@ struct Sample {
 };
 
 Mat3 stretched_along(const Vec3& axis, Real by) {
-    const Mat3 turn = Eigen::Quaternion<Real>::FromTwoVectors(Vec3::UnitX(), axis).toRotationMatrix();
+    const Mat3 turn = rotation_between(Vec3::UnitX(), axis);
     return turn * Vec3(by, 1 / std::sqrt(by), 1 / std::sqrt(by)).asDiagonal() * turn.transpose();
 }
 

@@ -1,10 +1,11 @@
 // Global problems: M v = H r + f, u = H^T v + w, condensed to the contacts.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <functional>
 #include <initializer_list>
 
 #include "problem_samples.h"
+#include "tests/support/dense_algebra.h"
 
 namespace skerry::test::problem_global_test {
 
@@ -28,7 +29,7 @@ Eigen::VectorXd dense(const std::vector<double>& values) {
 TEST_CASE("a global problem is condensed to H^T M^-1 H and H^T M^-1 f + w, in every storage", "[unit][problem]") {
     const FclibFile sample = global_file();
     const Eigen::MatrixXd mass = dense(sample, "M"), h = dense(sample, "H");
-    const Eigen::MatrixXd inverse = mass.inverse();
+    const Eigen::MatrixXd inverse = inverse_of(mass);
     const Eigen::MatrixXd w = h.transpose() * inverse * h;
     const Eigen::VectorXd q =
         h.transpose() * inverse * dense(sample.reals.at("vectors/f")) + dense(sample.reals.at("vectors/w"));
@@ -127,7 +128,7 @@ TEST_CASE("a body of many contacts is condensed in batches as if at once", "[uni
     const ContactProblem problem = read_back(file);
     Eigen::MatrixXd h = Eigen::MatrixXd::Zero(9, 3 * contacts);
     for (std::size_t k = 0; k < row.size(); ++k) h(row[k], column[k]) += value[k];
-    const Eigen::MatrixXd w = h.transpose() * dense(file, "M").inverse() * h;
+    const Eigen::MatrixXd w = h.transpose() * inverse_of(dense(file, "M")) * h;
     for (int r = 0; r < 3 * contacts; r += 7)
         // Entries are up to 20: the margin allows a few roundings.
         for (int c = 0; c < 3 * contacts; c += 5) CHECK(entry(problem, r, c) == Approx(w(r, c)).margin(1e-12));

@@ -1,8 +1,9 @@
 // Contacts on nodes that are coupled by one matrix (docs/methods/clusters.md 4).
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 
 #include "tests/support/contact_scene.h"
+#include "tests/support/dense_algebra.h"
 
 namespace skerry::test::solver_clusters_test {
 
@@ -30,7 +31,7 @@ Eigen::MatrixXd couple(ContactScene& scene, Index first, Index count, Real stiff
     clusters.nodes.offset.push_back(static_cast<Index>(clusters.nodes.item.size()));
     clusters.first_entry.push_back(clusters.inverse.size());
     clusters.body.push_back(0);
-    const Eigen::MatrixXd inverse = A.inverse();
+    const Eigen::MatrixXd inverse = inverse_of(A);
     for (Index i = 0; i < count; ++i)
         for (Index j = 0; j < count; ++j) clusters.inverse.push_back(inverse(std::max(i, j), std::min(i, j)));
     return A;
