@@ -52,8 +52,8 @@ if(SKERRY_CHECK_ACCESS)
 endif()
 if(SKERRY_SANITIZE)
     # These checks are off, because they take two fifths of the compile time and most of the run time. A null pointer
-    # ends the program without a check, x86 allows unaligned reads, and the address sanitizer finds each access through a
-    # pointer that overflowed or left its object. Only the fuzzers, which run for hours, find a local variable that is
+    # ends the program without a check, x86 allows unaligned reads, and the address sanitizer finds each access through
+    # a pointer that overflowed or left its object. Only the fuzzers, which run for hours, find a local variable that is
     # used after the end of its scope.
     set(unchecked "")
     if(SKERRY_FUZZERS)
