@@ -1,5 +1,6 @@
 # All options of the project. The defaults suit users who build Skerry alone.
-option(SKERRY_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
+set(SKERRY_TESTS ${PROJECT_IS_TOP_LEVEL} CACHE STRING
+    "Build the tests: ON, OFF or threads (those of several workers; they need SKERRY_SCENES and no other part)")
 option(SKERRY_EXAMPLES "Build the examples, which are tests as well" ${PROJECT_IS_TOP_LEVEL})
 option(SKERRY_PROFILING "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
 option(SKERRY_PROGRAM "Build the program skerry" ON)

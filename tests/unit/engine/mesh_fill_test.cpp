@@ -99,7 +99,7 @@ TEST_CASE("a clean surface is filled with its own nodes and triangles") {
     CHECK(filled.mesh.label.empty());
 }
 
-TEST_CASE("an inner shell bounds a region with a label, or a cavity") {
+TEST_CASE("an inner shell bounds a region with a label, or a cavity", "[processes]") {
     if (!netgen_is_built()) return;
     const Variable netgen("SKERRY_FILL", built_netgen());
     const SurfaceMesh outer = ball_surface(0.5, 6), inner = ball_surface(0.2, 4);
@@ -128,7 +128,7 @@ TEST_CASE("an inner shell bounds a region with a label, or a cavity") {
     CHECK(mesh::fill(both(outer, turned_inside_out(inner)), "ball.stl").mesh.tetrahedra == hollow.mesh.tetrahedra);
 }
 
-TEST_CASE("the shells of several files are sets with the names of the files") {
+TEST_CASE("the shells of several files are sets with the names of the files", "[processes]") {
     if (!netgen_is_built()) return;
     const Variable netgen("SKERRY_FILL", built_netgen());
     const TemporaryFolder folder;
@@ -146,7 +146,7 @@ TEST_CASE("the shells of several files are sets with the names of the files") {
     CHECK(inspect(filled.mesh).labels.size() == 2);
 }
 
-TEST_CASE("a repeated shell is filled once, with a note") {
+TEST_CASE("a repeated shell is filled once, with a note", "[processes]") {
     if (!netgen_is_built()) return;
     const Variable netgen("SKERRY_FILL", built_netgen());
     const SurfaceMesh ball = ball_surface(0.5);
