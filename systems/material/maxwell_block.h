@@ -1,6 +1,7 @@
 // Step of the Maxwell elements of a block: springs in series with dashpots (docs/methods/elasticity.md 6.2). Strains
 // are computed and stored in single precision. Their errors are 6e-8 of the strains, and hence far below those of the
-// stress. Loops over components are unrolled, so that the components stay in registers.
+// stress. Loops over components are unrolled, so that the components stay in registers. All springs of a component are
+// computed before the next component, and their sums grow with it: few numbers are needed at a time.
 #pragma once
 
 #ifdef __AVX512VL__
@@ -10,6 +11,7 @@
 #include <array>
 #include <cmath>
 
+#include "components/computed_here.h"
 #include "components/element_table.h"
 #include "components/lanes.h"
 #include "components/prefetch_lines.h"
@@ -33,36 +35,6 @@ struct SixFloats {
     KernelFloat of[count];
 };
 
-[[gnu::always_inline]] inline SixFloats load_six(const Lanes<float, element_lanes>* from) {
-    SixFloats six;
-#pragma GCC unroll 6
-    for (std::size_t i = 0; i < six.count; ++i) six.of[i] = reinterpret_cast<const KernelFloatInMemory*>(from)[i];
-    return six;
-}
-[[gnu::always_inline]] inline void store_six(const SixFloats& six, Lanes<float, element_lanes>* to) {
-#pragma GCC unroll 6
-    for (std::size_t i = 0; i < six.count; ++i) reinterpret_cast<KernelFloatInMemory*>(to)[i] = six.of[i];
-}
-
-[[gnu::always_inline]] inline SixFloats operator+(const SixFloats& a, const SixFloats& b) {
-    SixFloats sum;
-#pragma GCC unroll 6
-    for (std::size_t i = 0; i < sum.count; ++i) sum.of[i] = a.of[i] + b.of[i];
-    return sum;
-}
-[[gnu::always_inline]] inline SixFloats operator-(const SixFloats& a, const SixFloats& b) {
-    SixFloats difference;
-#pragma GCC unroll 6
-    for (std::size_t i = 0; i < difference.count; ++i) difference.of[i] = a.of[i] - b.of[i];
-    return difference;
-}
-[[gnu::always_inline]] inline SixFloats operator*(float s, const SixFloats& a) {
-    SixFloats product;
-#pragma GCC unroll 6
-    for (std::size_t i = 0; i < product.count; ++i) product.of[i] = s * a.of[i];
-    return product;
-}
-
 // The functions below sum in an order that does not depend on the register width. Halves of 512-bit registers are moved
 // with intrinsics, because gcc shuffles the whole register for __builtin_shufflevector.
 #ifdef __AVX512VL__
@@ -82,15 +54,27 @@ struct SixFloats {
 [[gnu::always_inline]] inline SixFloats six_of(const LaneSymmetric<Float8>& a) {
     return {{together(a.xx, a.yy), together(a.zz, a.xy), together(a.yz, a.zx)}};
 }
-[[gnu::always_inline]] inline Float8 trace(const SixFloats& a) {
-    return (first_of(a.of[0]) + second_of(a.of[0])) + first_of(a.of[1]);
-}
-[[gnu::always_inline]] inline Float8 inner_product(const SixFloats& a, const SixFloats& b) {
-    const Float8 one = Float8{} + 1.0F;
-    const KernelFloat sum =
-        (a.of[0] * b.of[0] + together(one, one + one) * (a.of[1] * b.of[1])) + 2.0F * (a.of[2] * b.of[2]);
-    return first_of(sum) + second_of(sum);
-}
+/// Trace of a matrix whose components are added in order.
+struct TraceSum {
+    Float8 sum;
+
+    [[gnu::always_inline]] void add(std::size_t i, const KernelFloat& component) {
+        if (i == 0) sum = first_of(component) + second_of(component);
+        if (i == 1) sum = computed_here(sum + first_of(component));
+    }
+};
+/// Inner product of two matrices, from the products of their components, which are added in order.
+struct InnerProduct {
+    KernelFloat sum;
+
+    [[gnu::always_inline]] void add(std::size_t i, const KernelFloat& product) {
+        const Float8 one = Float8{} + 1.0F;
+        if (i == 0) sum = product;
+        if (i == 1) sum = computed_here(sum + together(one, one + one) * product);
+        if (i == 2) sum = computed_here(sum + 2.0F * product);
+    }
+    [[gnu::always_inline]] Float8 total() const { return first_of(sum) + second_of(sum); }
+};
 [[gnu::always_inline]] inline Float8 floats_of(const Parts<Real8>& reals) {
     return __builtin_convertvector(reals[0], Float8);
 }
@@ -104,14 +88,24 @@ struct SixFloats {
 [[gnu::always_inline]] inline SixFloats six_of(const LaneSymmetric<Float8>& a) {
     return {{a.xx, a.yy, a.zz, a.xy, a.yz, a.zx}};
 }
-[[gnu::always_inline]] inline Float8 trace(const SixFloats& a) {
-    return (a.of[0] + a.of[1]) + a.of[2];
-}
-[[gnu::always_inline]] inline Float8 inner_product(const SixFloats& a, const SixFloats& b) {
-    const Float8 even = (a.of[0] * b.of[0] + a.of[2] * b.of[2]) + 2.0F * (a.of[4] * b.of[4]);
-    const Float8 odd = (a.of[1] * b.of[1] + 2.0F * (a.of[3] * b.of[3])) + 2.0F * (a.of[5] * b.of[5]);
-    return even + odd;
-}
+/// Trace of a matrix whose components are added in order.
+struct TraceSum {
+    Float8 sum;
+
+    [[gnu::always_inline]] void add(std::size_t i, const Float8& component) {
+        if (i < 3) sum = i == 0 ? component : computed_here(sum + component);
+    }
+};
+/// Inner product of two matrices, from the products of their components, which are added in order.
+struct InnerProduct {
+    Float8 even, odd;
+
+    [[gnu::always_inline]] void add(std::size_t i, const Float8& product) {
+        Float8& sum = i % 2 == 0 ? even : odd;
+        sum = computed_here(i < 2 ? product : sum + (i < 3 ? product : 2.0F * product));
+    }
+    [[gnu::always_inline]] Float8 total() const { return even + odd; }
+};
 [[gnu::always_inline]] inline Float8 floats_of(const Parts<Real4>& reals) {
     return __builtin_convertvector(__builtin_shufflevector(reals[0], reals[1], 0, 1, 2, 3, 4, 5, 6, 7), Float8);
 }
@@ -125,24 +119,27 @@ struct SixFloats {
             part_of(a.xy, part), part_of(a.yz, part), part_of(a.zx, part)};
 }
 
-/// Constants of a step of the Maxwell elements of a body, which all elements share. Moduli are relative to `modulus`.
+/// Constants of a step of the Maxwell elements of a body, which all elements share. Each fills a register, so that
+/// instructions can read it from memory. Moduli are relative to `modulus`.
 struct MaxwellStep {
     // fraction 1 / (1 + h r) of the spring strain that remains after a step h at the rate r
-    std::array<float, maxwell_count> kept;
+    std::array<KernelFloat, maxwell_count> kept;
     // h r: strain change of the dashpot in the step, divided by the remaining spring strain
-    std::array<float, maxwell_count> relaxes;
-    float shear, trace, bulk;  // moduli mu, lambda / 2 and bulk / 2 of a spring (ViscousModuli)
-    Real modulus;              // reference modulus: sum of the Lame constants of the material [Pa]
+    std::array<Float8, maxwell_count> relaxes;
+    Float8 shear, trace, bulk;  // moduli mu, lambda / 2 and bulk / 2 of a spring (ViscousModuli)
+    Real modulus;               // reference modulus: sum of the Lame constants of the material [Pa]
 
     MaxwellStep(const MaterialConstants& material, const RelaxationRates& rates, Real share, Real h)
         : modulus(material.shear_modulus + std::abs(material.lame_lambda)) {
         for (std::size_t k = 0; k < maxwell_count; ++k) {
-            relaxes[k] = static_cast<float>(h * rates[k]);
-            kept[k] = static_cast<float>(1 / (1 + h * rates[k]));
+            relaxes[k] = Float8{} + static_cast<float>(h * rates[k]);
+            kept[k] = KernelFloat{} + static_cast<float>(1 / (1 + h * rates[k]));
         }
         const ViscousModuli moduli = viscous_moduli(material, share);
         // With Poisson's ratio 0 the volumetric part has the modulus 0; this avoids 0 / 0.
-        const auto relative = [this](Real of) { return modulus > 0 ? static_cast<float>(of / modulus) : 0; };
+        const auto relative = [this](Real of) {
+            return Float8{} + (modulus > 0 ? static_cast<float>(of / modulus) : 0);
+        };
         shear = relative(moduli.mu);
         trace = relative(moduli.lambda / 2);
         bulk = relative(moduli.bulk / 2);
@@ -162,38 +159,55 @@ struct MaxwellStep {
                                                           SpringStrain& next, std::size_t ahead, Float8& dissipated) {
     // Prefetches are spread over the function, because processors have few buffers for outstanding cache misses.
     const std::size_t entries_ahead = ahead * last.size();
-    const auto load = [&](std::size_t entry) __attribute__((always_inline)) {
-        prefetch_lines_ahead(&last[entry], entries_ahead, 6);
-        return load_six(&last[entry]);
+    constexpr std::size_t entries_per_line = 2;
+    const auto prefetch = [&](const SpringStrain& of, std::size_t entry) __attribute__((always_inline)) {
+        if (entry % entries_per_line == 0) prefetch_lines_ahead(&of[entry], entries_ahead, entries_per_line);
     };
-    const auto store = [&](const SixFloats& six, std::size_t entry) __attribute__((always_inline)) {
-        prefetch_lines_ahead(&next[entry], entries_ahead, 6);
-        store_six(six, &next[entry]);
+    // Component i of the matrix whose first component is the given entry.
+    const auto load = [&](std::size_t entry, std::size_t i) __attribute__((always_inline)) {
+        prefetch(last, entry + i * components_together);
+        return reinterpret_cast<const KernelFloatInMemory*>(&last[entry])[i];
     };
-    const SixFloats now = six_of(strain), change = now - load(0);
-    store(now, 0);
-    const auto spring = [&](std::size_t k, Float8 & energy) __attribute__((always_inline)) {
-        const SixFloats before = load(6 + 6 * k), after = step.kept[k] * (before + change), twice_mean = before + after;
-        store(after, 6 + 6 * k);
-        energy = step.relaxes[k] * (step.shear * inner_product(twice_mean, after) +
-                                    step.trace * (skerry::trace(twice_mean) * skerry::trace(after)));
-        return after;
+    const auto store = [&](const KernelFloat& from, std::size_t entry, std::size_t i) __attribute__((always_inline)) {
+        prefetch(next, entry + i * components_together);
+        reinterpret_cast<KernelFloatInMemory*>(&next[entry])[i] = from;
     };
-    SixFloats sum = spring(0, dissipated);
+    const SixFloats now = six_of(strain);
+    SixFloats sum;
+    TraceSum trace_of_change;
+    std::array<TraceSum, maxwell_count> trace_of_after, trace_of_mean;
+    std::array<InnerProduct, maxwell_count> work;
+#pragma GCC unroll 6
+    for (std::size_t i = 0; i < SixFloats::count; ++i) {
+        const KernelFloat change = now.of[i] - load(0, i);
+        store(now.of[i], 0, i);
+        trace_of_change.add(i, change);
 #pragma GCC unroll 3
-    for (std::size_t k = 1; k < maxwell_count; ++k) {
-        Float8 energy;
-        sum = sum + spring(k, energy);
-        dissipated = dissipated + energy;
+        for (std::size_t k = 0; k < maxwell_count; ++k) {
+            const KernelFloat before = load(6 + 6 * k, i), after = step.kept[k] * (before + change),
+                              twice_mean = before + after;
+            store(after, 6 + 6 * k, i);
+            work[k].add(i, twice_mean * after);
+            trace_of_mean[k].add(i, twice_mean);
+            trace_of_after[k].add(i, after);
+            sum.of[i] = k == 0 ? after : computed_here(sum.of[i] + after);
+        }
+    }
+#pragma GCC unroll 3
+    for (std::size_t k = 0; k < maxwell_count; ++k) {
+        const Float8 energy = step.relaxes[k] * (step.shear * work[k].total() +
+                                                 step.trace * (trace_of_mean[k].sum * trace_of_after[k].sum));
+        dissipated = k == 0 ? energy : dissipated + energy;
     }
     prefetch_lines_ahead(&last[bulk_entry], entries_ahead, 1);
     prefetch_lines_ahead(&next[bulk_entry], entries_ahead, 1);
     const Float8 before = *reinterpret_cast<const Float8InMemory*>(last[bulk_entry].lane),
-                 after = (before + skerry::trace(change)) / (1.0F + relaxes_volume);
+                 after = (before + trace_of_change.sum) / (1.0F + relaxes_volume);
     *reinterpret_cast<Float8InMemory*>(next[bulk_entry].lane) = after;
     dissipated = dissipated + relaxes_volume * (step.bulk * ((before + after) * after));
-    const Float8 pressure = step.trace * skerry::trace(sum) + step.bulk * after;
-    LaneSymmetric<Float8> stress = components_of(step.shear * sum);
+    const LaneSymmetric<Float8> springs = components_of(sum);
+    const Float8 pressure = step.trace * springs.trace() + step.bulk * after;
+    LaneSymmetric<Float8> stress = step.shear * springs;
     stress.xx += pressure;
     stress.yy += pressure;
     stress.zz += pressure;

@@ -248,7 +248,8 @@ struct Run {
             if (rests_easy(law, block, copy_of_parts(F)))
                 note(block, false, false);
             else
-                Q = copy_of_parts(with_viscous_stress(*this, block, copy_of_parts(F), scale, copy_of_parts(Q)));
+                Q = copy_of_parts(
+                    with_viscous_stress(*this, block, copy_of_parts(F), scale_of(block), copy_of_parts(Q)));
         }
         return Q;
     }

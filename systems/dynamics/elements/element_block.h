@@ -8,24 +8,16 @@
 #endif
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <type_traits>
 
+#include "components/computed_here.h"
 #include "components/element_table.h"
 #include "systems/material/lane_math.h"
 
 namespace skerry {
-
-/// Returns x in a register, as a value that gcc regards as new (512-bit registers only). Otherwise gcc would load x
-/// from memory at each use, which takes more time than the arithmetic, or store intermediate results for later use.
-template <class T>
-[[gnu::always_inline]] inline T kept_apart(T x) {
-#ifdef __AVX512VL__
-    asm("" : "+v"(x));
-#endif
-    return x;
-}
 
 /// Loads a position and the number that follows it in memory.
 [[gnu::always_inline]] inline Real4 load_position(const Vec3* at) {
@@ -43,7 +35,7 @@ struct PatchRows {
     Number* first;
 
     const PaddedVec3* operator+(Index slot) const { return reinterpret_cast<const PaddedVec3*>(first + slot); }
-    Real4& operator[](Index slot) const requires(!std::is_const_v<Number>) {
+    Real4& operator[](std::ptrdiff_t slot) const requires(!std::is_const_v<Number>) {
         return *reinterpret_cast<Real4*>(first + slot);
     }
 };
@@ -178,24 +170,20 @@ inline LaneMat3<Real8> edges(const TetrahedronNodes& node, std::span<const Vec3>
     });
 }
 
+/// With 512-bit registers gcc would load a gradient from memory at each use, which takes more time than the arithmetic.
 template <class T>
 [[gnu::always_inline]] inline LaneVec3<T> load_gradient(const ElementGradient& gradient, std::size_t part) {
-    return {kept_apart(load_part<T>(gradient[0], part)), kept_apart(load_part<T>(gradient[1], part)),
-            kept_apart(load_part<T>(gradient[2], part))};
+    const LaneVec3<T> g{load_part<T>(gradient[0], part), load_part<T>(gradient[1], part),
+                        load_part<T>(gradient[2], part)};
+#ifdef __AVX512VL__
+    return {computed_here(g.x), computed_here(g.y), computed_here(g.z)};
+#else
+    return g;
+#endif
 }
 
 inline LaneVec3<Real8> load_gradient(const ElementGradient& gradient) {
     return load_gradient<Real8>(gradient, 0);
-}
-
-/// F = sum_k (x_k - x_0) (x) g_k of elements with four nodes. The columns of `d` are the edge vectors x_k - x_0, and
-/// g_k are the gradients at rest.
-[[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_edges(const BlockNodes& block, std::size_t part,
-                                                                     const LaneMat3<KernelReal>& d) {
-    const auto gradient = [&](Index k) { return load_gradient<KernelReal>(block.gradient[k], part); };
-    const LaneVec3<KernelReal> g1 = gradient(1), g2 = gradient(2), g3 = gradient(3);
-    return {g1.x * d.c0 + g2.x * d.c1 + g3.x * d.c2, g1.y * d.c0 + g2.y * d.c1 + g3.y * d.c2,
-            g1.z * d.c0 + g2.z * d.c1 + g3.z * d.c2};
 }
 
 /// F = sum_k (x_k - x_0) (x) g_k of the elements in one register-wide part of a block, with any number of nodes. x_k
@@ -203,15 +191,19 @@ inline LaneVec3<Real8> load_gradient(const ElementGradient& gradient) {
 template <class Positions, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_part(const BlockNodes& block, std::size_t part,
                                                                     Positions position, Load&& load_nodes) {
-    if (block.count == 4) return gradient_of_edges(block, part, edges_of_part(block.node, part, position, load_nodes));
     const auto gradient = [&](Index k) { return load_gradient<KernelReal>(block.gradient[k], part); };
     const Corner anchor = load_nodes(block.node[0], part, position);
-    const auto term = [&](Index k) {
+    const auto term = [&](Index k) __attribute__((always_inline)) {
         const LaneVec3<KernelReal> d = edge(load_nodes(block.node[k], part, position), anchor), g = gradient(k);
         return LaneMat3<KernelReal>{g.x * d, g.y * d, g.z * d};
     };
     LaneMat3<KernelReal> F = term(1);
-    for (Index k = 2; k < block.count; ++k) F = F + term(k);
+    if (block.count == 4) {
+        F = F + term(2);
+        F = F + term(3);
+    } else {
+        for (Index k = 2; k < block.count; ++k) F = F + term(k);
+    }
     return F;
 }
 
@@ -243,9 +235,9 @@ template <class T>
 #pragma GCC unroll 2
     for (std::size_t part = 0; part < kernel_parts; ++part) {
         const LaneMat3<T>& a = of[part];
-        copy[part] = {{kept_apart(a.c0.x), kept_apart(a.c0.y), kept_apart(a.c0.z)},
-                      {kept_apart(a.c1.x), kept_apart(a.c1.y), kept_apart(a.c1.z)},
-                      {kept_apart(a.c2.x), kept_apart(a.c2.y), kept_apart(a.c2.z)}};
+        copy[part] = {{computed_here(a.c0.x), computed_here(a.c0.y), computed_here(a.c0.z)},
+                      {computed_here(a.c1.x), computed_here(a.c1.y), computed_here(a.c1.z)},
+                      {computed_here(a.c2.x), computed_here(a.c2.y), computed_here(a.c2.z)}};
     }
     return copy;
 }
@@ -307,7 +299,11 @@ template <class Take>
     const Real4 xy13 = __builtin_shufflevector(f.x, f.y, 1, 5, 3, 7);
     // The fourth number of a force has no meaning, so z0 may be followed by z1.
     const Real4 z02 = f.z, z13 = __builtin_shufflevector(f.z, f.z, 1, 1, 3, 3);
-    const auto add = [&](Index to, const Real4& lane) { force[to] = force[to] + lane; };
+    const auto add = [&](std::ptrdiff_t to, const Real4& lane) __attribute__((always_inline)) {
+        const Real4 sum = computed_here(force[to] + lane);
+        asm("" : "+r"(to));  // else gcc takes an instruction to compute the address for both accesses
+        force[to] = sum;
+    };
     add(slot[0], __builtin_shufflevector(xy02, z02, 0, 1, 4, 5));
     add(slot[1], __builtin_shufflevector(xy13, z13, 0, 1, 4, 5));
     add(slot[2], __builtin_shufflevector(xy02, z02, 2, 3, 6, 7));
