@@ -84,7 +84,7 @@ TEST_CASE("a clean surface is filled with its own nodes and triangles") {
     REQUIRE(filled.mesh.nodes.size() >= ball.nodes.size());
     CHECK(std::equal(ball.nodes.begin(), ball.nodes.end(), filled.mesh.nodes.begin()));
     const auto rotated = [](std::array<Index, 3> t) {
-        std::ranges::rotate(t, std::ranges::min_element(t));
+        std::rotate(t.begin(), std::ranges::min_element(t), t.end());
         return t;
     };
     std::set<std::array<Index, 3>> given, found;
