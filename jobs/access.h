@@ -32,8 +32,8 @@ struct Access {
 };
 using AccessList = std::vector<Access>;
 
-/// True for spans and pointers, whose accesses cannot be declared (Resource): the declaration would cover the span
-/// object instead of the data to which the span refers.
+/// True for spans, views and pointers. They are no Resource: a declared access would cover the address range of the
+/// span object instead of the data to which it refers.
 template <class T>
 inline constexpr bool shows_other_data = std::is_pointer_v<T>;
 template <class T, std::size_t N>
@@ -78,7 +78,8 @@ public:
         note(object, Use::read);
         return object;
     }
-    /// Declares a read of a table except for one column, which another stage may write at the same time.
+    /// Declares a read of a table except for one of its columns, which another stage may write at the same time.
+    /// `column` must be a member of `table`.
     template <Resource T, class Row>
     const T& read_but(const T& table, const Column<Row>& column) const {
         if (!list_) return table;

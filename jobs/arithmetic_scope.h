@@ -29,7 +29,8 @@ public:
 
 private:
 #if defined(__SSE2__)
-    static constexpr unsigned mode = 0x9fc0;  // all exceptions masked, flush to zero, denormals are zero
+    // MXCSR: rounds to nearest, masks all exceptions, flushes to zero, reads denormals as 0
+    static constexpr unsigned mode = 0x9fc0;
     unsigned before_;
 #endif
 };

@@ -11,8 +11,8 @@ namespace {
 
 class OpenMpExecutor;
 
-// Executor for whose team this thread is working now, or null. omp_in_parallel() cannot replace this pointer, because
-// it is also true in a team of the host program.
+// The executor in whose team this thread works now, or null. omp_in_parallel() cannot replace this pointer, because it
+// is also true in a team of the host program.
 thread_local const OpenMpExecutor* team_of_thread = nullptr;
 
 class TeamScope {
@@ -40,8 +40,8 @@ public:
         } else if (team_of_thread == this) {
             drain_in_team(job, std::min(count, workers_) - 1);
         } else {
-            // The complete team is used even for fewer blocks: with a smaller team the runtime would end the unused
-            // threads.
+            // The complete team is used even for fewer blocks: for a smaller team the runtime would end the surplus
+            // threads and create them again for the next call.
 #pragma omp parallel num_threads(workers_)
             {
                 const TeamScope scope(this);

@@ -1,5 +1,5 @@
-// Serial backend: only the calling thread works. The other backends are compared with it, and scenes that are too small
-// for threads use it.
+// Serial backend: only the calling thread works. Tests compare the results of the other backends with it. Steps of
+// scenes that are too small for threads run on it.
 #include "jobs/backends.h"
 
 namespace skerry {

@@ -19,8 +19,8 @@ using Clock = std::chrono::steady_clock;
 // between two stages would wake up too late for the second stage.
 constexpr std::chrono::microseconds spin_time{50};
 
-// Number of this thread among the workers of its executor. Every thread that calls the executor from outside has number
-// 0.
+// Index of this thread among the workers of its executor. Threads that the executor did not start, such as its caller,
+// have index 0.
 thread_local int own_number = 0;
 
 /// Spins for at most spin_time until ready() is true. If `may_spin` is false, ready() is called only once. Returns the
@@ -138,8 +138,8 @@ private:
             lock.unlock();
             open->job.drain(own_number);
             lock.lock();
-            // The flag is copied now: unless the calling thread sleeps, it may return and destroy its job as soon as
-            // `helpers` is zero.
+            // The flag is copied before `helpers` is reduced: if the thread that called run_blocks does not sleep, it
+            // may return and destroy *open as soon as `helpers` is zero.
             const bool owner_sleeps = open->owner_sleeps;
             if (open->helpers.fetch_sub(1, std::memory_order_release) == 1 && owner_sleeps) helpers_left_.notify_all();
             return true;
@@ -158,8 +158,9 @@ private:
         --sleepers_;
     }
 
-    /// Wakes sleeping workers after `useful` new stages or blocks have been announced: one worker for one, otherwise
-    /// all. Call it after unlocking the mutex, so that a woken thread does not have to wait for the mutex.
+    /// Wakes sleeping workers after `useful` new stages or blocks have been announced: one worker for a single stage or
+    /// block, otherwise all workers. Call it after unlocking the mutex, so that a woken thread does not have to wait
+    /// for the mutex.
     void wake(Index useful) {
         if (sleepers_ == 0) return;
         if (useful == 1) {
@@ -220,7 +221,8 @@ private:
 
     std::mutex mutex_;
     std::condition_variable work_announced_, helpers_left_;
-    // Changed under mutex_; spinning threads read it without locking the mutex.
+    // Count of announcements: of new work, of the end of a graph and of the stop. Changed under mutex_; spinning
+    // threads read it without locking the mutex.
     std::atomic<std::uint64_t> announced_{0};
     std::atomic<int> sleepers_{0};  // changed under mutex_; wake() reads it without locking the mutex
     OpenJob* open_ = nullptr;

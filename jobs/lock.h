@@ -1,4 +1,4 @@
-// Lock for data outside a step that several threads may fill when they first need them.
+// Lock for data that are computed at their first use, outside of time steps, by whichever thread needs them first.
 #pragma once
 
 #include <mutex>
@@ -7,7 +7,8 @@ namespace skerry {
 
 class Lock {
 public:
-    /// Locks until the returned object is destroyed. A thread must not lock twice.
+    /// Locks until the returned object is destroyed. The lock is not recursive: a thread that holds it must not lock it
+    /// again.
     [[nodiscard]] std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
 
 private:

@@ -1,4 +1,4 @@
-// PhaseRunner: interface of an executor that runs all blocks itself, including the blocks of a Team.
+// PhaseRunner: interface of an executor that also takes over the phases of a Team.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Reductions (sums, minima, maxima) over rows whose results are bitwise equal on any number of workers.
+// Reductions (sums, minima, maxima) over rows. Their results are bitwise equal on any number of workers.
 #pragma once
 
 #include <type_traits>

@@ -18,7 +18,9 @@ public:
 
     /// Runs tasks until none is left.
     void drain() noexcept {
-        // A task whose number was taken always runs. The lowest failing number therefore does not depend on timing.
+        // Numbers are taken in ascending order, and a task whose number was taken always runs. So before a task can
+        // fail, all tasks with lower numbers have been taken and also run. The lowest failing number therefore does not
+        // depend on timing.
         while (!closed_) {
             const Index number = next_++;
             if (number >= count_) break;

@@ -1,5 +1,5 @@
-// The arguments of a stage: read(...), write(...), make(...), value(...), inputs<X>(...), outputs<X>(...),
-// only_if(...).
+// Functions that make the arguments of TaskGraph::stage: read(...), write(...), make(...), value(...), inputs<X>(...),
+// outputs<X>(...), only_if(...).
 #pragma once
 
 #include <tuple>
@@ -29,8 +29,8 @@ struct Bind {
     X operator()(const Binder& binder, auto&... objects) const { return X::bind(binder, objects...); }
 };
 
-// Stage argument that the functor `Take` makes from objects. Its accesses are declared when the stage is added to the
-// graph. Its value is computed again whenever the stage starts.
+// Stage argument: the functor `Take` converts the objects to the value that is passed to the stage function. Its
+// accesses are declared when the stage is added to the graph. Its value is computed again whenever the stage starts.
 template <class Take, class... Objects>
 struct Argument {
     using Passed = std::invoke_result_t<Take, const Binder&, Objects&...>;

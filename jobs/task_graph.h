@@ -81,8 +81,9 @@ struct StageDeclaration {
 ///             read(n.position), write(n.velocity));
 ///
 /// The functions of stage_arguments.h make the arguments, in the order of the parameters of the stage function. If the
-/// first parameter is an Executor&, the graph passes it. Spans are taken when the stage starts. Two stages that access
-/// the same object run in the order of the list if one of them writes the object.
+/// first parameter is an Executor&, the graph passes it. Spans are made when the stage starts, because earlier stages
+/// may resize the columns. Two stages that access the same object run in the order of the list if one of them writes
+/// the object.
 class TaskGraph {
 public:
     struct Edge {

@@ -16,7 +16,8 @@ namespace skerry {
 template <class Ready>
 void Team::wait_until(Ready&& ready) const {
     // Number of pauses before the thread yields; 50,000 pauses take 2 ms. A yield gives up the core for a time slice of
-    // about this length, which is too long for a wait of a microsecond.
+    // about this length, which is too long for a wait of a microsecond. If there are more workers than cores, the
+    // thread yields early, because the thread for which it waits may need the core.
     const int patience = may_spin_ ? 50000 : 20;
     for (int i = 0; !ready(); ++i) {
         if (i < patience) {

@@ -13,7 +13,7 @@
 namespace skerry {
 
 /// Records zones: named time intervals of work. Every thread writes to its own list, which grows up to the given
-/// maximum. Further zones are only counted, and the file reports their number.
+/// maximum. Further zones are only counted; write_json() writes their number.
 class Trace {
 public:
     using Clock = std::chrono::steady_clock;
@@ -58,7 +58,8 @@ private:
 
     Worker& worker_of_this_thread();
 
-    // Number of this trace, which is never reused: a thread remembers its list together with this number.
+    // Number of this trace, never reused. A thread stores it with a pointer to its list, and so detects that the
+    // pointer belongs to another trace.
     std::uint64_t id_;
     std::size_t max_zones_per_worker_;
     Time start_;

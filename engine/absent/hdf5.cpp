@@ -1,5 +1,5 @@
-// Replacement for engine/hdf5 and the files of contact problems and series, if SKERRY_HDF5=OFF. All functions throw
-// SceneError.
+// Replacement for the functions that read and write HDF5 files (contact problems and recorded series), if
+// SKERRY_HDF5=OFF. All of them throw SceneError.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/problem.h"
 #include "skerry/recorder.h"

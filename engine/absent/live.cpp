@@ -1,4 +1,5 @@
-// Replacement for engine/live if SKERRY_LIVE=OFF.
+// Replacement for engine/live if SKERRY_LIVE=OFF. The constructor throws SceneError, so the other functions are never
+// called on an open view.
 #include "skerry/live.h"
 #include "engine/absent/refuse_absent.h"
 

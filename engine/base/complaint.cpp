@@ -62,7 +62,7 @@ SceneError error_at(const Complaint& place, const SceneError& inner) {
 }
 
 std::string short_text(Real value, int digits) {
-    constexpr int written_out = 6;  // numbers of up to this many digits have no exponent
+    constexpr int written_out = 6;  // numbers with up to this many digits before the decimal point have no exponent
     char text[32];
     std::snprintf(text, sizeof text, "%.*g", digits, value);
     if (const Real rounded = std::strtod(text, nullptr); std::abs(rounded) >= 1)
@@ -114,8 +114,8 @@ std::string nearest_name(std::string_view text, std::span<const std::string> nam
 
 std::string nearest_hint(std::string_view text, std::span<const std::string> names) {
     const std::string nearest = nearest_name(text, names);
-    // A name is suggested if at most one in this number of letters differs. With more differences the text is probably
-    // another word, not a typing mistake.
+    // A name is suggested if at most one letter differs, or one letter in every `letters_per_slip`. With more
+    // differences the text is probably another word, not a typing mistake.
     constexpr std::size_t letters_per_slip = 3;
     const std::size_t most = std::max<std::size_t>(1, std::max(text.size(), nearest.size()) / letters_per_slip);
     return nearest.empty() || edit_distance(text, nearest) > most ? std::string() : "did you mean \"" + nearest + "\"?";

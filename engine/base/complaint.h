@@ -23,11 +23,12 @@ void require(bool good, std::string_view object, std::string_view field, Real fo
 /// Refuses a vector with a component that is not finite.
 void require_finite(std::string_view object, std::string_view field, const Vec3& found);
 
-/// Returns an error whose text is that of `inner` with `place` in front. Its parts are those of `inner`. If `inner`
-/// names no file, the parts get the file and the object of `place`, and its field in front of the field of `inner`.
+/// Returns an error whose text is that of `inner` with `place` in front. The new error has the file, object, field and
+/// other parts of `inner`. If `inner` names no file, it takes file and object from `place`, and the field of `place` is
+/// put in front of the field of `inner`. An empty object of `place` is not taken.
 SceneError error_at(const Complaint& place, const SceneError& inner);
 
-/// Formats a number with `digits` significant digits, and from 0.0001 to a million without an exponent.
+/// Formats a number with `digits` significant digits. Numbers from 0.0001 up to a million get no exponent.
 std::string short_text(Real value, int digits = 3);
 /// Formats a vector as (x, y, z).
 std::string short_text(const Vec3& value, int digits = 3);
@@ -38,7 +39,8 @@ std::string shown(const Vec3& value);
 /// Returns the name closest to `text`: the one with the fewest changed, missing, added or swapped letters. Empty if
 /// there are no names.
 std::string nearest_name(std::string_view text, std::span<const std::string> names);
-/// Returns a hint that contains the nearest name. Empty if more than a third of the letters differ.
+/// Returns the hint `did you mean "NAME"?` with the nearest name. Empty if more than one letter and more than a third
+/// of the letters differ.
 std::string nearest_hint(std::string_view text, std::span<const std::string> names);
 
 /// Checks that the offsets of a list of rows begin at 0, ascend and do not exceed the number of items. For the first

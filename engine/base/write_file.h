@@ -10,7 +10,8 @@
 
 namespace skerry {
 
-/// Creates the folder if it does not exist. Throws SceneError with its name if it cannot be created or is not a folder.
+/// Creates the folder if it does not exist. Throws SceneError that names the folder if it cannot be created or is not a
+/// folder.
 void make_folder(const std::filesystem::path& folder);
 
 /// Throws SceneError unless the file has one of the extensions, for example ".usd".
@@ -20,10 +21,10 @@ void require_extension(const std::filesystem::path& file, std::initializer_list<
 /// streams such as pipes and terminals are accepted. Symbolic links are followed.
 void require_replaceable(const std::filesystem::path& file);
 
-/// A temporary file beside `file`, which commit() renames. Other programs never see an incomplete file, and a failure
-/// leaves the old file unchanged. The new file gets the permissions of the old one. If `file` is a symbolic link, its
-/// target is replaced. Pipes and terminals are written directly. Creates the folder if needed. All functions throw
-/// SceneError that names the file and the cause.
+/// A temporary file in the folder of `file`. commit() renames it to `file`. Other programs never see an incomplete
+/// file, and a failure leaves the old file unchanged. The new file gets the permissions of the old one. If `file` is a
+/// symbolic link, its target is replaced. Pipes and terminals are written directly. Creates the folder if needed. All
+/// functions throw SceneError that names the file and the cause.
 class FileReplacement {
 public:
     explicit FileReplacement(const std::filesystem::path& file);

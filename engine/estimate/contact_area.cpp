@@ -12,26 +12,30 @@ namespace skerry {
 
 namespace {
 
-// Angle between the normal of a node and a face above which the node lies on an edge or corner of the body [rad]. At an
-// edge of a box it is pi/4. At nodes of a coarse ball it is about half of the angle between neighbouring faces.
+// Limit of the angle between the normal of a node and that of a face at this node. Above it the node lies on an edge or
+// corner of the body [rad]. At an edge of a box it is pi/4. At nodes of a coarse ball it is about half of the angle
+// between neighbouring faces.
 constexpr Real sharp = 0.7;
-// Curvature times mean edge length below which a face counts as flat.
+// A contact counts as flat if the sum of both curvatures times the mean edge length is below this value.
 constexpr Real flat = 1e-3;
 
-/// Mean curvature of a sphere or capsule; 0 for other shapes, which are flat or have sharp edges [1/m].
+/// Mean curvature of a sphere, or of the cylindrical part of a capsule; 0 for other shapes, which are flat or have
+/// sharp edges [1/m].
 Real curvature_of(const ColliderGeometry& geometry) {
     if (geometry.shape == ColliderShape::sphere) return 1 / geometry.size.x();
     return geometry.shape == ColliderShape::capsule ? 1 / (2 * geometry.size.x()) : 0;
 }
 
-/// Contribution of an elastic body to the compliance of a contact area, 1/E* of Hertz [1/Pa].
+/// Summand of a body in the compliance of Hertz, 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2; 0 for rigid bodies and
+/// colliders [1/Pa].
 Real compliance_of(const World& world, BodyHandle body) {
     if (!world.alive(body) || world.dynamics(body) == BodyDynamics::rigid) return 0;
     const MaterialSettings material = world.material(world.material(body));
     return (1 - material.poisson_ratio * material.poisson_ratio) / material.young_modulus;
 }
 
-/// Mean of a value by node over the nodes of one side of a contact.
+/// Mean of a quantity, given by node of the body, at one side of a contact. The weights of the contact point are
+/// positive for the nodes of the first side.
 Real mean_of_nodes(const Contact& contact, bool first, std::span<const Real> of_node) {
     Real sum = 0;
     for (std::size_t k = 0; k < contact.node.size(); ++k)
@@ -40,7 +44,8 @@ Real mean_of_nodes(const Contact& contact, bool first, std::span<const Real> of_
     return sum;
 }
 
-/// Force-weighted sums over the contacts of a body with one object.
+/// Sums over the contacts of a body with one other object: of the force, and of the force times curvature and edge
+/// length.
 struct Patch {
     Real force = 0;                // [N]
     Real curvature = 0, edge = 0;  // [N/m, N m]
@@ -91,7 +96,8 @@ const ContactArea::Surface& ContactArea::surface_of(const World& world, BodyHand
     return surface;
 }
 
-/// Sum of the curvatures of a body or collider at a contact [1/m]. `first`: true for the first body of the contact.
+/// Mean curvature of the surface of a body or collider at a contact [1/m]. `first`: true for the first body of the
+/// contact.
 Real ContactArea::curvature_at(const World& world, const Contact& contact, bool first) {
     const Model& model = WorldAccess::state_of(world).model;
     const BodyHandle body = first ? contact.first : contact.second;

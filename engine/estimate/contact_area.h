@@ -8,13 +8,14 @@
 
 namespace skerry {
 
-/// Estimates the radius of the most loaded contact area of each body that deforms by the theory of Hertz (1881), from
-/// the contact force, the curvatures of both surfaces at rest, and the elastic constants.
+/// Estimates the radius of the most loaded contact area of each deformable body. The theory of Hertz (1881) gives it
+/// from the contact force, the curvatures of both surfaces at rest, and the elastic constants.
 class ContactArea {
 public:
     /// Takes a sample from the contacts of the last step.
     void sample(const World& world);
-    /// Sets ErrorEstimate::contact_radius and contact_edge of the bodies that touched a curved surface.
+    /// Sets ErrorEstimate::contact_radius and contact_edge of the bodies with a contact at which a surface is curved
+    /// and none has a sharp edge.
     void add_to(std::vector<ErrorEstimate>& bodies) const;
 
 private:
@@ -25,7 +26,7 @@ private:
         std::vector<Real> tilt;       // largest angle between the normal of a node and those of its faces [rad]
     };
     struct Area {
-        Real force = 0;   // largest contact force with one object at a sample [N]
+        Real force = 0;   // largest contact force with one object among the samples [N]
         Real radius = 0;  // [m]
         Real edge = 0;    // mean edge length at the contacts with this force [m]
     };

@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Averages the error e_nat of the contact regions of each body (docs/methods/errors.md 2), and finds its largest
-/// overlap and gap.
+/// For each body: the error measure e_nat of its contact regions (docs/methods/errors.md 2), averaged with the impulses
+/// as weights, and the largest overlap and gap of its contacts.
 class ContactError {
 public:
     /// Takes a sample from the contacts of the last step.

@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Coordinates of a stress. The scalar product of the coordinates of two stresses is the product of one of them with
-/// the strain that belongs to the other one at small strain. The last coordinate belongs to the volumetric part.
+/// Coordinates of a stress. The scalar product of the coordinates of two stresses s and t is s : C^-1 : t, with the
+/// stiffness C at small strain. The last coordinate belongs to the volumetric part.
 using StressCoordinates = Eigen::Matrix<Real, 7, 1>;
 
 /// Computes the coordinates of stresses in one material.
@@ -23,8 +23,8 @@ public:
 
 private:
     bool is_anisotropic_;
-    // Square roots of the compliances of the deviatoric and the volumetric part [Pa^(-1/2)]; ratio of the volumetric
-    // pressure to the trace of the stress.
+    // Square roots of the compliances of the deviatoric and the volumetric part [Pa^(-1/2)]; ratio of the pressure that
+    // the volumetric part carries to the trace of the stress.
     Real of_shear_ = 0, of_volume_ = 0, pressure_ = 0;
     // Inverse of the Cholesky factor of the stiffness of an anisotropic material, for the entries xx, yy, zz, xy, yz,
     // zx.

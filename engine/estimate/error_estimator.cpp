@@ -81,10 +81,10 @@ private:
     std::map<BodyHandle, Found> found_;
 };
 
-/// Intervals between samples. The unit is one step of the world. All samples together take less than 2 % of the
-/// computing time of the steps.
+/// Intervals between samples. The unit is one step in which something moved. All samples together take less than 2 % of
+/// the computing time of the steps.
 struct Pace {
-    // number of steps of which the first sample of all meshes takes 0.6 % of the computing time
+    // number of steps before the first sample of all meshes, which then takes 0.6 % of their computing time
     std::uint64_t first_mesh;
     std::uint64_t mesh;    // number of steps between samples of meshes
     std::uint64_t motion;  // number of steps between samples of motion and contacts
@@ -107,7 +107,7 @@ struct ErrorEstimator::Impl {
     // Numbers of steps in which something had moved: at the start, at the last sample of meshes, and at the last sample
     // of motion and contacts.
     std::uint64_t start = 0, mesh_steps = 0, motion_steps = 0;
-    bool has_moved = false;  // true after the first sample with motion
+    bool has_moved = false;  // true if something moved between the last two samples of motion
 
     /// Number of steps in which something moved, since the world was made.
     static std::uint64_t steps_of(const World& world) {

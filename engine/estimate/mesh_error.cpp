@@ -27,8 +27,8 @@ namespace {
 /// Recovered stress at the corners of the tetrahedra of a body.
 ///
 /// At edges and corners of the surface and at interfaces of materials, World::node_stress extrapolates, or mixes
-/// materials. There the recovered stress is the mean of the tetrahedra of one material around the node instead, which
-/// is more robust in thin walls.
+/// materials. There this class uses the mean stress of the tetrahedra of one material around the node instead, weighted
+/// by volume, which is more robust in thin walls.
 class CornerStress {
 public:
     CornerStress(const BodyRecord& record, const NodeFields& nodes, std::span<const Mat3> of_tetrahedra,
@@ -46,7 +46,8 @@ public:
             }
     }
 
-    /// Mean over the corners of a tetrahedron. In bodies of one material it includes extrapolated values.
+    /// Mean of the recovered stress over the corners of a tetrahedron. In bodies of one material it uses the
+    /// extrapolated values of World::node_stress.
     Mat3 mean(std::size_t tetrahedron) const {
         Mat3 sum = Mat3::Zero();
         for (std::size_t corner = 0; corner < 4; ++corner)
@@ -86,8 +87,8 @@ Real sum(std::span<const Real> values) {
     return std::accumulate(values.begin(), values.end(), Real{0});
 }
 
-/// Square of a relative error (Zienkiewicz and Zhu 1987, equation 30). `energy`: energy of the stress that has this
-/// error.
+/// Square of a relative error (Zienkiewicz and Zhu 1987, equation 30). `error`, `energy`: squared energy norms of the
+/// error of a stress, and of the stress itself.
 Real share_of(Real error, Real energy) {
     return error > 0 ? error / (error + energy) : 0;
 }
@@ -129,7 +130,8 @@ private:
         for (std::size_t t = 0; t < count; ++t) add_tetrahedron(t, of_tetrahedra[t], recovered);
         error_.stored += sum(error_.energy);
         // The exact stress is balanced: its product with the strain of the displacements is the stored energy. The
-        // recovered stress is scaled so that this also holds for it.
+        // recovered stress is scaled by stored / mixed_, so that this also holds for it. The missing energy is the
+        // energy of the scaled stress minus the stored energy.
         if (mixed_ > 0) error_.missing = error_.stored * (error_.stored * recovered_ / (mixed_ * mixed_) - 1);
         find_peak(of_tetrahedra, recovered);
         find_interpolation_error();
@@ -143,7 +145,8 @@ private:
     }
     bool is_anisotropic(std::size_t block) const { return constants_of(block).model == MaterialModel::orthotropic; }
 
-    /// Finds a block with strain for each tetrahedron, and the materials with elements of single parts of the stress.
+    /// Finds for each tetrahedron a block of elements that cover it and carry the whole stress or its shear part. Finds
+    /// the materials some elements of which carry only the volumetric part.
     void find_blocks(std::size_t tetrahedron_count) {
         block_.resize(tetrahedron_count);
         splits_.resize(norms_.size());
@@ -164,8 +167,8 @@ private:
         return *norm;
     }
 
-    /// Adds the energy by which the elements exceed the energy of the mean stresses of the tetrahedra. Returns false if
-    /// the elements are not strained.
+    /// Adds to error_.stored the energy of the elements minus the energy of the mean stresses of the tetrahedra. The
+    /// caller adds the second energy again. Returns false if the elements are not strained.
     bool add_elements(std::span<const Mat3> stress) {
         constexpr Real smallest_strain = 1e-9;  // smaller mean strains are rounding errors, for example in free fall
         struct Mean {
@@ -229,8 +232,8 @@ private:
         const Mat3 turn = is_anisotropic(block) ? turn_of(F) : Mat3(Mat3::Identity());
         const auto coordinates = [&](const Mat3& stress) { return norm.of(stress, ElementPart::whole, turn); };
         const StressCoordinates own = coordinates(of_elements);
-        // The product of two linear functions is integrated exactly by the sum over the corners and the product of
-        // sums.
+        // The integral of the product of linear functions a and b is V/20 (sum of a_i b_i + (sum of a_i)(sum of b_i)),
+        // with the corner values a_i and b_i.
         Real error = 0, energy = 0;
         StressCoordinates total = StressCoordinates::Zero();
         for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -251,8 +254,8 @@ private:
     }
 
     /// At the centroids of the tetrahedra their stress and the recovered stress both have errors of second order in the
-    /// length of the edges. The difference of the two stresses there, over the tetrahedra around the node, estimates
-    /// the error of the recovered stress.
+    /// length of the edges. The error of the largest recovered stress is estimated by the root mean square of the
+    /// differences of both stresses there, over the tetrahedra around the node of the largest stress.
     void find_peak(std::span<const Mat3> of_tetrahedra, const CornerStress& recovered) {
         Index peak = 0;
         for (std::size_t n = 0; n < error_.nodes.stress.size(); ++n) {
@@ -272,8 +275,8 @@ private:
         error_.stress = std::min<Real>(1, std::sqrt(squares / volume) / error_.largest_stress);
     }
 
-    /// A displacement with the strain that is recovered at both ends of an edge of length L differs from the linear one
-    /// by up to L/8 times the difference of the strains.
+    /// Along an edge of length L, a displacement whose strain goes linearly between the recovered strains of the ends
+    /// differs from the linear displacement by up to L/8 times the difference of these strains.
     void find_interpolation_error() {
         Real squares = 0;
         for (std::size_t t = 0; t < record_.tetrahedra.size(); ++t)

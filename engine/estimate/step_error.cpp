@@ -46,7 +46,8 @@ Real dissipated_by(const World& world) {
     return WorldAccess::state_of(world).record.counters.dissipated;
 }
 
-/// Root mean square over the nodes of a body, weighted by mass. `of_node` returns the vector of a local node.
+/// Root mean square length of vectors at the nodes of a body, weighted by mass. of_node(n) returns the vector of node n
+/// of the body.
 Real mean_size(const World& world, BodyHandle body, auto&& of_node) {
     const Model& model = model_of(world);
     const Range nodes = model.bodies.nodes[row_of(world, body)];
@@ -71,12 +72,14 @@ Real elastic_energy_of(const World& world, BodyHandle body) {
     return kernels().elastic_energy(model.all_elements(), model.bodies.blocks[row], model.nodes.position);
 }
 
-/// Rate at which the theta method damps the amplitude of a vibration [1/s]. `z`: circular frequency times step.
+/// Rate at which the theta method damps the amplitude of a vibration [1/s]. In each step the amplitude is multiplied by
+/// sqrt((1 + (1 - theta)^2 z^2) / (1 + theta^2 z^2)). `z`: circular frequency times step.
 Real damping_rate(Real z, Real theta, Real step) {
     return std::log((1 + theta * theta * z * z) / (1 + (1 - theta) * (1 - theta) * z * z)) / (2 * step);
 }
 
-/// Relative error of the frequency of a vibration, to second order in `z`, its circular frequency times the step.
+/// Relative error of the frequency of a vibration by the theta method (`implicit`) or by symplectic Euler, to second
+/// order in `z`, the circular frequency times the step.
 Real frequency_error(Real z, bool implicit, Real theta) {
     return z * z * (implicit ? 1.0 / 12 + (theta - 0.5) * (theta - 0.5) : 1.0 / 24);
 }
@@ -179,9 +182,9 @@ StepError::Motion StepError::begin(const World& world, BodyHandle body, std::opt
     return motion;
 }
 
-/// Symplectic Euler treats given velocities as those of half a step before the start. Rigid motion has an error of the
-/// same size: half a step times the change of the velocity since the start. In a collision, an error of the position
-/// also becomes an error of the direction in which the body continues.
+/// Symplectic Euler treats given velocities as those of half a step before the start. This gives rigid motion a
+/// position error of half a step times the change of the velocity since the start. In a collision, an error of the
+/// position also becomes an error of the direction in which the body continues.
 Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& frame, const Interval& interval,
                             Motion& motion) {
     if (motion.holder) return 0;
@@ -196,7 +199,8 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
                  : (now.angular_velocity - start.angular_velocity).norm();
     const Real change = std::hypot((now.velocity - start.velocity).norm(), radius * turned);
     if (motion.acceleration < 0) motion.acceleration = change / interval.seconds;
-    // The limit reduces the part of later sudden changes, as in collisions.
+    // The limit `accelerated` assumes the initial acceleration throughout. So sudden later changes, as in collisions,
+    // do not count in full.
     const Real accelerated = motion.acceleration * (world.time() - motion.start_time);
     const Real start_error = std::min(change, accelerated) * start_shift(world, motion.first_step);
     if (is_rigid) motion.tumbled += interval.seconds * radius * tumbling_error(world, body, interval.step);
@@ -204,7 +208,8 @@ Real StepError::rigid_error(const World& world, BodyHandle body, const Frame& fr
     const Vec3 sudden = now.velocity - motion.velocity;
     if (interval.collided.contains(body))
         motion.deflection_rate += sudden.norm() * std::min(Real{1}, std::numbers::sqrt2 * error / radius);
-    // Restitution reverses the velocity at the end of a step instead of at the time of impact.
+    // Restitution reverses the velocity at the end of a step instead of at the time of impact, on average half a step
+    // late. Each rebound adds this delay times the change of the velocity without the part of gravity.
     if (interval.rebounds) {
         const Real kick = (sudden - interval.seconds * world.settings().gravity).norm();
         motion.deflected += std::min(sudden.norm(), kick) * interval.step / 2;
@@ -233,8 +238,8 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     if (!implicit) {
         return (motion.lead + start_shift(world, motion.first_step)) * speed;
     }
-    // The part of the change between the samples that the velocities at the samples do not explain is attributed to
-    // vibrations that began in between.
+    // The change of the displacements between the samples, minus its value by the trapezoidal rule from the velocities
+    // at the samples, is attributed to vibrations that began in between.
     const Real begun = mean_size(world, body, [&](std::size_t n) {
         return Vec3(after.displacement[n] - before.displacement[n] -
                     interval.seconds / 2 * (after.velocity[n] + before.velocity[n]));
@@ -242,13 +247,13 @@ Real StepError::deformation_error(const World& world, BodyHandle body, const Fra
     const Real decay = interval.seconds * damping_rate(frequency * step, settings.theta, step);
     motion.lost += -std::expm1(-decay) * begun;
     if (frequency > 0) motion.lost += decay * std::numbers::sqrt2 * speed / frequency;
-    // Damping of a vibration dissipates its energy, so the lost amplitude is limited by the dissipated energy. Under
-    // slow loads little is dissipated.
+    // Damping of a vibration dissipates its energy, so the lost amplitude a is limited by stiffness a^2 / 2 <=
+    // dissipated energy. Under slow loads, where no vibration is lost, this limit is small.
     const Real stiffness = motion.stiffness * world.mass(body) / motion.inertia;  // [N/m]
     const Real dissipated = dissipated_by(world) - motion.dissipated;
     if (stiffness > 0) motion.lost = std::min(motion.lost, std::sqrt(2 * std::max(Real{0}, dissipated) / stiffness));
     motion.lost = std::min(motion.lost, motion.largest);
-    // The displacement by a wrong phase is at most twice the amplitude.
+    // The displacement by a wrong phase is at most twice the amplitude, which is sqrt(2) speed / frequency.
     const Real phase = frequency > 0 ? std::min(motion.lead, 2 * std::numbers::sqrt2 / frequency) : motion.lead;
     return phase * speed + motion.lost;
 }

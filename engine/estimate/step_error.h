@@ -18,7 +18,7 @@ class StepError {
 public:
     /// Takes a sample. The first sample that contains a body stores the start of its motion.
     void sample(const World& world);
-    /// Sets ErrorEstimate::step, and deformation of bodies that deform.
+    /// Sets ErrorEstimate::step of the bodies that moved, and ErrorEstimate::deformation of those that are not rigid.
     void add_to(std::vector<ErrorEstimate>& bodies) const;
 
 private:
@@ -36,8 +36,9 @@ private:
         RigidPose mesh{};                          // pose of the rest mesh in the frame of the deformation
         Deformation deformation{};                 // deformation at the last sample; empty for a rigid body
         Real first_step = 0;                       // mean length of the steps before the second sample [s]
-        Real acceleration = -1;                    // mean acceleration of the rigid motion in these steps [m/s^2]
-        // Position error due to collisions at wrong positions [m], and its rate [m/s].
+        Real acceleration = -1;                    // mean acceleration until the second sample; -1: unknown [m/s^2]
+        // Position error because bodies rebound in wrong directions or too late [m], and its rate by the wrong
+        // directions [m/s].
         Real deflected = 0, deflection_rate = 0;
         Real tumbled = 0;  // position error due to free rotation [m]
         // Sums over the samples for the Rayleigh quotient of the deformation: twice the elastic energy [J], and the
@@ -46,9 +47,9 @@ private:
         Real lead = 0;        // sum of the phase errors of vibrations, as a time [s]
         Real dissipated = 0;  // energy that the world had dissipated at the start [J]
         Real lost = 0;        // amplitude of the vibrations that numerical damping of the theta method has removed [m]
-        Real largest = 0;     // largest displacement by deformation so far [m]
+        Real largest = 0;     // largest root mean square displacement by deformation so far [m]
         Real error = 0;       // largest error so far [m]
-        Real moved = 0;       // largest displacement from the start so far [m]
+        Real moved = 0;       // largest root mean square displacement from the start so far [m]
         Real still = 0;       // largest displacement that counts as rest [m]
     };
     struct Interval;

@@ -12,16 +12,18 @@ namespace skerry::mesh {
 
 namespace {
 
-// Largest altitude of a knot, which is a nearly flat surface triangle, as a fraction of the mean edge of the surface
+// Largest altitude of a knot, a surface triangle that thin_knots removes, as a fraction of the mean edge of the surface
 // (measured: docs/decisions/0012).
 constexpr Real knot_altitude = 0.4;
-// Edge lengths of tetrahedra to be tried, as multiples of the wanted edge. A finer surface leads to smaller tetrahedra.
+// Upper limits of the edge length that are tried, as multiples of the wanted edge. Near finer parts of the surface
+// Netgen makes smaller tetrahedra.
 constexpr Real largest_edges[] = {1.5, 1, 0.7};
 // Largest accepted difference between the volume inside a surface and the volume of its tetrahedra, as a fraction of
 // the volume inside the surface.
 constexpr Real volume_rounding = 1e-6;
 
-/// Appends a region to a mesh. `node_of`: index in the mesh of each of the first nodes of the region.
+/// Appends a region to a mesh. The first nodes of the region are nodes of its boundary, which the mesh already
+/// contains: `node_of` gives their indices in the mesh.
 void append_region(const Mesh& region, std::vector<Index> node_of, int label, Mesh& mesh) {
     for (std::size_t n = node_of.size(); n < region.nodes.size(); ++n) {
         node_of.push_back(static_cast<Index>(mesh.nodes.size()));
@@ -34,7 +36,7 @@ void append_region(const Mesh& region, std::vector<Index> node_of, int label, Me
     }
 }
 
-/// Fills each region of the surface. The regions share the nodes of the shells between them.
+/// Fills each region of the surface. Neighbouring regions share the nodes of the shell that separates them.
 MesherResult fill_regions(const Shells& shells, Real largest_edge, const MesherSetup& setup, const std::string& which) {
     MesherResult all{.mesh = Mesh{.nodes = shells.nodes, .tetrahedra = {}}};
     for (std::size_t s = 0; s < shells.shell.size(); ++s) {
@@ -52,8 +54,8 @@ MesherResult fill_regions(const Shells& shells, Real largest_edge, const MesherS
     return all;
 }
 
-/// Fills the surface with tetrahedra of several sizes, and replaces `best` by an acceptable mesh with a longer step.
-/// The finest size is tried only if no coarser mesh was acceptable.
+/// Fills the surface once for each of the sizes `largest_edges`, and replaces `best` by an acceptable mesh with a
+/// longer stable step. The finest size is tried only if no coarser mesh was acceptable.
 void try_fill(const SurfaceMesh& surface, const std::string& which, const BestMeshTask& task, BestMesh& best) {
     const Shells shells = shells_of(check_surface(surface, no_weld), task.all_cavities);
     for (const Real size : largest_edges) {

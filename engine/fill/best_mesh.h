@@ -29,11 +29,13 @@ struct BestMesh {
     bool may_change = false;                 // true if a call of the mesher failed with MesherResult::may_change
 };
 
-/// A mesh with a changed surface replaces that with the given one if its stable step is longer by this factor.
+/// A mesh with a changed surface replaces the mesh with the given surface if the stable step of the former is longer by
+/// this factor.
 inline constexpr Real least_gain = 1.05;
 
-/// Fills the surface with tetrahedra of several sizes. With a tolerance it also fills the surface without needles and
-/// caps (thin_knots.h).
+/// Fills the surface several times, with different sizes of tetrahedra, and returns the mesh with the longest stable
+/// step. With a tolerance above 0 it also tries the surface without needles and caps, which are thin triangles
+/// (thin_knots.h).
 BestMesh best_mesh(const BestMeshTask& task);
 
 }  // namespace skerry::mesh

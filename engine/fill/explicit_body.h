@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// All data on which the stable step of a single body depends, apart from the mesh. The initial values are the default
+/// All data on which the stable step of a single body depends, apart from the mesh. By default the body has the default
 /// material and elements. The dynamics of the body are ignored; it is explicit.
 struct StepCase {
     Settings settings{};

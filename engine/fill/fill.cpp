@@ -15,22 +15,23 @@ namespace skerry::mesh {
 
 namespace {
 
-// Edge length of surfaces that are not clean, if none is given, as a fraction of the diagonal of the bounding box. It
-// is the default of fTetWild.
+// Edge length of the tetrahedra if none is given and the surface is not clean, as a fraction of the diagonal of its
+// bounding box. fTetWild has the same default.
 constexpr Real default_edge = 0.05;
-// A clean surface is kept if the ratio of the wanted edge to its mean edge is between these values.
+// The triangles of a clean surface are kept if the ratio of the wanted edge to the mean edge of the surface is between
+// these values.
 constexpr Real least_ratio = 2.0 / 3, most_ratio = 1.5;
 // fTetWild may use this share of the tolerance. The rest is left for the removal of needles and caps.
 constexpr Real envelope_share = 0.5;
-// Netgen's mesh of a surface of fTetWild must have this share of the number of tetrahedra of fTetWild. With fewer it
-// would be coarser than wanted.
+// Netgen also fills the surface of fTetWild's mesh. Its mesh must have at least this fraction of fTetWild's number of
+// tetrahedra. With fewer it would be coarser than wanted.
 constexpr Real least_count = 0.7;
 // Largest number of cubes of the wanted edge in the bounding box. More tetrahedra do not fit the memory of a computer.
 constexpr Real most_cells = 1e9;
 
 const char* const install_ftetwild = "install the Python package of fTetWild: pip install wildmeshing==0.4.1";
 
-/// A surface to fill. `first_triangle`: number of the first triangle of each file.
+/// A surface to fill. `names` and `first_triangle`, by file: its name, and the index of its first triangle.
 struct GivenSurface {
     SurfaceMesh surface;
     std::vector<std::string> names;
@@ -67,7 +68,7 @@ public:
     FilledMesh run() {
         const bool nested = shells_.has_regions() && !crossing();
         for (const SurfaceFault& fault : result_.surface.faults)
-            // the notes on regions already contain this
+            // the notes of name_shells() already report nested regions
             if (!nested || fault.kind != SurfaceFaultKind::doubled_volumes) result_.notes.push_back(fault_text(fault));
         check_edge();
         const bool clean = result_.surface.can_be_filled();
@@ -113,7 +114,8 @@ private:
         if (edge < least) refuse(short_text(edge), "an edge length of at least " + short_text(least), size, "edge");
     }
 
-    /// True if the wanted tetrahedra have about the size of the triangles of the surface.
+    /// True if the wanted tetrahedra have about the size of the triangles of the surface, if no edge is given, or if
+    /// the tolerance of 0 forbids other triangles.
     bool keeps_triangles() const {
         if (!settings_.edge || settings_.tolerance == 0) return true;
         const Real ratio = *settings_.edge / mean_edge(surface());

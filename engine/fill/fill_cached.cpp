@@ -21,7 +21,8 @@ namespace skerry::mesh {
 
 namespace {
 
-// A change of this number makes earlier cache files unused. Raise it when fill() returns other meshes than before.
+// Part of the hash in the name of a cache file, so a new number makes earlier files unused. Raise it when fill()
+// returns other meshes than before.
 constexpr std::uint64_t cache_version = 2;
 
 /// Name of the cache file: the name of the surface file, a hash, and .msh.
@@ -95,7 +96,8 @@ bool write_cache(const std::filesystem::path& cache, const FilledMesh& filled) {
 
 Mesh fill_cached(const std::filesystem::path& file, const FillSettings& settings, const FillProgress& progress,
                  std::vector<std::string>* notes) {
-    // Only one case of a sweep fills the surface. The other cases wait for it and then read the cache file.
+    // If several processes need the mesh, such as the cases of a parameter study, only one fills the surface. The
+    // others wait here and then read the cache file.
     const FileLock lock(file);
     const auto note = [&](const std::string& text) {
         if (notes) notes->push_back(file.string() + ": " + text);

@@ -78,7 +78,7 @@ bool take_number(std::string_view& text, auto& number) {
     return error == std::errc{};
 }
 
-/// Reads the text that a mesher wrote. Returns nothing if it is not a mesh without inverted tetrahedra.
+/// Reads the text that a mesher wrote. Returns nothing if the text is not a mesh, or if a tetrahedron is inverted.
 std::optional<Mesh> read_mesh(std::FILE* in) {
     const std::string all = text_of(in);
     std::string_view text = all;
@@ -98,7 +98,8 @@ std::optional<Mesh> read_mesh(std::FILE* in) {
         mesh.tetrahedra.push_back(t);
     }
     try {
-        // A mesher may order all corners for the opposite orientation.
+        // A mesher may order the corners of all tetrahedra for the opposite orientation; turn_inverted() then reorders
+        // them.
         turn_inverted(mesh, "mesher");
         if (inspect(mesh).inverted > 0) return {};
     } catch (const SceneError&) {
@@ -140,10 +141,12 @@ public:
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
-    /// Returns the status in the form of waitpid once the process has ended. Kills the processes that it left behind.
+    /// Returns nothing while the process runs. Once it has ended, kills the processes that it left behind and returns
+    /// its status in the form of waitpid.
     std::optional<int> ended() {
         siginfo_t found{};
-        // The process keeps its number until waitpid, so that the group is still its own when it is killed.
+        // WNOWAIT keeps the number of the ended process reserved until waitpid. So kill() cannot meet another process
+        // group that got the same number.
         if (waitid(P_PID, static_cast<id_t>(id_), &found, WEXITED | WNOHANG | WNOWAIT) == 0 && found.si_pid == 0)
             return {};
         kill(-id_, SIGKILL);
@@ -178,7 +181,8 @@ private:
         setpgid(0, 0);
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         if (getppid() != parent) _exit(exit_not_started);  // the parent ended before the call of prctl
-        // The files are first duplicated to high numbers, so that no redirection overwrites another file.
+        // The file descriptors are first duplicated to numbers from `above` on. Otherwise a call of dup2 could
+        // overwrite a descriptor that a later call still needs.
         constexpr int above = 100;
         const int from[] = {fcntl(in, F_DUPFD_CLOEXEC, above), fcntl(out, F_DUPFD_CLOEXEC, above),
                             fcntl(messages, F_DUPFD_CLOEXEC, above), open("/dev/null", O_WRONLY | O_CLOEXEC)};

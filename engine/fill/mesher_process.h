@@ -14,14 +14,15 @@ namespace skerry::mesh {
 struct MesherCall {
     std::vector<std::string> command;  // path of the program, or its name if it is in PATH, and the arguments
     FillLimits limits{};
-    // Called about 50 times a second while the mesher runs. An exception ends the mesher.
+    // Called about 50 times a second while the mesher runs. If it throws, run_mesher kills the mesher and throws the
+    // same exception.
     std::function<void()> wait{};
 };
 
 /// The tetrahedra that a mesher made, or the reason why there are none.
 struct MesherResult {
     std::optional<Mesh> mesh{};
-    std::string failure{};  // clause with a verb in the past tense; empty if there is a mesh
+    std::string failure{};  // message after the mesher's name, such as "crashed: ..."; empty if there is a mesh
     bool missing = false;   // true if the program or the package of the mesher is not installed
     bool stopped = false;   // true if a limit ended the mesher
     bool crashed = false;   // true if a signal ended the mesher

@@ -15,7 +15,7 @@ namespace skerry::mesh {
 namespace {
 
 /// Program for the Python interpreter: fills the surface of standard input (see run_mesher). Its argument is the
-/// envelope as a fraction of the diagonal of the bounding box.
+/// envelope, the largest allowed movement of the surface, as a fraction of the diagonal of the bounding box.
 constexpr const char* ftetwild_script = R"(
 import os, sys
 try:

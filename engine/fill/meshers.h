@@ -21,16 +21,18 @@ std::string netgen_program();
 /// Explains how to install Netgen.
 extern const char* const install_netgen;
 
-/// Command that starts the Python interpreter with the package wildmeshing. `given`: value of FillSettings::python.
+/// Command that starts the Python interpreter with the package wildmeshing: `given`, the value of FillSettings::python,
+/// if it is not empty, else the environment variable SKERRY_FILL_PYTHON, else python3.
 std::string python_program(const std::string& given);
 
-/// Fills closed manifold surfaces that do not cross with tetrahedra of edge length up to about `largest_edge` [m]. The
-/// surface is unchanged bitwise: its nodes are the first nodes of the mesh. `doing`: activity that is shown.
+/// Fills a closed manifold surface that does not cross itself. The edges of the tetrahedra are at most about
+/// `largest_edge` long [m]. The nodes of the surface are the first nodes of the mesh, unchanged to the last bit.
+/// `doing`: text for setup.progress while Netgen runs.
 MesherResult fill_by_netgen(const SurfaceMesh& surface, Real largest_edge, const MesherSetup& setup,
                             const std::string& doing);
 
-/// Fills any surface. The edges of the surface and of the tetrahedra have about the length `edge` [m]. Points of the
-/// surface move by up to `envelope` [m].
+/// Fills any surface, also with holes or crossings. The edges of the new surface and of the tetrahedra have about the
+/// length `edge` [m]. Points of the surface move by up to `envelope` [m].
 MesherResult fill_by_ftetwild(const SurfaceMesh& surface, Real edge, Real envelope, const MesherSetup& setup);
 
 }  // namespace skerry::mesh

@@ -23,7 +23,8 @@ void turn(std::vector<Triangle>& triangles) {
     for (Triangle& t : triangles) std::swap(t[1], t[2]);
 }
 
-/// True if a shell contains a point. Holes of the shell count as closed.
+/// True if a shell contains a point: if its winding number at the point is above 1/2. With holes in the shell this
+/// number is not an integer.
 bool surrounds(const Shell& shell, const std::vector<Vec3>& nodes, const Vec3& point) {
     const auto seen = [&](Index n) -> Vec3 { return nodes[static_cast<std::size_t>(n)] - point; };
     Real sum = 0;

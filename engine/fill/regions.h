@@ -14,10 +14,10 @@ struct Shell {
     // Indices of nodes, counter-clockwise as seen from outside the shell, also for a cavity.
     std::vector<std::array<Index, 3>> triangles;
     Real volume = 0;                  // volume inside the shell, including the shells inside it [m^3]
-    Index parent = no_index;          // smallest shell around this shell; no_index: none
+    Index parent = no_index;          // index in Shells of the smallest shell around this shell; no_index: none
     bool cavity = false;              // true: the inside is empty, except for shells inside it
     int label = 0;                    // label of the region inside the shell; 0 for a cavity
-    Index first_triangle = no_index;  // number of its first triangle in the given surface
+    Index first_triangle = no_index;  // index in the given surface of the first triangle of the shell
 };
 
 /// A surface that is divided into shells, the largest volume first.
@@ -35,13 +35,16 @@ struct Shells {
 /// ...
 Shells shells_of(const SurfaceReport& report, bool all_cavities);
 
-/// All shells. Cavities are turned inside out, so that the winding number is 0 in them.
+/// The triangles of all shells. Those of cavities are turned inside out, so that the winding number is 0 inside a
+/// cavity.
 SurfaceMesh whole_surface(const Shells& shells);
 
-/// Boundary of the region inside a shell: the shell, and the shells directly within turned inside out.
+/// Boundary of the region inside a shell: the triangles of the shell and, turned inside out, those of the shells
+/// directly inside it.
 SurfaceMesh boundary_of_region(const Shells& shells, std::size_t shell);
 
-/// The surface without the nodes that no triangle uses. `kept`, if given, gets the old index of each node.
+/// The surface without the nodes that no triangle uses. `kept`, if given, gets the index in `surface` of each remaining
+/// node.
 SurfaceMesh without_unused_nodes(const SurfaceMesh& surface, std::vector<Index>* kept = nullptr);
 
 /// Labels each tetrahedron by the smallest shell of a region around its centroid.

@@ -7,7 +7,7 @@ namespace {
 
 hid_t make_file(const std::string& name) {
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    constexpr std::size_t growth = 1 << 16;  // [bytes]
+    constexpr std::size_t growth = 1 << 16;  // increment by which the image grows in memory [bytes]
     H5Pset_fapl_core(access.id(), growth, 0);
     // Time stamps are disabled, so the bytes of the file depend on its content alone.
     const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);

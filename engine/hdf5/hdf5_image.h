@@ -1,5 +1,5 @@
-// Creates an HDF5 file in memory. It uses the data types of FCLIB's own writer: one-dimensional arrays of numbers, and
-// fixed-length texts.
+// Creates an HDF5 file in memory. It uses the data types of the writer of FCLIB, a collection of frictional contact
+// problems: one-dimensional arrays of numbers, and fixed-length texts.
 #pragma once
 
 #include <hdf5.h>
@@ -14,7 +14,8 @@
 namespace skerry {
 
 /// An HDF5 file in memory. Paths are absolute, in the form "/group/field"; missing groups are created. The same
-/// sequence of calls gives the same bytes. Throws SceneError that names the destination file.
+/// sequence of calls gives the same bytes. If memory runs out, the functions throw SceneError with the name given to
+/// the constructor.
 class Hdf5Image {
 public:
     explicit Hdf5Image(std::string name);

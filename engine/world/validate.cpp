@@ -188,7 +188,7 @@ namespace {
 /// part of a surface that objects touch.
 void require_apart(const Mesh& mesh, const std::string& object) {
     const std::vector<TetrahedronFace> faces = sorted_faces(mesh.tetrahedra);
-    std::string found;  // the first two tetrahedra on one side of a face
+    std::string found;  // for the message: the first two tetrahedra found on the same side of one face
     std::size_t count = 0;
     for (std::size_t first = 0; first < faces.size();) {
         std::array<Index, 2> seen{no_index, no_index};  // number of the tetrahedron on each side of the face
@@ -216,7 +216,8 @@ void require_start(const BodySettings& body, const std::string& object) {
         require(*body.contact_distance >= 0, object, "contact_distance", *body.contact_distance, "a length >= 0 (m)");
 }
 
-/// Checks that the mesh is valid for a body. `may_cross`: true if the shells of a surface may cross each other.
+/// Checks that the mesh is valid for a body. `may_cross`: true if the shells of a surface may cross each other, because
+/// the inertia is not computed from them.
 void require_mesh(const Mesh& mesh, bool may_cross, const std::string& object) {
     if (mesh.tetrahedra.empty() && mesh.triangles.empty())
         refuse(object, "mesh", "no tetrahedra", "at least one tetrahedron, or the triangles of a surface");
@@ -285,7 +286,7 @@ void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known) {
 
 namespace {
 
-/// `shape`: "sphere", ...
+/// Checks the settings of a sphere, capsule or cylinder. `shape`: name of the shape for messages.
 void require_round(const std::string& shape, const BodySettings& body, const std::string& object) {
     if (body.dynamics != BodyDynamics::rigid && body.dynamics != BodyDynamics::automatic)
         refuse(object, "dynamics", std::string(name_of(body.dynamics)),
@@ -359,7 +360,8 @@ void validate(const Motion& motion, const Vec3& pivot) {
 namespace {
 
 /// Checks that the first key of a plane's motion agrees with the point and the normal of the plane, unless these have
-/// their initial values. Keys that are meant as distances from the point would put the plane into another place.
+/// their default values. Keys are poses of the plane itself. A user who takes them for displacements from the point
+/// would otherwise get a plane in another place.
 void require_keys_of_plane(const Plane& plane, const ColliderSettings& collider, const std::string& object) {
     if (collider.motion.keys.empty()) return;
     constexpr Real same =

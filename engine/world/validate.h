@@ -30,7 +30,8 @@ void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);
 void validate(const Motion& motion, const Vec3& pivot);
 void validate(const SurfaceSettings& surface, const std::string& object);
-/// Checks that the keys of a field of `object` are finite and have ascending times, and that there is a key.
+/// Checks the time table `field` of `object`: at least one key, finite numbers, and each time later than the one
+/// before.
 void require_table(const std::string& object, const std::string& field, const TimeTable& table);
 /// Checks that the given local node numbers exist in `object`, which is a body with `count` nodes.
 void require_nodes(const std::string& object, std::span<const Index> nodes, Index count);

@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Checks the terms of the law of Ogden. Positive shares make each term convex (Ogden 1972).
+/// Checks the terms of Ogden's law. Shares that are not negative make each term convex (Ogden 1972).
 void require_terms(const MaterialSettings& material, const std::string& object) {
     constexpr Real least_exponent = 0.1, largest_exponent = 100, rounding = 1e-9;
     Real sum = 0;
@@ -26,7 +26,7 @@ void require_terms(const MaterialSettings& material, const std::string& object) 
     require(std::abs(sum - 1) <= rounding, object, "terms", sum, "shares of the shear modulus that sum to 1");
 }
 
-/// Checks that the stiffness of an orthotropic material is positive definite.
+/// Checks that the stiffness of an orthotropic material is positive definite, and that its two axes are not parallel.
 void require_orthotropic(const OrthotropicModuli& moduli, const std::string& object) {
     const Vec3 &E = moduli.young_modulus, &nu = moduli.poisson_ratio, &G = moduli.shear_modulus;
     const std::array<const char*, 3> pair{"12", "23", "13"};

@@ -1,4 +1,4 @@
-// Visual surfaces that were bound to a mesh before its body was added.
+// Visual surfaces (drawn in place of bodies) that were bound to a mesh before a body with this mesh was added.
 #pragma once
 
 #include <memory>

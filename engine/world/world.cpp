@@ -67,7 +67,7 @@ WorldState::WorldState(const Settings& settings) : executor(make_executor(settin
 }
 
 void WorldState::require_between_steps(const char* call) const {
-    // calls that all ranks of a divided world can make alike
+    // calls that a divided world allows; all ranks must make them together
     constexpr std::array<std::string_view, 4> on_ranks{"advance", "distribute", "settle_start", "watch_steps"};
     if (ranks.on() && std::ranges::find(on_ranks, call) == on_ranks.end())
         refuse(call, "world", "a world that is divided among ranks", "an undivided world",
@@ -91,7 +91,7 @@ void WorldState::settle() {
     model.known_elements.clear();
     if (!edits.rows) return;
     if (edits.elements) {
-        model.clusters.clear();  // clusters contain rows of NodeTable, which have moved
+        model.clusters.clear();  // clusters contain rows of NodeTable, which erase_gone_rows changes
         model.clusters_open = true;
     }
     erase_gone_rows();
@@ -195,8 +195,8 @@ MaterialHandle World::add_material(const MaterialSettings& material) {
 
 namespace {
 
-/// Core of a round body, as in BodyTable. The mesh of a round body only draws it. A body with 0 core nodes is not
-/// round.
+/// Core of a round body: BodyTable::core_nodes and round_radius. The mesh of a round body is only drawn, and has no
+/// part in contacts. A body with 0 core nodes is not round.
 struct RoundCore {
     Index nodes = 0;
     Real radius = 0;  // m
@@ -234,7 +234,8 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
     if (core.nodes > 0) {
         fresh.dynamics = BodyDynamics::rigid;
     } else if (body.dynamics == BodyDynamics::automatic) {
-        // Removed bodies must not limit the step. Without removals the stored results of earlier bodies are kept.
+        // Removed bodies must not limit the step that choose_dynamics estimates, so settle() erases them. It is not
+        // called without need, because it also discards Model::known_elements, which save time for equal meshes.
         if (!state.edits.bodies_gone.empty()) state.settle();
         fresh.dynamics = BodyDynamics::explicit_elastic;
         fresh.dynamics = choose_dynamics(model, fresh, choice, trial);
@@ -263,7 +264,8 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
     return handle;
 }
 
-/// Makes implicit bodies explicit if explicit steps cost less for them, now that the body `added` requires short steps.
+/// Makes implicit bodies explicit for which explicit steps now take less computing time, because the new body `added`
+/// requires short steps anyway. Only bodies with automatic choice of the dynamics are changed.
 void revise_choices(World& world, WorldState& state, BodyHandle added) {
     Model& model = state.model;
     if (model.implicit_nodes.size() == 0 || model.has_frame(static_cast<std::size_t>(model.row(added, "add_body"))))
@@ -324,8 +326,8 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
 
 namespace {
 
-/// For an object that is removed: deletes the reference to the pair with the deepest overlap of held surfaces if the
-/// object belongs to this pair, because its slot may be used again. The stored depth remains.
+/// Must be called for an object that is removed. If it belongs to the pair with the deepest overlap of held surfaces,
+/// the pair is forgotten, because a new object may get the same slot. The stored depth remains.
 void forget_held(HeldDepth& held, std::uint32_t slot, bool is_collider) {
     const PairSlots pair = slots_of_pair(held.pair);
     if (is_collider ? pair.is_collider && pair.second == slot

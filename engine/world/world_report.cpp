@@ -39,8 +39,8 @@ Energy energy_of(const Model& model, Real time, Real dissipated) {
 
 namespace {
 
-/// Counts smoothed elements that are strongly compressed. An element can be compressed although none of its tetrahedra
-/// is compressed.
+/// Counts smoothed elements with a volume ratio det F below 0.2, unless all elements of the body are tetrahedra. An
+/// element can be compressed this much although none of its tetrahedra is.
 void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     constexpr Real folded = 0.2;
     const Range blocks = model.bodies.blocks[body];
@@ -58,8 +58,9 @@ void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     report.folded += ratios.near_inversion;
 }
 
-/// Differences of energy below this value are rounding errors [J]: the elastic energy of the strain that rounding
-/// errors of the positions can add up to in ten thousand steps. Bodies at rest without weight have at most this energy.
+/// Energy of rounding errors [J]: the elastic energy of the strain that rounding of positions can cause in ten thousand
+/// steps. It is the least scale for the energy error. Bodies at rest without weight exchange no energy with which the
+/// error could be compared.
 Real energy_of_rounding(const Model& model) {
     constexpr Real digits = 1e4 * std::numeric_limits<Real>::epsilon();
     Real sum = 0;
@@ -181,7 +182,7 @@ namespace {
 void note_fastest_turn(const Model& model, WorldReport& report) {
     const ColliderTable& colliders = model.colliders;
     const Real step = trusted_step(model);
-    if (!std::isfinite(step)) return;  // nothing moves
+    if (!std::isfinite(step)) return;  // no body limits the step
     for (std::size_t c = 0; c < colliders.slot.size(); ++c) {
         const Real turn = step * fastest_turn(colliders.script[c], colliders.keyframe);
         if (!(turn > report.collider_turn)) continue;

@@ -26,7 +26,7 @@ struct OpenEdits {
     bool rows = false;  // true if bodies, colliders or attachments were added or removed
     // True if bodies with elements were added or removed, or nodes became held or free.
     bool elements = false;
-    // nonzero for each removed row; rows beyond the end are not removed
+    // by row of BodyTable or ColliderTable: nonzero if it is to be removed; rows beyond the end of the list stay
     std::vector<std::uint8_t> bodies_gone, colliders_gone;
     ChangedPlaces places;
 };
@@ -48,7 +48,8 @@ struct WorldState {
     bool advancing = false;     // true within advance(), when callbacks must not change the world
     bool drawn_behind = false;  // true if nodes that only draw round bodies are out of date; only within advance()
 
-    /// Throws SceneError if the call comes from a callback of advance().
+    /// Throws SceneError if the call comes from a callback of advance(), or if a world divided among ranks does not
+    /// allow it. `call`: name of the called function.
     void require_between_steps(const char* call) const;
     /// Completes all pending changes: removes rows, computes derived columns of new rows, wakes sleeping bodies near
     /// the changes, and updates the nodes that draw round bodies. Call it as late as possible, so that many changes in
@@ -57,7 +58,8 @@ struct WorldState {
     /// Functions that read all rows, return the contents of rows or ask which bodies sleep must call it, even if they
     /// are const. Functions that only find a single row need not call it.
     void settle();
-    /// Updates the nodes that only draw round bodies. `resting`: true if some bodies fell asleep in the last step.
+    /// Updates the nodes that only draw round bodies, if they are out of date. `resting`: true if bodies fell asleep in
+    /// the last step; nodes of sleeping bodies are then updated too.
     void draw(bool resting = false);
 
 private:

@@ -37,7 +37,7 @@ private:
 /// during a reduction.
 void (*combine_in_use)(std::byte*, const std::byte*) = nullptr;
 
-/// Function of the type MPI_User_function.
+/// Combines arrays of records by combine_in_use. It has the type MPI_User_function.
 void combine_records(void* from, void* into, int* count, MPI_Datatype* type) {
     MPI_Aint begin = 0, size = 0;
     MPI_Type_get_extent(*type, &begin, &size);
@@ -151,7 +151,7 @@ private:
     // Greatest length of a piece of a message. A message ends with the first shorter piece, which may be empty [bytes].
     static constexpr std::size_t longest_piece = std::size_t{1} << 24;
 
-    /// Returns the number of bytes as MPI counts them. Throws std::runtime_error if there are too many.
+    /// Converts a number of bytes to int, the type in which MPI counts. Throws std::runtime_error if it does not fit.
     int length_of(std::size_t bytes, const std::string& object) const {
         constexpr int most = std::numeric_limits<int>::max();
         if (bytes > most)
@@ -203,7 +203,8 @@ private:
 }  // namespace
 
 std::unique_ptr<Ranks> start_mpi(std::atomic<const char*>* last_words) {
-    // Open MPI then yields the core while it waits. Otherwise a waiting rank takes time from the threads of others.
+    // With this variable Open MPI yields the core while it waits. Otherwise a waiting rank would take time from the
+    // threads of other ranks. A value that the user has set is kept.
     setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
     int level = MPI_THREAD_SINGLE;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);

@@ -9,8 +9,9 @@
 namespace skerry {
 
 /// Starts MPI in this process, which is possible once. The processes that the launcher has started are the ranks.
-/// Destroying the object waits for all ranks and ends MPI. Ranks::abort also prints the text to which `last_words`
-/// points. Throws std::runtime_error if MPI does not allow that threads call it in turn.
+/// Destroying the object waits for all ranks and ends MPI. If `last_words` is given and points to a text, the first
+/// call of Ranks::abort also prints this text. Throws std::runtime_error if MPI does not allow that threads call it in
+/// turn.
 std::unique_ptr<Ranks> start_mpi(std::atomic<const char*>* last_words = nullptr);
 
 /// Returns the processes of a communicator as ranks. `communicator`: its number from MPI_Comm_c2f. Throws

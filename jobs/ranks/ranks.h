@@ -11,10 +11,9 @@
 
 namespace skerry {
 
-/// Bytes of a message.
 using RankMessage = std::vector<std::byte>;
 
-/// Messages that this rank has sent so far.
+/// Counts of the messages and calls of this rank so far.
 struct RankTraffic {
     std::uint64_t messages = 0;     // messages to single ranks
     std::uint64_t bytes = 0;        // bytes of these messages
@@ -56,7 +55,7 @@ protected:
 template <auto combine, class Record>
 void reduce(Ranks& ranks, Record& record) {
     static_assert(std::is_trivially_copyable_v<Record>);
-    // The bytes of a message may be at any address, so the records are copied.
+    // The bytes of a record may lie at addresses that are not aligned for its type, so they are copied.
     ranks.reduce(std::as_writable_bytes(std::span(&record, 1)), [](std::byte* into, const std::byte* from) {
         Record all, other;
         std::memcpy(static_cast<void*>(&all), into, sizeof all);

@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// Anchors with the columns that their positions depend on. They are valid for bodies of every kind, because the nodes
-/// of rigid and implicit bodies move with these bodies.
+/// Anchors, and the columns that determine their positions. Bodies of every kind have node positions and velocities in
+/// NodeTable, so the functions below need not distinguish kinds of bodies.
 struct AnchorInputs {
     std::span<const Index> body, collider;  // AnchorColumns
     std::span<const AnchorRow> point;
@@ -32,8 +32,8 @@ struct AnchorInputs {
                 .motion = binder.read(colliders.motion)};
     }
 
-    /// Calls visit(node, weight) for each node of the body of an anchor that moves the anchor. `node` is a row of
-    /// NodeTable.
+    /// Calls visit(node, weight) for each node that moves an anchor: the nodes of its body with a nonzero weight.
+    /// `node` is a row of NodeTable.
     void for_each_node(std::size_t anchor, auto&& visit) const {
         if (body[anchor] == no_index) return;
         const Index first = body_nodes[static_cast<std::size_t>(body[anchor])].begin;
@@ -72,8 +72,8 @@ struct AnchorInputs {
         return sum;
     }
 
-    /// Adds the force `force` at an anchor to the forces on nodes [N]. Force and moment of the nodal forces are those
-    /// of `force`. A force on a collider or on the world changes nothing.
+    /// Adds the force `force` at an anchor to the forces on nodes [N]. The nodal forces have the resultant and the
+    /// moment of `force`. Does nothing for an anchor on a collider or on the world.
     void add_force(std::size_t anchor, const Vec3& force, std::span<Vec3> node_force) const {
         for_each_node(anchor, [&](std::size_t node, Real weight) { node_force[node] += weight * force; });
     }

@@ -44,7 +44,8 @@ Real CavityInputs::volume_part(std::size_t c, std::size_t f) const {
         const auto origin = static_cast<std::size_t>(first + face[static_cast<std::size_t>(faces[c].begin)].front());
         return -(x.col(0) - position[origin]).dot(cross_of_edges(x)) / 6;
     }
-    // The corners move along straight lines. The area vector is then quadratic in time, so Simpson's rule is exact.
+    // The swept volume is the time integral of the area vector times the mean corner velocity. With corners that move
+    // along straight lines at constant speed, the area vector is quadratic in time, so Simpson's rule is exact.
     const Mat3& before = corners[f];
     const Vec3 area = (area_of(before) + 4 * area_of((before + x) / 2) + area_of(x)) / 6;
     return -area.dot((x - before).rowwise().mean());
@@ -70,7 +71,7 @@ Real CavityFilling::pressure() const {
     if (law == CavityLaw::pressure) return amount;
     if (!(volume > 0)) return std::numeric_limits<Real>::quiet_NaN();
     if (law == CavityLaw::gas) return fluid.ambient * (std::pow(amount / (fluid.density * volume), fluid.exponent) - 1);
-    // A liquid boils rather than take a tension that exceeds the ambient pressure.
+    // A liquid boils at zero absolute pressure. Above ambient, its pressure is thus at least -ambient.
     return std::max(fluid.bulk_modulus * std::log(amount / volume), -fluid.ambient);
 }
 
@@ -128,10 +129,10 @@ bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real no
 
 namespace {
 
-/// A gas in a cavity or in a reservoir, as it is at one end of a pipe.
+/// State of the gas at one end of a pipe. The end is in a cavity or in a reservoir of prescribed pressure.
 struct PipeEnd {
     Real pressure;       // above ambient [Pa]
-    Real per_mass;       // increase of the pressure per increase of mass [Pa/kg]; 0 for a reservoir
+    Real per_mass;       // derivative of the pressure by the mass [Pa/kg]; 0 for a reservoir
     std::size_t cavity;  // row of CavityTable
     bool is_cavity;
 };
@@ -145,7 +146,9 @@ PipeEnd end_at(const CavityInputs& cavities, std::size_t c, std::span<const Real
     return {gas.pressure(), gas.pressure_per_mass(), c, true};
 }
 
-/// Mass that flows from the first to the second end in the time `h` [kg]. Exact if both pressures are linear in mass.
+/// Mass that flows from the first to the second end in the time `h` [kg]. Solves the equation of the flow, conductance
+/// times the pressure difference, exactly if both pressures are linear in mass: the difference then decays
+/// exponentially.
 Real flow_between(const PipeEnd& first, const PipeEnd& second, Real conductance, Real h) {
     const Real decay = conductance * (first.per_mass + second.per_mass) * h;
     const Real share = decay > 0 ? -std::expm1(-decay) / decay : Real(1);

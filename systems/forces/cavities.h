@@ -52,8 +52,8 @@ struct CavityInputs {
     std::span<const TimeKey> keys_of(std::size_t c) const { return rows_of(key, keys[c]); }
     /// Present positions of the corners of a face of cavity `c`, as columns [m].
     Mat3 corners_now(std::size_t c, std::size_t f) const;
-    /// Contribution of a face of cavity `c` to its volume [m^3]. If the cavity is closed, it is the signed volume
-    /// between the face and the first corner of the first face. If the cavity is open, it is the volume that the face
+    /// Contribution of face `f` to the volume of cavity `c` [m^3]. In a closed cavity: signed volume of the tetrahedron
+    /// that connects the face with the first corner of the cavity's first face. In an open cavity: volume that the face
     /// has swept since the end of the last step.
     Real volume_part(std::size_t c, std::size_t f) const;
     /// Present volume of cavity `c` [m^3].
@@ -75,14 +75,15 @@ struct CavityFilling {
 
     /// Pressure above ambient pressure [Pa]; NaN if the volume of a gas or a liquid is not positive.
     Real pressure() const;
-    /// Increase of the pressure per increase of the mass of the gas [Pa/kg].
+    /// Derivative of the pressure by the mass, for a gas only [Pa/kg].
     Real pressure_per_mass() const;
-    /// Work of the filling on the faces if it expanded to ambient pressure [J]; 0 for a prescribed pressure.
+    /// Work of gas or liquid and ambient pressure on the faces, until the pressures inside and outside are equal [J]; 0
+    /// for a prescribed pressure.
     Real energy() const;
 };
 
-/// Decrease of the pressure per increase of the volume of a filling, or more for a liquid that boils [Pa/m^3].
-/// `pressure`: above ambient [Pa].
+/// Stiffness -dp/dV of a filling [Pa/m^3]; 0 for a prescribed pressure. For a boiling liquid, whose pressure is
+/// constant, returns an upper bound: the stiffness before boiling. `pressure`: above ambient [Pa].
 Real filling_stiffness(CavityLaw law, const CavityFluid& fluid, Real pressure, Real volume);
 /// Mass of a gas at a pressure above ambient [kg].
 Real mass_of_gas(const CavityFluid& fluid, Real pressure, Real volume);
@@ -102,9 +103,9 @@ struct CavityOutputs {
 };
 
 /// Adds the forces of the pressure in all cavities to the applied forces of nodes. Each corner of a face receives a
-/// third of pressure times area, against the normal of the body. `now`: time of the positions [s]. A prescribed
-/// pressure is the mean over the time from `now - lag` to `now - lag + kick`, during which the forces act. The volume
-/// of a liquid is that at time `now`. Returns false if there is no cavity.
+/// third of pressure times area, in the direction into the body. `now`: time of the positions [s]. A prescribed
+/// pressure is averaged from `now - lag` to `now - lag + kick`, the interval in which the forces act. The volume of a
+/// liquid at ambient pressure is its prescribed value at time `now`. Returns false if there is no cavity.
 bool add_cavity_forces(Executor& executor, const CavityInputs& cavities, Real now, Real lag, Real kick,
                        const CavityOutputs& out);
 
@@ -143,16 +144,16 @@ struct CavityMemory {
     }
 };
 
-/// After a step of length `h` that began at time `t`: stores the pressures at its start, adds the flow of gas to the
-/// masses in cavities, lets gas flow through pipes one after the other, and adds the swept volumes to open cavities.
-/// `volume_now`: column of CavityTable. A cavity that contains no gas supplies none. Returns false if there is no
-/// cavity.
+/// After a step of length `h` that began at time `t`: stores the pressures at time `t`, adds the prescribed flow of gas
+/// to the masses in cavities, lets gas flow through the pipes in table order, and updates the volumes of open cavities.
+/// `volume_now`: column of CavityTable. A prescribed outflow ends when a cavity contains no more gas. Returns false if
+/// there is no cavity.
 bool store_cavities(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
                     std::span<const Real> volume_now, Real t, Real h, const CavityMemory& out);
 
-/// Marks the bodies of cavities whose prescribed values change from `t` to `t + h`, or into which gas flows. A pipe
-/// counts as flowing while the pressures at its ends differ by more than 1e-9 of their sum. `marked` may be empty.
-/// Returns false if there is no such body.
+/// Marks the bodies of cavities whose prescribed values change from `t` to `t + h`, or whose mass of gas changes. Gas
+/// counts as flowing in a pipe if the absolute pressures at its ends differ by more than 1e-9 of their sum. `marked`:
+/// by row of BodyTable; if it is empty, only the return value is computed. Returns false if there is no such body.
 bool mark_filled(const CavityInputs& cavities, const PipeInputs& pipes, const HandleMap<CavityHandle>& cavity_map,
                  Real t, Real h, std::span<std::uint8_t> marked);
 

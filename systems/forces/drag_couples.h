@@ -33,11 +33,12 @@ struct DraggedBodies {
     }
 };
 
-/// Adds couples to the drag of rigid bodies in `applied_force`, by node [N], so that its moment about the centre of
-/// mass is -drag L with the angular momentum L. The moment of add_loads() contains the inertia of the nodes instead of
-/// that of the body, and speeds up rotation if masses of nodes are negative. The forces of a couple sum to zero.
-/// If all nodes lie on a line, they cannot take up a couple along this line. `fields`: from add_loads(). Returns false
-/// if there is no rigid or implicit body.
+/// Corrects the drag of rigid bodies that add_loads() has added to `applied_force`, by node [N]. Adds forces with the
+/// sum zero, so that the moment of the drag about the centre of mass becomes -drag L, with the angular momentum L of
+/// the body. Without this correction it is -drag times the angular momentum of point masses at the nodes. Some of these
+/// masses may be negative, and drag could then speed up rotation. If all nodes lie on a line, the couple about this
+/// line is left out, because nodal forces cannot exert it. `fields`: from add_loads(). Returns false if there is no
+/// rigid or implicit body.
 bool add_drag_couples(const DraggedBodies& bodies, std::span<const BodyField> fields, std::span<Vec3> applied_force);
 
 }  // namespace skerry

@@ -22,15 +22,16 @@ namespace skerry {
 /// the nominal stress `tension` along the fibres.
 struct FibreLaw {
     Real stiffness, exponent;  // k_1 [Pa], k_2
-    // An active tension at a smaller stretch is reduced in proportion to the stretch, so that the force stays
-    // continuous.
+    // Below this stretch the active stress is reduced in proportion to the stretch. Otherwise the force would jump at a
+    // stretch of zero, where the direction of the fibres is not defined.
     static constexpr Real least_stretch = 0.1;
 
     /// Energy per rest volume without the active part [J/m^3]. `square`: squared stretch.
     Real energy(Real square) const;
     /// Stress vectors for the stretched direction y = F a.
     FibrePull pull(const Vec3& y, Real tension) const;
-    /// Largest eigenvalue of the derivative of the stress vector by y, for active tensions up to `tension` >= 0 [Pa].
+    /// Upper bound of the eigenvalues of the derivative of FibrePull::whole by y, for active tensions from 0 to
+    /// `tension` [Pa].
     Real stiffness_bound(const Vec3& y, Real tension) const;
 };
 
@@ -73,8 +74,8 @@ struct FibreInputs {
     std::size_t node_of(std::size_t row, std::size_t t, std::size_t c) const {
         return static_cast<std::size_t>(body_nodes[static_cast<std::size_t>(fibre_body[row])].begin + node[t][c]);
     }
-    /// Product of F with the direction of the fibres. If `value_of(n)` is the velocity of node n, the result is its
-    /// rate.
+    /// Derivative along the fibres of a field with the value `value_of(n)` at node n. For positions it is F a, with the
+    /// direction a of the fibres in the rest shape; for velocities it is the rate of F a.
     Vec3 along(std::size_t row, std::size_t t, auto&& value_of) const {
         const Vec3 first = value_of(node_of(row, t, 0));
         Vec3 sum = Vec3::Zero();
@@ -88,18 +89,18 @@ struct FibreInputs {
 };
 
 /// Adds the forces of all fibres to `applied_force`, by node [N]. An active tension that changes over time acts with
-/// its mean in the interval of the step. Parallel over tetrahedra; the sum is sequential. Returns false if there are no
-/// fibres (skipped).
+/// its mean over the force interval of the step. Stresses are computed in parallel and written to `next`, forces are
+/// summed sequentially. Returns false if there are no fibres; reports then count the stage as skipped.
 bool add_fibre_forces(Executor& executor, const FibreInputs& fibres, const ForceIntervals& intervals,
                       std::span<FibrePull> next, std::span<Vec3> applied_force);
 
 /// Marks the bodies of fibres whose active tension changes in the step of length `h` that starts at time `t`. Returns
-/// false if there are none.
+/// false if no tension changes. `marked`: by row of BodyTable; may be empty.
 bool mark_activated(const FibreInputs& fibres, Real t, Real h, std::span<std::uint8_t> marked);
 
 struct FibreWorkInputs {
     std::span<const FibrePull> next;
-    std::span<const Vec3> passive_before;  // stress in the last step [Pa]
+    std::span<const Vec3> passive_before;  // FibrePull::passive of the last step [Pa]
     std::span<const Vec3> velocity_next;   // NodeTable [m/s]
     FreeNodes free;
 
@@ -115,15 +116,16 @@ struct FibreWorkInputs {
     }
 };
 
-/// Work of the passive stress of all fibres on the nodes in a step, by the formulas of measure_work with the same `h`
-/// and `lag` [J].
+/// Work of the passive stress of all fibres on the nodes in a step [J]. Formulas, `h` and `lag` are those of
+/// measure_work.
 Real measure_fibres(const FibreInputs& fibres, const FibreWorkInputs& step, Real h, Real lag);
 
-/// Passive energy of all fibres at the present positions, with the correction of spring_energy for velocities that are
-/// `lag` seconds older than positions [J].
+/// Passive energy of all fibres at the present positions [J], plus a correction for velocities that are `lag` seconds
+/// older than positions, as in spring_energy.
 Real fibre_energy(const FibreInputs& fibres, const FibreWorkInputs& last, Real lag);
 
-/// Stores the passive stress of a committed step. Returns false if there are no fibres (skipped).
+/// Stores the passive stress of a committed step. Returns false if there are no fibres; reports then count the stage as
+/// skipped.
 bool keep_fibre_stress(std::span<const FibrePull> next, std::span<Vec3> passive);
 
 }  // namespace skerry

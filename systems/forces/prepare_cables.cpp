@@ -16,7 +16,7 @@ void clear(CableBlockTable& blocks) {
     blocks.mobilities = 0;
 }
 
-/// Appends the points of a cable to the columns by point.
+/// Appends the points of a cable to those columns of `blocks` that have one row per point. Returns the appended rows.
 Range list_points(const CableInputs& cables, std::size_t cable, CableBlockTable& blocks) {
     const Range points = cables.points[cable];
     const auto begin = static_cast<Index>(blocks.stencil.size());
@@ -33,7 +33,7 @@ Range list_points(const CableInputs& cables, std::size_t cable, CableBlockTable&
         const Vec3 here = cables.anchor.at(at), next = p + 1 < points.end ? cables.anchor.at(at + 1) : here;
         const Real length = (next - here).norm();
         blocks.length.back() = length;
-        // A shorter segment has no direction, only a rounding error of its points.
+        // The direction of a shorter segment would be only rounding error, so it remains zero.
         const Real shortest = 1e-14 * (here.norm() + next.norm());  // [m]
         if (length > shortest) blocks.direction.back() = (next - here) / length;
     }
@@ -50,7 +50,8 @@ Range list_points(const CableInputs& cables, std::size_t cable, CableBlockTable&
     return listed;
 }
 
-/// Greatest length at the end of a step of a cable whose rate of length is prescribed [m]. `before`: at its start [m].
+/// For a cable with a prescribed rate of length: greatest length at the end of a step [m]. `before`: greatest length at
+/// the start of the step [m].
 Real released_at_end(std::span<const TimeKey> keys, Real before, const CableTimes& times) {
     return std::max(Real(0), before + times.h * mean_value(keys, times.t, times.h));
 }
@@ -95,8 +96,8 @@ void add_block(const CableInputs& cables, std::size_t cable, const CableTimes& t
     append_block(block, blocks);
 }
 
-/// Adds a bound of the squared frequencies due to the segment that begins at `point`, with its greatest tension
-/// `tension`, to the bodies at both ends [1/s^2].
+/// Adds to the bodies at both ends of a segment an upper bound of the squared circular frequencies that its tension
+/// causes [1/s^2]. The segment begins at `point`. `tension`: greatest tension [N].
 void add_segment_rate(const CableInputs& cables, std::size_t point, Real tension, std::span<Real> of_body) {
     const Real length = (cables.anchor.at(point + 1) - cables.anchor.at(point)).norm();
     if (!(length > 0) || tension == 0) return;

@@ -40,7 +40,7 @@ struct CableInputs {
 
     std::size_t size() const { return control.size(); }
     std::span<const TimeKey> keys_of(std::size_t cable) const { return rows_of(key, keys[cable]); }
-    /// True if the cable acts by forces that are known before the step.
+    /// True if the forces of the cable are known before the step: its tension is prescribed, and it has no friction.
     bool has_known_forces(std::size_t cable) const {
         return control[cable] == CableControl::tension && friction[cable] == 0;
     }
@@ -49,16 +49,17 @@ struct CableInputs {
     /// True if the control of the cable changes, or a collider moves one of its points, in the step of length `h` that
     /// starts at time `t`.
     bool is_driven(std::size_t cable, Real t, Real h) const;
-    /// True if some body is asleep and no point of the cable can move in this step.
+    /// True if no point of the cable moves in this step: all its bodies are asleep, and no collider moves a point.
+    /// Always false if no body of the world is asleep.
     bool rests(std::size_t cable) const;
-    /// True if impulses can move a point of the cable.
+    /// True if impulses of the cable can move a node of a body.
     bool moves(std::size_t cable) const;
 };
 
-/// Start, length and force interval of a step [s].
+/// Start `t`, length `h` and force interval `kick` of a step [s], and a setting.
 struct CableTimes {
     Real t = 0, h = 0, kick = 0;
-    Real recovery_speed = 0;  // greatest speed at which a cable that is too long is drawn in [m/s]
+    Real recovery_speed = 0;  // greatest speed at which the excess over a prescribed length is drawn in [m/s]
 
     static CableTimes bind(const Binder& binder, const Real& t, const Real& h, const Real& kick,
                            const Real& recovery_speed) {
@@ -69,13 +70,17 @@ struct CableTimes {
 /// Lists the cables that act in this step, first those with known forces. Returns false if there is no cable.
 bool prepare_cables(const CableInputs& cables, const CableTimes& times, CableBlockTable& blocks);
 
-/// Adds the forces of the cables with known forces to the forces on nodes. Returns false if there is none.
+/// Adds the forces of the cables with known forces to `applied_force`, by node [N]. `kick`: time for which the impulses
+/// in `blocks` act [s]. Returns false if there is no such cable.
 bool add_cable_forces(const CableBlockTable& blocks, Real kick, std::span<Vec3> applied_force);
 
-/// Adds, for each body, an upper bound of the contribution of its cables to its squared natural frequencies [1/s^2].
+/// Adds to `of_body`, by row of BodyTable, an upper bound of the squared circular frequencies that cables cause in the
+/// body [1/s^2]. A prescribed tension counts with its greatest value, any other tension with its value in the last
+/// step.
 void add_cable_rates(const CableInputs& cables, std::span<Real> of_body);
 
-/// Marks the bodies of driven cables (CableInputs::is_driven). Returns false if there is none.
+/// Marks the bodies of driven cables (CableInputs::is_driven). Returns false if no cable is driven. `marked`: by row of
+/// BodyTable.
 bool mark_driven_cables(const CableInputs& cables, Real t, Real h, std::span<std::uint8_t> marked);
 
 /// Work and loss of a cable during a motion.
@@ -83,7 +88,8 @@ struct CableWork {
     Real work = 0;        // work of the control on the cable [J]
     Real dissipated = 0;  // energy that friction at the points dissipates [J]
 };
-/// Work while the segments change their lengths from `before` to `now` [m]. `tension`: by segment [N].
+/// Work while the segments change their lengths from `before` to `now` [m]. `tension`: by segment [N]. If it holds
+/// impulses of tensions [N s] instead, the results are work times the duration of the impulses.
 CableWork work_of_cable(std::span<const Real> tension, std::span<const Real> before, std::span<const Real> now);
 
 /// Columns of CableTable that a committed step stores for the next step.
@@ -107,11 +113,13 @@ struct CableMemory {
     }
 };
 
-/// Stores the tensions and lengths of the cables that act, and adds their work in the previous step. Advances the
-/// greatest length of all cables with a prescribed rate. Returns false if there is no cable.
+/// Stores the tensions and lengths of the cables that act. Adds their work from the start of the previous step to the
+/// start of this step, whose lengths are known only now. Advances the greatest length of all cables with a prescribed
+/// rate. Returns false if there is no cable.
 bool store_cables(const CableBlockTable& blocks, const CableTimes& times, const CableMemory& out);
 
-/// Impulse and work of the cables of a step that the region solver has solved, without cables of ghosts.
+/// Totals over the cables that the region solver has solved in a step. Cables of ghosts do not count, because the
+/// owning rank counts them.
 struct CableMeasures {
     Vec3 impulse = Vec3::Zero();  // impulse that cables transmit from colliders and from held nodes [N s]
     Real work = 0;                // work of the cables on the bodies [J]

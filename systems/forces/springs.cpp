@@ -44,7 +44,8 @@ struct Stretch {
     }
 };
 
-/// Inverse mass of an anchor along a direction, if each mass is divided among the dampers that act on it [1/kg].
+/// Inverse mass of an anchor along a direction [1/kg], if each node or body divides its mass equally among the dampers
+/// that act on it. With this division, several dampers on one body are stable at any step length.
 Real divided_inverse_mass(const SpringMasses& masses, const AnchorMass& own, const Mat3& response, Index body,
                           const Vec3& at, const Vec3& along) {
     if (own.dampers == 0) return own.divided;
@@ -72,7 +73,8 @@ SpringForce force_of(const SpringInputs& springs, const SpringMasses& masses, st
                                                        springs.first.body[s], springs.first.at(s), stretch.along) +
                                   divided_inverse_mass(masses, masses.second[s], masses.second_response[s],
                                                        springs.second.body[s], springs.second.at(s), stretch.along);
-        // Mean force over the step, if the damper alone acts: the rate then decays by the factor exp(-decay).
+        // Mean damper force over the time `kick` if nothing else acts: the rate then decays exponentially, by the
+        // factor exp(-decay) in total.
         const Real decay = kick * law.damping * inverse_mass;
         damper = law.damping * rate * (decay > 0 ? -std::expm1(-decay) / decay : Real(1));
     }
@@ -85,8 +87,8 @@ SpringForce force_of(const SpringInputs& springs, const SpringMasses& masses, st
 
 /// Velocities of an anchor in a step [m/s].
 struct AnchorVelocities {
-    Vec3 next;    // velocity with which the anchor moves in the step of length h
-    Vec3 during;  // velocity of the displacement during the force interval, see measure_work
+    Vec3 next;    // velocity that moves the anchor: the new one of its nodes, or the mean one of its collider
+    Vec3 during;  // displacement while the forces act, divided by h (measure_work)
 };
 
 AnchorVelocities velocities_in_step(const AnchorInputs& anchors, std::size_t s, const SpringWorkInputs& step, Real h,

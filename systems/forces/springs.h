@@ -30,7 +30,8 @@ struct SpringLaw {
     Real tension(Real extension) const;
     /// Elastic energy, whose derivative is the elastic tension [J].
     Real energy(Real extension) const;
-    /// Tension with the force of the damper [N]. `elastic`: elastic tension; `damper`: force of the damper alone [N].
+    /// Tension of spring and damper together [N]. It is limited to `strength`, and has one sign if the spring is
+    /// one-sided. `elastic`: elastic tension [N]; `damper`: force of the damper alone [N].
     Real with_damper(Real extension, Real elastic, Real damper) const;
 };
 
@@ -78,7 +79,7 @@ struct SpringInputs {
 /// Inverse masses of the anchors of springs.
 struct SpringMasses {
     std::span<const AnchorMass> first, second;
-    std::span<const Mat3> first_response, second_response;  // deformation of implicit bodies [1/kg]
+    std::span<const Mat3> first_response, second_response;  // columns of SpringTable [1/kg]
     // BodyTable and RigidBodyTable:
     std::span<const Range> body_rigid;
     std::span<const Real> mass;
@@ -102,18 +103,19 @@ struct SpringMasses {
 };
 
 /// Adds the forces of all springs to `applied_force`, by node [N]. `t`: time at the start of the step [s]; `h`: step
-/// length [s]; `kick`: time for which the forces act [s]. Parallel over springs; the sum is sequential. Returns false
-/// if there is no spring (skipped).
+/// length [s]; `kick`: time for which the forces act [s]. Spring forces are computed in parallel and written to `next`,
+/// and are summed sequentially. Returns false if there is no spring; reports then count the stage as skipped.
 bool add_spring_forces(Executor& executor, const SpringInputs& springs, const SpringMasses& masses, Real t, Real h,
                        Real kick, std::span<SpringForce> next, std::span<Vec3> applied_force);
 
-/// Marks the bodies of springs that are driven. Returns false if there is none.
+/// Marks the bodies of driven springs (SpringInputs::is_driven). Returns false if no spring is driven. `marked`: by row
+/// of BodyTable.
 bool mark_driven_bodies(const SpringInputs& springs, Real t, Real h, std::span<std::uint8_t> marked);
 
 /// Energies of all springs in a step.
 struct SpringWork {
-    // Work on the anchors minus the work of changing rest lengths, which is the decrease of the elastic energy without
-    // dampers [J].
+    // Work on the anchors, minus the work done on the springs by changing their rest lengths [J]. If there are no
+    // dampers, this difference equals the decrease of the elastic energy.
     Real work = 0;
     Real dissipated = 0;  // energy dissipated by dampers [J]
 };
@@ -140,12 +142,12 @@ struct SpringWorkInputs {
     }
 };
 
-/// Measures the work of springs with the formulas of measure_work and the same `h`, `kick` and `lag`.
+/// Measures the work of springs. Formulas, `h`, `kick` and `lag` are those of measure_work.
 SpringWork measure_springs(const SpringInputs& springs, const SpringWorkInputs& step, Real h, Real kick, Real lag);
 
-/// Elastic energy of all springs at the present positions, and its correction for velocities that are `lag` seconds
-/// older than positions [J]. The correction replaces the power of the forces of the last step by that of the present
-/// elastic forces. `t`: present time [s].
+/// Elastic energy of all springs at the present positions [J], plus a correction for velocities that are `lag` seconds
+/// older than positions. The correction is `lag` times the power of the change from the force of the last step to the
+/// present elastic force. `t`: present time [s].
 Real spring_energy(const SpringInputs& springs, const SpringWorkInputs& last, Real t, Real lag);
 
 struct SpringMemory {
@@ -160,7 +162,7 @@ struct SpringMemory {
     }
 };
 
-/// Stores the forces of a committed step. Returns false if there is no spring (skipped).
+/// Stores the forces of a committed step. Returns false if there is no spring; reports then count the stage as skipped.
 bool keep_spring_forces(std::span<const SpringForce> next, const SpringMemory& out);
 
 }  // namespace skerry

@@ -20,15 +20,15 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline T segment_distance_squared(const LaneVec3<T>& a0, const LaneVec3<T>& a1,
                                                          const LaneVec3<T>& b0, const LaneVec3<T>& b1) {
-    // Squared sine of the angle between the two lines. Below this value, rounding errors determine the position where
-    // the lines cross.
+    // Limit of the squared sine of the angle between the two lines. Below it, rounding errors determine where the lines
+    // come nearest, and the search starts at s = 0 instead.
     constexpr Real noise_sine_squared = 1e-14;
     const T zero{}, one = zero + 1.0;
     const LaneVec3<T> ea = a1 - a0, eb = b1 - b0, r = a0 - b0;
     const T a = dot(ea, ea), e = dot(eb, eb), b = dot(ea, eb), c = dot(ea, r), f = dot(eb, r);
     const T denominator = a * e - b * b;  // |ea x eb|^2
-    // The parameter of the crossing is clamped on the first segment, then on the second segment, then on the first
-    // segment again.
+    // `s` and `t` are the positions on the two segments, as fractions of their lengths. The position where the lines
+    // come nearest is clamped to the first segment, then to the second, then to the first again.
     const T crossing = clamped_to_unit((b * f - c * e) / denominator);
     const T free_s = denominator > noise_sine_squared * a * e ? crossing : zero;
     const T along = (b * free_s + f) / e, free_t = e > zero ? along : zero;
@@ -40,8 +40,8 @@ template <class T>
     return dot(apart, apart);
 }
 
-/// Squared distances of points from segments [m^2]. The segment of a point p starts at p - `from` and ends at p -
-/// `from` + `edge`.
+/// Squared distances of points from segments [m^2]. `from`: vector from the start of the segment to the point; `edge`:
+/// vector from the start to the end of the segment [m].
 template <class T>
 [[gnu::always_inline]] inline T point_segment_distance_squared(const LaneVec3<T>& from, const LaneVec3<T>& edge) {
     const T zero{}, squared = dot(edge, edge);
@@ -58,8 +58,8 @@ struct PointTriangleLanes {
     T height;
 };
 
-/// Distances of the points p from the triangles abc. A triangle whose height is below 1e-6 of its longest edge is
-/// treated as three edges without a face.
+/// Distances of the points p from the triangles abc. A triangle whose smallest height is below 1e-6 of its longest edge
+/// is treated as three edges without a face, because its normal would be a rounding error.
 template <class T>
 [[gnu::always_inline]] inline PointTriangleLanes<T> point_triangle_distance(const LaneVec3<T>& p, const LaneVec3<T>& a,
                                                                             const LaneVec3<T>& b,

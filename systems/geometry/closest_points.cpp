@@ -8,15 +8,16 @@ namespace skerry {
 
 namespace {
 
-// A triangle whose height is below this fraction of its longest edge is treated as this edge. At a fraction of 1e-8,
-// the sub-areas computed below would lose all digits.
+// A triangle whose smallest height is below this fraction of its longest edge is treated as the edge alone. At a
+// fraction of 1e-8, the sub-areas computed below would lose all digits.
 constexpr Real min_height_fraction = 1e-6;
 
-// Squared sine of the angle between two segments below which the position of their crossing is not well defined.
+// Segments count as parallel if the squared sine of the angle between them is smaller. Small changes then move the
+// nearest points far.
 constexpr Real min_sine_squared = 1e-6;
 
-// Squared sine of the angle between two segments below which the denominator in the formula of the crossing is only a
-// rounding error.
+// If the squared sine of the angle between two segments is smaller, the denominator in the formula for their nearest
+// points is only a rounding error.
 constexpr Real noise_sine_squared = 1e-14;
 
 Real clamp01(Real x) {
@@ -85,8 +86,8 @@ PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3
         return at(p, b + s * (c - b), TriangleRegion::edge12, 0, 1 - s, s);
     }
     const Real scale = 1 / (va + vb + vc);
-    // Near an edge, rounding errors can make a weight negative. Such weights are set to zero, because the sign of a
-    // weight shows to which body the node belongs.
+    // Near an edge, rounding errors can make a weight negative. Such weights are set to zero, because in the stencil of
+    // a contact the sign of a weight tells to which of the two bodies a node belongs.
     const Real v = std::max(Real(0), vb * scale), w = std::max(Real(0), vc * scale);
     return at(p, a + v * ab + w * ac, TriangleRegion::face, std::max(Real(0), 1 - v - w), v, w);
 }
@@ -95,8 +96,8 @@ SegmentSegment closest_points_of_segments(const Vec3& a0, const Vec3& a1, const 
     const Vec3 ea = a1 - a0, eb = b1 - b0, r = a0 - b0;
     const Real a = ea.squaredNorm(), e = eb.squaredNorm(), b = ea.dot(eb), c = ea.dot(r), f = eb.dot(r);
     const Real denominator = a * e - b * b;  // |ea x eb|^2
-    // Method of Ericson 5.1.9: the parameter of the crossing is clamped on the first segment, then on the second
-    // segment, then on the first segment again.
+    // Method of Ericson 5.1.9: the position where the lines come nearest is clamped to the first segment, then to the
+    // second, then to the first again.
     Real s = denominator > noise_sine_squared * a * e ? clamp01((b * f - c * e) / denominator) : 0;
     Real t = e > 0 ? (b * s + f) / e : 0;
     if (t < 0 || !(e > 0)) {

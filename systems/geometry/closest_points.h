@@ -1,4 +1,4 @@
-// Nearest points of points, triangles and segments.
+// Nearest points of a point and a triangle, and of two segments.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ struct PointTriangle {
     Real distance_squared;  // [m^2]
 };
 
-/// The point of triangle abc that is nearest to p (Ericson, Real-Time Collision Detection, 5.1.5). A triangle without
-/// area is treated as its longest edge.
+/// The point of triangle abc that is nearest to p (Ericson, Real-Time Collision Detection, 5.1.5). A triangle whose
+/// smallest height is below 1e-6 of its longest edge is treated as this edge.
 PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 struct SegmentSegment {

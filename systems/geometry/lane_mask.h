@@ -18,7 +18,7 @@ typedef std::int64_t HalfBits __attribute__((vector_size(sizeof(Real4))));
 
 /// Integer in which bit l is set if lane l of the mask is set. The conversion takes one instruction with AVX.
 [[gnu::always_inline]] inline unsigned bits_of(const HalfBits& mask) {
-#if defined(__BMI2__)  // tested instead of __AVX__, which cmake/flags.cmake hides from Eigen
+#if defined(__BMI2__)  // stands for AVX, because cmake/flags.cmake undefines __AVX__ to hide it from Eigen
     return static_cast<unsigned>(__builtin_ia32_movmskpd256(reinterpret_cast<Real4>(mask)));
 #else
     // The halves of the register are combined, because a loop over the lanes would store the register in memory.

@@ -1,5 +1,5 @@
-// Vectors whose components are registers. Functions of these vectors work on one row (T = Real) or on several rows side
-// by side.
+// Vectors whose components are registers. Functions of these vectors work on one vector (T = Real) or on several
+// vectors side by side, one per lane.
 #pragma once
 
 #include <cmath>

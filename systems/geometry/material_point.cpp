@@ -35,8 +35,8 @@ MaterialPoint point_of_solid(std::span<const Vec3> nodes, const Vec3& place) {
 
 std::optional<MaterialPoint> point_inside(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                           const Vec3& place) {
-    // Tolerance for rounding errors of barycentric coordinates. With it a point on a shared face always belongs to the
-    // first of the two tetrahedra.
+    // Tolerance for rounding errors of barycentric coordinates. With it, a point on a common face of two tetrahedra
+    // always belongs to the one that comes first.
     constexpr Real rounding = 1e-9;
     for (const std::array<Index, 4>& corners : tetrahedra) {
         const MaterialPoint point = point_of_tetrahedron(nodes, corners, place);

@@ -15,11 +15,13 @@ struct MaterialPoint {
     std::array<Real, 4> weight{};
 };
 
-/// Returns the point of a tetrahedron at `place`, which may be outside the tetrahedron. `nodes`: node positions [m].
+/// Returns the material point of a tetrahedron that is at the position `place` [m], inside or outside the tetrahedron.
+/// `nodes`: node positions [m].
 MaterialPoint point_of_tetrahedron(std::span<const Vec3> nodes, const std::array<Index, 4>& corners, const Vec3& place);
 
-/// Returns the point of a rigid body at `place`, which may be outside the body. The corners are four nodes far from
-/// each other. The nodes must not all lie in one plane.
+/// Returns the material point of a rigid body that is at the position `place` [m], inside or outside the body. As
+/// corners it takes four nodes far from each other, so that rounding errors of the weights stay small. The nodes of the
+/// body must not all lie in one plane.
 MaterialPoint point_of_solid(std::span<const Vec3> nodes, const Vec3& place);
 
 /// Returns the point of the first tetrahedron that contains `place`, or nothing if no tetrahedron contains it.

@@ -1,5 +1,5 @@
 // Eigenvalues and eigenvectors of symmetric 3x3 matrices. Callers use these functions in place of Eigen's class,
-// because their source has flags with which results do not depend on the instruction set.
+// because symmetric_eigen.cpp is compiled with flags that make the results independent of the instruction set.
 #pragma once
 
 #include "components/types.h"

@@ -1,4 +1,4 @@
-// Time at which two features meet whose points move along straight lines (docs/methods/collision.md 7.2).
+// Time at which two features meet while their points move along straight lines (docs/methods/collision.md 7.2).
 #pragma once
 
 #include <array>
@@ -18,12 +18,12 @@ using FourPoints = std::array<Vec3, 4>;  // [m]
 /// the start.
 inline constexpr Real contact_slack = 0.1;
 
-/// Upper bound of the decrease in distance between a point of the first feature and a point of the second feature,
-/// while the four points that define the features move by `displacement` [m]. Motion that is common to all four points
-/// does not count.
+/// Upper bound of the decrease in distance between the two features [m], while the four points that define them move by
+/// `displacement` [m]. The mean displacement is subtracted first, because common motion changes no distance.
 Real greatest_approach(FeaturePair kind, const FourPoints& displacement);
 
-/// Distance that must remain between two features, because they are the cores (centres or axes) of round bodies.
+/// Distances at which two features count as in contact. They are needed for features that are the cores (centres or
+/// axes) of round bodies.
 struct KeptApart {
     Real distance = 0;  // sum of the radii of the round bodies [m]
     // The features count as in contact if their gap, the distance beyond `distance`, is at most this value [m].
@@ -38,8 +38,8 @@ struct KeptApart {
 /// if the features touch at the start.
 ///
 /// The method is additive conservative advancement (Li, Kaufman, Jiang 2021, Codimensional IPC, section 5). In
-/// addition, an iteration advances as long as a slab separates the features, so that sliding features need few
-/// iterations. After some thousand iterations the search gives up and returns the time reached.
+/// addition, an iteration advances as long as a slab separates the features, so that features that slide past each
+/// other need few iterations. After some thousand iterations the search gives up and returns the time reached.
 std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
                                     const KeptApart& kept = {});
 

@@ -69,14 +69,15 @@ struct Kernels {
     decltype(&skerry::solve_regions) solve_regions;
 };
 
-/// The kernels for one instruction set. `runs`: whether this processor and its operating system can run them.
+/// The kernels for one instruction set. `runs`: true if this processor and its operating system support the instruction
+/// set.
 struct KernelSet {
     const Kernels* kernels;
     bool runs;
 };
 
-/// The kernel tables of all instruction sets of the build, ascending by the demands on the processor. The first table
-/// can always be used, because its instruction set is that of all other code.
+/// The kernel tables of all instruction sets of the build, from the oldest processors to the newest. The first table
+/// can always be used, because the rest of the engine is compiled for its instruction set too.
 std::span<const KernelSet> kernel_sets();
 
 }  // namespace skerry

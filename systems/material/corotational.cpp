@@ -20,16 +20,15 @@ Real Corotational::stiffness_bound(const MaterialConstants& material, const Mat3
     Vec3 s = Stretches(F).stretch;
     std::ranges::sort(s, std::greater<Real>());
     const Real twist = la * (s.sum() - 3) - 2 * mu;
-    // R is the rotation nearest to F, s are the stretches. dP/dF has the eigenvalue 2 mu for every change of F
-    // orthogonal to R, and 2 mu + 3 la for a change of F along R. For changes of F that rotate R, twist * 2/(s_i + s_j)
-    // is added to the eigenvalue.
+    // With the rotation R nearest to F and the stretches s, dP/dF has the eigenvalues 2 mu + 3 la for a change of F
+    // along R, 2 mu + twist * 2/(s_i + s_j) for the three changes of F that rotate R, and 2 mu for all others.
     Real bound = 2 * mu + std::max(Real{0}, 3 * la);
     if (twist > 0) bound = std::max(bound, 2 * mu + twist * 2 / std::max(s[1] + s[2], Real{0}));
     return bound;
 }
 
 Tangent Corotational::tangent(const MaterialConstants& material, const Mat3& F) {
-    constexpr Real least = 1e-3;  // lower bound of the sum s_i + s_j of two stretches; below it R is about to jump
+    constexpr Real least = 1e-3;  // lower bound of the sum s_i + s_j of two stretches; R is not unique if a sum is 0
     const Real mu = material.shear_modulus, la = material.lame_lambda;
     const Stretches frames(F);
     const Vec3& s = frames.stretch;

@@ -51,7 +51,8 @@ struct Corotational {
     template <class T>
     [[gnu::always_inline]] static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& R,
                                                         const T& trace) {
-        // Near the rest shape 2 mu F and 2 mu R cancel up to rounding errors.
+        // Near the rest shape the terms 2 mu F and -2 mu R cancel. The rounding error that remains is relative to 2 mu,
+        // not to the small stress.
         const Real two_mu = 2 * material.shear_modulus;
         const T pressure = material.lame_lambda * (trace - 3.0);
         return {T{} + two_mu, pressure - two_mu, R};
@@ -72,10 +73,10 @@ private:
     /// S = R^T F, G = tr(S) I - S and c = lambda (tr S - 3) - 2 mu, kappa (X - R X^T R) is an upper bound of the effect
     /// c G^-1 of the rotation of R, for changes X of F that rotate R.
     ///
-    /// The eigenvalues of G are the sums s_i + s_j of two stretches. They lie between mean - 2 spread and mean + 2
-    /// spread. Sums below 1e-3 are replaced by 1e-3, because R is about to jump there. Under compression kappa is
-    /// negative, but at least -mu: the stiffness stays non-negative, because a negative eigenvalue deflects the motion
-    /// and does not limit the step.
+    /// The eigenvalues of G are the sums s_i + s_j of two stretches. They differ by at most 2 spread from their mean
+    /// 2/3 tr S, where 6 spread^2 = |dev S|^2. Sums below 1e-3 are replaced by 1e-3, because R is not unique if a sum
+    /// is 0. Under compression kappa is negative, but at least -mu, so that the stiffness 2 mu + 2 kappa stays
+    /// non-negative: a negative one causes no vibration, so it does not limit the step.
     template <class T>
     static T frame_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
         constexpr Real least = 1e-3;

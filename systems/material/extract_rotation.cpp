@@ -9,8 +9,8 @@ namespace {
 
 using Vector4 = std::array<Real, 4>;
 
-/// Computes the eigenvalues and eigenvectors of a symmetric 4x4 matrix by cyclic Jacobi rotations (Golub, Van Loan,
-/// 8.5). Plain loops make the result independent of the way in which a library vectorises them.
+/// Eigenvalues and eigenvectors of a symmetric 4x4 matrix. eigen_of() computes them by cyclic Jacobi rotations (Golub,
+/// Van Loan, 8.5), in plain loops: the vectorised code of a library would give other bits on other processors.
 struct Eigen4 {
     Vector4 value;
     std::array<Vector4, 4> vector;  // vector[i] is the eigenvector of value[i]
@@ -79,7 +79,7 @@ std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& s
         const Real share = dot4(eigen.vector[i], start);
         for (std::size_t k = 0; k < 4; ++k) q[k] += share * eigen.vector[i][k];
     }
-    // `start` is orthogonal to all these eigenvectors, so any of the eigenvectors will do.
+    // If `start` is orthogonal to all these eigenvectors, one of them is taken, because none is nearer to `start`.
     if (!(dot4(q, q) > 1e-12)) q = eigen.vector[top];
     const Real length = std::sqrt(dot4(q, q));
     return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};

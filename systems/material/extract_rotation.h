@@ -32,8 +32,8 @@ template <class T>
 /// angle.
 template <class T>
 [[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q, T& trace) {
-    // Square of a small rotation angle. The error after a step, the cube of this angle, is below the rounding error of
-    // F [rad^2].
+    // Newton's method ends after a step with a smaller squared rotation angle [rad^2]. The angle is then below 2e-5,
+    // and the error after the step is about its cube, 8e-15.
     constexpr Real settled_turn_squared = 4e-10;
     constexpr Real least_curvature = 1e-3;  // lower bound of det G / (tr S / 3)^3, which is 8 in the rest shape
     const LaneMat3<T> R = rotation_of(q);
@@ -73,15 +73,15 @@ template <class T>
 /// F), the one nearest to `start` is taken. Returns `start` if F is not finite.
 std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& start);
 
-/// Replaces `start` by nearest_rotation in all lanes with volume. The function is slow and not inlined, because it is
-/// rarely needed.
+/// Replaces `start` by nearest_rotation() in all lanes in use (volume not 0). It is slow, but rarely needed, and
+/// therefore not inlined.
 template <class T>
 void solve_rotations(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& start);
 extern template void solve_rotations(const LaneMat3<Real4>& F, const Real4& volume, LaneQuaternion<Real4>& start);
 extern template void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start);
 
-/// Finds the rotations R nearest to F in all lanes of all parts, starting from q. Lanes without volume keep their
-/// rotation. All lanes take as many passes (Newton steps) as the slowest lane. Returns tr(R^T F).
+/// Finds the rotations R nearest to F in all lanes of N registers, starting from q. Lanes without volume are unused and
+/// not waited for. All other lanes take as many passes (Newton steps) as the slowest lane. Returns tr(R^T F).
 template <class T, std::size_t N>
 [[gnu::always_inline]] inline std::array<T, N> extract_rotations(const std::array<LaneMat3<T>, N>& F,
                                                                  const std::array<T, N>& volume,
@@ -105,7 +105,7 @@ template <class T, std::size_t N>
     return trace;
 }
 
-/// Applies extract_rotations to a single part.
+/// Applies extract_rotations to a single register.
 template <class T>
 [[gnu::always_inline]] inline T extract_rotation(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& q) {
     std::array<LaneQuaternion<T>, 1> of_part{q};

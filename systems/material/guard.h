@@ -81,7 +81,7 @@ private:
     template <class T>
     static T missing_of(const T& J) {
         const T missing = intact - J;
-        return missing < 0.0 ? T{} : missing;  // with this form of the comparison the result is NaN if J is NaN
+        return missing < 0.0 ? T{} : missing;  // the comparison is false for NaN, so the result is NaN if J is NaN
     }
 };
 

@@ -1,4 +1,4 @@
-// Arithmetic of the element kernels. The same source works on one element (T = Real) and on element_lanes elements side
+// Arithmetic of the element kernels. Each template works on one element (T = Real) and on element_lanes elements side
 // by side (T = Real8).
 #pragma once
 
@@ -78,8 +78,9 @@ template <class T>
     return {cross(a.c1, a.c2), cross(a.c2, a.c0), cross(a.c0, a.c1)};
 }
 
-/// A stress as the sum of_F F + of_other other, with the deformation gradient F [Pa]. With this form a caller can add
-/// multiples of F, or scale the stress, cheaply. Laws whose stress has another form return a matrix.
+/// A stress as the sum of_F F + of_other other, with the deformation gradient F [Pa]. In this form a caller can scale
+/// the stress or add multiples of F by changing two numbers per lane. Laws whose stress has another form return a
+/// matrix.
 template <class T>
 struct SplitStress {
     T of_F, of_other;
@@ -109,7 +110,7 @@ template <class T>
     return b;
 }
 
-/// Converts lane l of a matrix of lanes to a plain matrix.
+/// Returns the matrix in lane l.
 template <class T>
 Mat3 lane_of(const LaneMat3<T>& a, int l) {
     Mat3 m;

@@ -1,5 +1,5 @@
-// Powers of positive numbers, lane by lane, from additions and multiplications only. So each lane has the same bits for
-// every number of lanes, and on every machine.
+// Powers of positive numbers, lane by lane, from the four basic operations only, which IEEE 754 rounds correctly. So a
+// lane gets the same bits for every number of lanes, and on every machine.
 #pragma once
 
 #include <bit>
@@ -23,7 +23,8 @@ struct BitsOf<Real> {
 template <class T>
 using Bits = typename BitsOf<T>::type;
 
-// If an integer between -2^51 and 2^51 is added to this number, the lowest bits of the sum are those of the integer.
+// If an integer between -2^51 and 2^51 is added to this number, the lowest bits of the sum are those of the integer in
+// two's complement. Adding any real number of this range rounds it to an integer.
 inline constexpr Real integer_shift = 0x1.8p52;
 inline constexpr int fraction_bits = 52;
 inline constexpr Real ln2_high = 0x1.62e42fefa0000p-1, ln2_low = 0x1.cf79abc9e3b3ap-40;

@@ -1,4 +1,4 @@
-// Linear elasticity: exact for small displacements, wrong for rotations.
+// Linear elasticity: valid for small strains and rotations. Large rotations cause false stress.
 #pragma once
 
 #include "components/material_table.h"

@@ -8,18 +8,19 @@
 namespace skerry {
 
 /// Energy density [J/m^3], first Piola-Kirchhoff stress [Pa], and upper bound of the largest eigenvalue of dP/dF [Pa]
-/// of a material at the deformation gradient F. These functions treat one element at a time. They are the simple
-/// reference for the kernels, used in tests and for implicit bodies of large strain.
+/// of a material at the deformation gradient F. These functions treat one element at a time. Tests compare the kernels
+/// with them, and implicit bodies of large strain use them.
 Real energy_density(const MaterialConstants& material, const Mat3& F);
 Mat3 stress(const MaterialConstants& material, const Mat3& F);
 Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 /// Derivative dP/dF of the stress by the deformation gradient, for Newton steps [Pa].
 Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-/// Energy density [J/m^3] for the displacement gradient `change`, and block -df_k/dx_l of the stiffness matrix per
-/// volume [Pa/m^2] of two nodes with the shape gradients g and other [1/m], both at small strain. Anisotropic laws
-/// compute them by their members energy_of_strain and dyads; all other laws agree with Linear at small strain.
+/// Energy density [J/m^3] at small strain, for the displacement gradient `change`. Anisotropic laws compute it by their
+/// member energy_of_strain. All other laws agree with Linear at small strain.
 Real small_strain_energy(const MaterialConstants& material, const Mat3& change);
+/// Block -df_k/dx_l of the stiffness matrix at small strain, per volume [Pa/m^2]. The two nodes of the block have the
+/// shape function gradients `g` (node k) and `other` (node l) [1/m]. Anisotropic laws use their member `dyads`.
 Mat3 small_strain_stiffness(const MaterialConstants& material, const Vec3& g, const Vec3& other);
 
 /// Converts user parameters to material constants: Young's modulus > 0 [Pa], -1 < Poisson ratio < 0.5, density > 0

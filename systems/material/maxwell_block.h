@@ -1,5 +1,5 @@
 // Step of the Maxwell elements of a block: springs in series with dashpots (docs/methods/elasticity.md 6.2). Strains
-// are computed and stored in single precision. Their errors are 6e-8 of the strains, and hence far below those of the
+// are computed and stored in single precision. Their rounding errors, 6e-8 of the strains, are negligible in the
 // stress. Loops over components are unrolled, so that the components stay in registers. All springs of a component are
 // computed before the next component, and their sums grow with it: few numbers are needed at a time.
 #pragma once
@@ -19,7 +19,7 @@
 
 namespace skerry {
 
-/// Vector type of this code: two components of a strain with wide registers, else one.
+/// Number of strain components in one vector of type KernelFloat: two with 512-bit registers, else one.
 #ifdef __AVX512VL__
 inline constexpr std::size_t components_together = 2;
 #else
@@ -119,15 +119,15 @@ struct InnerProduct {
             part_of(a.xy, part), part_of(a.yz, part), part_of(a.zx, part)};
 }
 
-/// Constants of a step of the Maxwell elements of a body, which all elements share. Each fills a register, so that
-/// instructions can read it from memory. Moduli are relative to `modulus`.
+/// Constants of a step that are equal in all elements of a body. Each fills a register, so that instructions can read it
+/// from memory. Moduli are divided by `modulus`.
 struct MaxwellStep {
     // fraction 1 / (1 + h r) of the spring strain that remains after a step h at the rate r
     std::array<KernelFloat, maxwell_count> kept;
     // h r: strain change of the dashpot in the step, divided by the remaining spring strain
     std::array<Float8, maxwell_count> relaxes;
-    Float8 shear, trace, bulk;  // moduli mu, lambda / 2 and bulk / 2 of a spring (ViscousModuli)
-    Real modulus;               // reference modulus: sum of the Lame constants of the material [Pa]
+    Float8 shear, trace, bulk;  // ViscousModuli mu, lambda / 2 and bulk / 2, divided by `modulus`
+    Real modulus;               // reference modulus: mu + |lambda| of the material [Pa]
 
     MaxwellStep(const MaterialConstants& material, const RelaxationRates& rates, Real share, Real h)
         : modulus(material.shear_modulus + std::abs(material.lame_lambda)) {
@@ -136,7 +136,8 @@ struct MaxwellStep {
             kept[k] = KernelFloat{} + static_cast<float>(1 / (1 + h * rates[k]));
         }
         const ViscousModuli moduli = viscous_moduli(material, share);
-        // With Poisson's ratio 0 the volumetric part has the modulus 0; this avoids 0 / 0.
+        // Elements that have only the volumetric part of the stress have the modulus 0 if Poisson's ratio is 0. Their
+        // moduli are then 0 instead of 0 / 0.
         const auto relative = [this](Real of) {
             return Float8{} + (modulus > 0 ? static_cast<float>(of / modulus) : 0);
         };

@@ -8,7 +8,8 @@ namespace skerry {
 
 namespace {
 
-/// A positive number y(x) that equals x above a limit. `slope`: y'/y. `curvature`: the derivative of y'/y.
+/// A positive number y(x): x above a limit, limit^2 / (2 limit - x) below it. `value`: y. `slope`: y'/y. `curvature`:
+/// the derivative of y'/y by x.
 template <class T>
 struct Limited {
     T value, slope, curvature;
@@ -21,7 +22,7 @@ Limited<T> limited(const T& x, Real limit) {
     return {value, slope, above ? -(slope * slope) : slope * slope};
 }
 
-/// x^a for x > 0, and the logarithm of x.
+/// x^a for x > 0. `log`: natural logarithm of x.
 template <class T>
 T power_of(const T& x, const T& log, Real a) {
     if (a == 2) return x * x;
@@ -50,8 +51,8 @@ struct PrincipalShape {
           log_stretch{log_of(stretch[0].value), log_of(stretch[1].value), log_of(stretch[2].value)},
           log_volume(log_of(volume.value)) {}
 
-    /// Powers (s_i / J^(1/3))^a for each axis, and the powers divided by the exponent a. For a = 0 these are 1 and the
-    /// logarithm: the derivatives of the law depend on powers over a only up to a constant, which is left out.
+    /// Powers (s_i / J^(1/3))^a for each axis, and the powers divided by the exponent a. For a = 0 they are 1 and the
+    /// logarithm, the limit of (power - 1)/a: a constant in over_exponent cancels in the derivatives of the law.
     struct Powers {
         Three<T> power, over_exponent;
     };
@@ -79,7 +80,7 @@ void for_each_term(const MaterialConstants& material, auto&& visit) {
         if (material.share[p] > 0) visit(2 * material.shear_modulus * material.share[p], material.exponent[p]);
 }
 
-/// Derivatives of the energy without volume change by the stretches [Pa].
+/// Derivatives of the energy of shape changes by the stretches [Pa].
 template <class T>
 Three<T> principal_stress(const MaterialConstants& material, const PrincipalShape<T>& shape) {
     Three<T> W{};
@@ -92,8 +93,8 @@ Three<T> principal_stress(const MaterialConstants& material, const PrincipalShap
     return W;
 }
 
-/// dP/dF of the energy without volume change in principal axes, as in Tangent. `off[k]`: entry of `normal` of the axes
-/// other than k.
+/// Derivative dP/dF due to the energy of shape changes, in principal axes as in Tangent [Pa]. `diagonal` and `off`:
+/// entries of Tangent::normal; off[k] is the entry (i, j) of the two axes other than k.
 template <class T>
 struct PrincipalTangent {
     Three<T> diagonal{}, off{}, flip{}, twist{};
@@ -102,8 +103,8 @@ struct PrincipalTangent {
 template <class T>
 PrincipalTangent<T> principal_tangent(const MaterialConstants& material, const PrincipalShape<T>& shape,
                                       const Three<T>& s) {
-    constexpr Real close = 1e-4;  // stretches that differ by less count as equal
-    constexpr Real least = 1e-3;  // lower bound of the sum of two stretches; below it R is about to jump
+    constexpr Real close = 1e-4;  // for stretches that differ by less, the quotient below becomes a derivative
+    constexpr Real least = 1e-3;  // lower bound of the sum of two stretches; the nearest rotation is not unique at 0
     PrincipalTangent<T> H;
     const T r = shape.volume.slope, change = shape.volume.curvature;
     for_each_term(material, [&](Real modulus, Real exponent) {
@@ -145,8 +146,9 @@ T smaller(const T& a, const T& b) {
     return a < b ? a : b;
 }
 
-/// Upper bound of the largest eigenvalue of a symmetric 3x3 matrix: the smaller of a bound from the mean and the spread
-/// of the eigenvalues, exact if the smaller two are equal, and of Gershgorin's bound.
+/// Upper bound of the largest eigenvalue of a symmetric 3x3 matrix: the smaller of two bounds. One follows from the
+/// mean and the variance of the eigenvalues, and is exact if the two smaller eigenvalues are equal. The other is
+/// Gershgorin's.
 template <class T>
 T largest_eigenvalue(const Three<T>& diagonal, const Three<T>& off) {
     const T mean = (diagonal[0] + diagonal[1] + diagonal[2]) * (1.0 / 3);
@@ -172,7 +174,7 @@ PrincipalShape<T> shape_of(const LaneAxes<T>& axes) {
     return {axes.stretch.x, axes.stretch.y, axes.stretch.z};
 }
 
-/// left diag(entry) right^T
+/// left diag(x, y, z) right^T with the rotations of `axes`
 template <class T>
 LaneMat3<T> from_axes(const LaneAxes<T>& axes, const T& x, const T& y, const T& z) {
     const LaneVec3<T> a = x * axes.left.c0, b = y * axes.left.c1, c = z * axes.left.c2;
@@ -242,8 +244,9 @@ Ogden::FrameBound<T> Ogden::frame_bound(const MaterialConstants& material, const
 
 template <class T>
 T Ogden::rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
-    // With the stretches x of F / J^(1/3), the sum S of their squares satisfies (x - 1)^2 <= S - 3 for all x, and 3 (1
-    // - x)^2 <= S - 3 for x < 1, because the product of the stretches is 1.
+    // The stretches x of F / J^(1/3) have the product 1. So the sum S of their squares satisfies (x - 1)^2 <= S - 3 for
+    // every x, and 3 (x - 1)^2 <= S - 3 for x < 1. Also x >= 2/S, because the product of the two other stretches is at
+    // most S/2.
     const auto regular = J >= least_volume;
     const T volume = regular ? J : T{} + 1.0, log_third = log_of(volume) * (1.0 / 3), cube_root = exp_of(log_third);
     const T S = square / (cube_root * cube_root), excess = larger(S - 3.0, T{});

@@ -40,12 +40,13 @@ struct Ogden {
     template <class T>
     static T stiffness_bound(const MaterialConstants& material, const LaneMat3<T>& F);
     /// Upper bound of stiffness_bound, from |F|^2 and det F alone (docs/methods/stable_step.md 4.5) [Pa]. It is
-    /// infinite below the limits above.
+    /// infinite if J is below least_volume or a stretch may be below least_stretch.
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J);
 
-    /// Bound on dP/dF without volume changes, for the rotation R nearest to F: at most `even` for changes X of F with
-    /// X = R X^T R, at most `odd` for changes with X = -R X^T R, less `volume` times the square of R : X [Pa].
+    /// Upper bound of dP/dF due to the energy of shape changes, as a quadratic form in a change X of F [Pa]: even
+    /// |X_e|^2 + odd |X_o|^2 - volume (R : X)^2. R is the rotation nearest to F. X_e and X_o are the parts of X with
+    /// X_e = R X_e^T R and X_o = -R X_o^T R.
     template <class T>
     struct FrameBound {
         LaneMat3<T> R;
@@ -55,7 +56,8 @@ struct Ogden {
     template <class T>
     static FrameBound<T> frame_bound(const MaterialConstants& material, const LaneMat3<T>& F);
 
-    /// Adds an upper bound of dP/dF to H. The part of shape changes is at least that of the rest shape.
+    /// Adds an upper bound of dP/dF to H. The part due to the energy of shape changes is taken at least as large as in
+    /// the rest shape, because a compressed element regains this stiffness when it expands.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const FrameBound<T> bound = frame_bound(material, F);

@@ -21,7 +21,7 @@ LaneSymmetric<Real> mode_of(const MaterialConstants& material, std::size_t k) {
     return {m[0], m[1], m[2], m[3], m[4], m[5]};
 }
 
-/// Product of a constant symmetric matrix with a symmetric matrix of lanes.
+/// Inner product m : a of a constant symmetric matrix with a symmetric matrix per lane.
 template <class T>
 T inner_with(const LaneSymmetric<Real>& m, const LaneSymmetric<T>& a) {
     return m.xx * a.xx + m.yy * a.yy + m.zz * a.zz + 2.0 * (m.xy * a.xy + m.yz * a.yz + m.zx * a.zx);
@@ -101,7 +101,7 @@ T Orthotropic::rough_stiffness_bound(const MaterialConstants& material, const T&
     const auto regular = J > least_volume;
     const T cube_root = exp_of(log_of(regular ? J : T{} + 1.0) * (1.0 / 3)), area = cube_root * cube_root;
     const T most = 1.0 + square_root(at_least(square / area - 3.0, 0)), by_volume = area * (most * most);
-    const T largest = regular & (by_volume < square) ? by_volume : square;  // bound of the squared stretches
+    const T largest = regular & (by_volume < square) ? by_volume : square;  // upper bound of the squared stretches of F
     // |2 E|^2 is the sum of (s^2 - 1)^2 over the stretches s.
     const T strain = 0.5 * square_root(at_least(square * (largest - 2.0) + 3.0, 0));
     const Real stiffest = material.shear_modulus * largest_mode(material), lambda = std::max(material.lame_lambda, 0.0);
@@ -179,7 +179,8 @@ Mat3 normal_stiffness(const OrthotropicModuli& moduli) {
 }
 
 void set_orthotropic(const OrthotropicModuli& moduli, MaterialConstants& material) {
-    // Nine tenths of the least stiffness go to the isotropic part. So the rest stays positive definite.
+    // The isotropic part has nine tenths of the smallest eigenvalue of the stiffness, so the rest stays positive
+    // definite.
     constexpr Real isotropic_share = 0.9;
     const Mat3 normal = normal_stiffness(moduli);
     const Vec3& G = moduli.shear_modulus;

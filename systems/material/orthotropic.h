@@ -22,8 +22,8 @@ struct Orthotropic {
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-    /// Matrices D_k of dP/dF = sum_k D_k (x) D_k at the deformation gradient F, without the part of the stress
-    /// [Pa^(1/2)].
+    /// Matrices D_k of dP/dF = sum_k D_k (x) D_k at the deformation gradient F, without the geometric stiffness (the
+    /// term X S that the stress S adds for a change X of F) [Pa^(1/2)].
     static std::array<Mat3, 7> dyads(const MaterialConstants& material, const Mat3& F);
     /// Energy density of a symmetric strain [J/m^3].
     static Real energy_of_strain(const MaterialConstants& material, const Mat3& strain);
@@ -49,8 +49,9 @@ struct Orthotropic {
     template <class T>
     static Slope<T> slope(const MaterialConstants& material, const LaneMat3<T>& F);
 
-    /// Adds an upper bound of dP/dF to H. It is exact but for the part of the stress, and for compressed elements.
-    /// Their stiffness, which grows as soon as they expand again, counts as nearly that of the rest shape.
+    /// Adds an upper bound of dP/dF to H. It differs from dP/dF in two terms. The geometric stiffness (due to the
+    /// stress) is replaced by its largest eigenvalue times the identity, or 0 if that is negative. Compressed elements
+    /// get additional stiffness, up to that of the rest shape, which they regain when they expand.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const Slope<T> of = slope(material, F);
@@ -61,14 +62,15 @@ struct Orthotropic {
 };
 
 /// Sets the elastic constants of an orthotropic material. The Lame constants become those of an isotropic material that
-/// is nowhere stiffer, so that losses, which use them, are stable too. Requires moduli without fault.
+/// is not stiffer in any direction of strain. The Maxwell elements of losses use these constants and are then stable,
+/// too. Requires valid moduli: positive shear moduli, and a positive definite compliance of the normal strains.
 void set_orthotropic(const OrthotropicModuli& moduli, MaterialConstants& material);
 
-/// Turns the axes of an orthotropic material.
+/// Rotates the axes of an orthotropic material by `rotation`.
 void turn_axes(const Mat3& rotation, MaterialConstants& material);
 
-/// Stiffness of the three normal strains along the axes [Pa]: the inverse of the compliance, which is positive definite
-/// for moduli without fault.
+/// Stiffness of the three normal strains along the axes [Pa]: the inverse of the compliance. The moduli are valid if it
+/// is positive definite.
 Mat3 normal_stiffness(const OrthotropicModuli& moduli);
 
 }  // namespace skerry

@@ -19,7 +19,7 @@ namespace principal_axes_detail {
 /// axis. The columns vp and vq of the eigenvectors turn along.
 template <class T>
 [[gnu::always_inline]] inline void turn(T& pp, T& qq, T& pq, T& pr, T& qr, LaneVec3<T>& vp, LaneVec3<T>& vq) {
-    constexpr Real tiny = 1e-150;  // keeps the division finite if the entry is zero already
+    constexpr Real tiny = 1e-150;  // keeps the division finite if pq and qq - pp are zero
     const T difference = qq - pp, root = square_root(difference * difference + 4.0 * (pq * pq));
     const T tangent = 2.0 * pq / (difference < 0.0 ? difference - root - tiny : difference + root + tiny);
     const T c = 1.0 / square_root(1.0 + tangent * tangent), s = tangent * c;
@@ -44,7 +44,7 @@ template <class T>
     w = {ordered ? w.x : x, ordered ? w.y : y, ordered ? w.z : z};
 }
 
-/// Unit vector along v, or `other` if v is almost zero.
+/// Unit vector along v, or `other` if v is almost zero. `length`: |v|.
 template <class T>
 [[gnu::always_inline]] inline LaneVec3<T> unit_along(const LaneVec3<T>& v, const T& length, const LaneVec3<T>& other) {
     const auto known = length > 1e-150;
@@ -79,7 +79,7 @@ LaneAxes<T> principal_axes(const LaneMat3<T>& F) {
     LaneVec3<T> second = multiply(F, v1);
     second = second - dot(u0, second) * u0;
     axes.stretch.y = square_root(dot(second, second));
-    // Any unit vector across u0 will do if the second stretch is zero.
+    // If the second stretch is zero, any unit vector perpendicular to u0 can be the second left axis.
     const auto flat = u0.x * u0.x < 0.5;
     const LaneVec3<T> beside{flat ? zero : -u0.z, flat ? u0.z : zero, flat ? -u0.y : u0.x};
     const LaneVec3<T> u1 =

@@ -66,8 +66,8 @@ template <class T>
     return multiply(F, S) + P.of_other * P.other;
 }
 
-/// Doubled sum of the strains of the springs of all Maxwell elements. `volume`: volume strain of the spring of the bulk
-/// viscosity.
+/// Spring strains summed over all Maxwell elements, doubled. `volume`: volume strain of the spring of the bulk
+/// viscosity, doubled.
 template <class T>
 struct ViscousStretch {
     LaneSymmetric<T> strain;
@@ -95,12 +95,13 @@ struct ViscousModuli {
     Real mu, lambda, bulk;
 };
 
-/// Ratio of the lowest frequency of a free body to the lower end of the band of relaxation rates. The ratio allows for
-/// held bodies: a held end makes the lowest frequency of a beam six times lower.
+/// Ratio of the lowest frequency of a free body to the lower end of the band of relaxation rates. It is so large
+/// because bodies may be held: a held end makes the lowest frequency of a beam six times lower, and the band must still
+/// contain this frequency.
 inline constexpr Real rates_below = 12;
 
-/// Relaxation rates of the Maxwell elements. They divide a band evenly on a logarithmic scale. The upper end of the
-/// band is `highest` [1/s], the lower end `highest / span`.
+/// Relaxation rates of the Maxwell elements. On a logarithmic scale they lie in the middles of equal sections of a band
+/// from `highest / span` to `highest` [1/s].
 inline RelaxationRates relaxation_rates(Real highest, Real span) {
     RelaxationRates rates;
     for (std::size_t k = 0; k < maxwell_count; ++k)
@@ -122,8 +123,8 @@ inline Real relaxing_share(Real loss_factor, Real span) {
     return slope / (added.imag() - slope * added.real());
 }
 
-/// Number of springs that count in the stiffness for steps of length `step` [s]. A spring that relaxes at the rate r
-/// counts as 2 / (2 + step r).
+/// Effective number of springs in the stability bound for steps of length `step` [s]. A spring that relaxes at the rate
+/// r counts as 2 / (2 + step r), because it relaxes within the step (docs/methods/elasticity.md 6.2).
 inline Real8 springs_that_count(const RelaxationRates& rates, const Real8& step) {
     Real8 count{};
     for (const Real rate : rates) count += 2.0 / (2.0 + step * rate);
@@ -158,7 +159,8 @@ LaneSymmetric<T> stress(const ViscousModuli& moduli, const ViscousStretch<T>& st
     return S;
 }
 
-/// Strains of the springs of a block in its present shape. `strain`: twice Green's strain in this shape.
+/// Doubled strains of the springs of a block in its present shape, if the dashpots do not move from their last state.
+/// `strain`: twice Green's strain in the present shape.
 inline MaxwellSprings<Real8> springs_in(const LaneSymmetric<Real8>& strain, const SpringStrain& last) {
     const auto six_from = [&](std::size_t i) {
         return LaneSymmetric<Real8>{load_reals(last[i]),     load_reals(last[i + 1]), load_reals(last[i + 2]),

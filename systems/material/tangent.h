@@ -1,4 +1,5 @@
-// Tangent of a material law for Newton steps: dP/dF without its negative eigenvalues.
+// Tangent of a material law for Newton steps: dP/dF with negative eigenvalues replaced by 0, so that each step goes
+// downhill in energy.
 #pragma once
 
 #include <array>

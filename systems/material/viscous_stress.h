@@ -11,9 +11,8 @@ template <class T>
 }
 
 /// Viscous stress of implicit elements: F E' viscosity/|F|^2 with the rate of Green's strain E' = (F^T F' + F'^T F) /
-/// 2, where F' is the rate of F. For any deformation the norm of the stress is at most viscosity |F'|, as the inertia
-/// of implicit elements assumes. The stress is zero in rigid motion, and exerts no torque, because F E' F^T is
-/// symmetric.
+/// 2, where F' is the rate of F. For any deformation the norm of the stress is at most viscosity |F'|. The stability of
+/// steps relies on this bound. The stress is zero in rigid motion, and exerts no torque, because F E' F^T is symmetric.
 template <class T>
 LaneMat3<T> viscous_stress(const T& viscosity, const LaneMat3<T>& F, const LaneMat3<T>& F_rate) {
     constexpr Real tiny = 1e-6;  // keeps the division finite for |F| = 0 and for unused lanes

@@ -16,8 +16,8 @@ namespace skerry {
 ///
 ///     has_frame           true if the law uses a frame that rotates with the element: then all functions by lanes take
 ///                         R, the rotation nearest to F
-///     stiffness_varies    true if elements share the mass of a node in proportion to the stiffness_bound of their
-///                         present shape, by lanes; false: of their rest shape
+///     stiffness_varies    elements share the mass of a node in proportion to their stiffness_bound by lanes; true: in
+///                         the present shape, false: in the rest shape
 ///     stress_flops        number of operations of stress by lanes per tetrahedron, for profile_elements
 ///     energy_density, stress, stiffness_bound (material, F)     for one element, the simple reference for the kernels
 ///     tangent (material, F)                                     for one element, for Newton steps

@@ -15,10 +15,11 @@ namespace {
 // contacts and sheets of 18 to 1922, on one core of a shared machine (AVX-512). Their ratios decide the order of
 // regions; their absolute values decide only the size of tasks.
 constexpr Real single_cost = 0.06;
-constexpr Real region_cost = 0.1, contact_cost = 0.06;  // costs of loading, measuring the warm start and writing back
+constexpr Real region_cost = 0.1, contact_cost = 0.06;  // per region, per contact: loading, warm start, writing back
 constexpr Real contact_sweep_cost = 0.03, lane_contact_sweep_cost = 0.008;
 constexpr Real largest_task = 50, smallest_task = 4;  // starting a task costs about 1 microsecond
-// Number of tasks per worker. With so many tasks, the last worker finishes late by at most an eighth of the total time.
+// Number of tasks per worker. The last worker then finishes late by at most about one task, a quarter of the mean time
+// per worker.
 constexpr Real tasks_per_worker = 4;
 
 constexpr Real no_history = -1;
@@ -38,8 +39,9 @@ Index contact_count(const RegionTable& regions, Index region) {
            static_cast<Index>(regions.joints_of(r).size() + regions.cables_of(r).size());
 }
 
-/// Identifier of a region without contacts: of its first joint block, or of its first cable if it has no joints. These
-/// identifiers are larger than those of regions with contacts.
+/// Identifier of a region without contacts, from the index of its first joint block, or of its first cable if it has no
+/// joints. Its first word exceeds that of every contact key, because regions without contacts come last in the list,
+/// which must ascend.
 ContactKey id_without_contacts(const RegionTable& regions, std::size_t region) {
     constexpr std::uint64_t last = ~std::uint64_t{0}, of_cable = std::uint64_t{1} << 32;
     const std::span<const Index> joints = regions.joints_of(region);
@@ -68,7 +70,8 @@ Real predicted_cost(Index contacts, Real average, bool lanes, const SolverSettin
 /// counting sort places small regions of equal size next to each other.
 void sort_regions(std::span<const Index> contacts, const Column<Real>& cost, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
-    // For each size class, from large to small: start of its regions in the order. Class 0: too large for lanes.
+    // For each size class, from large to small: position in `order` of the next region of the class. Class 0: too large
+    // for lanes.
     std::array<Index, largest_lane_region + 2> begin{};
     const auto place = [&](Index r) { return std::max<Index>(0, largest_lane_region + 1 - contacts[r]); };
     for (Index r = 0; r < count; ++r) ++begin[static_cast<std::size_t>(place(r)) + 1];
@@ -88,8 +91,8 @@ void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionM
     const RegionHistoryTable& history = memory.history;
     present.resize(count);
     parallel_for(executor, count, regions_per_block, [&](std::size_t begin, std::size_t end) {
-        // Each block finds its first region among the earlier regions by binary search, then reads the lists of earlier
-        // and of present regions side by side.
+        // Each block finds its first region among the regions of the previous step by binary search. Then it reads the
+        // list of the previous step and the present list side by side, as in a merge.
         std::size_t old = 0;
         for (std::size_t r = begin; r < end; ++r) {
             const Index contacts = contact_count(regions, static_cast<Index>(r));
@@ -97,8 +100,7 @@ void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionM
             present.sweeps[r] = no_history;
             present.age[r] = 0;
             if (key.empty()) continue;
-            // Contacts ascend by key and regions by their first contact, so the identifiers ascend in the list of
-            // earlier regions and in the list of present ones.
+            // Contacts ascend by key and regions by their first contact, so the identifiers ascend in both lists.
             const ContactKey id =
                 regions.contacts[r].empty() ? id_without_contacts(regions, r) : key[regions.contacts[r][0]];
             regions.id[r] = present.id[r] = id;
@@ -131,7 +133,8 @@ void schedule_regions(Executor& executor, const SolverSettings& settings, Region
     const int workers = executor.worker_count();
     const Real share = total / (tasks_per_worker * workers);
     const Real task_cost = workers == 1 ? total : std::clamp(share, smallest_task, largest_task);
-    // The body of this loop has no branch that is hard to predict.
+    // Each pass writes to the open task, and `tasks` advances only if the task is full. So the loop has no branch that
+    // the processor could mispredict.
     memory.task.resize(regions.size());
     std::size_t tasks = 0;
     Index begin = 0;

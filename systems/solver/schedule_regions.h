@@ -19,7 +19,7 @@ void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionM
 /// descending predicted cost. Small regions follow by descending size, so that lanes fill up. Single contacts are last.
 void schedule_regions(Executor& executor, const SolverSettings& settings, RegionMemory& memory, RegionTable& regions);
 
-/// Records the number of sweeps of each region for the next step.
+/// Updates the moving averages of the sweep counts with the sweeps of this step, for the next step.
 void remember_regions(RegionMemory& memory, const RegionTable& regions);
 
 }  // namespace skerry

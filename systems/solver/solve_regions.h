@@ -12,14 +12,15 @@ namespace skerry {
 
 struct RegionMemory;
 
-/// Working memory of solve_regions, reused from step to step. It allocates only if a step is larger than all earlier
-/// steps.
+/// Working memory of solve_regions, reused from step to step. It allocates only if a step has more contacts or nodes
+/// than all earlier steps.
 class SolverMemory {
 public:
     SolverMemory();
     ~SolverMemory();
     RegionMemory& data() { return *data_; }
-    /// Must be called if NodeTable::push_out was written outside of solve_regions. The next call then clears it.
+    /// Must be called if NodeTable::push_out was written outside of solve_regions. The next call of solve_regions then
+    /// clears this column.
     void note_push();
 
 private:
@@ -27,9 +28,9 @@ private:
 };
 
 /// Solves every region to its tolerance: a single contact in closed form, other regions by the method of the settings.
-/// Regions run as concurrent jobs, largest first; small regions are solved in batches. No two regions write the same
-/// node. Fills the outcome columns of `regions` (iterations, error, status and others) and regions.pushed. Returns
-/// false if there are no regions.
+/// First a team of workers solves each large region. Then tasks solve the other regions concurrently, the most
+/// expensive ones first, small ones in batches. No two regions write the same node. Fills the outcome columns of
+/// `regions` (iterations, error, status and others) and regions.pushed. Returns false if there are no regions.
 bool solve_regions(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings, Real h,
                    SolverMemory& memory, RegionTable& regions, const RegionOutputs& out);
 

@@ -51,14 +51,16 @@ class Cables : public ObjectView<CableHandle> {
 public:
     using ObjectView::ObjectView;
 
-    /// Adds a cable. All bodies of a cable that has friction, or whose length is prescribed, are in one contact region.
+    /// Adds a cable. If the cable has friction, or a prescribed length or rate, all its bodies are solved in one
+    /// contact region, together with their contacts.
     CableHandle add(const CableSettings& cable);
     /// Points, tensions, length and work of a cable after the last step.
     CableState state(CableHandle cable) const;
     /// Settings with which add() would make an equal cable now: the points have their present positions.
     CableSettings settings(CableHandle cable) const;
-    /// Replaces the drive. A drive equal to the present one changes no bit of the state. A rate that replaces another
-    /// kind of drive starts at the present length; a rate that replaces a rate continues from the prescribed length.
+    /// Replaces the drive. A drive equal to the present one changes no bit of the state. With a new rate, the greatest
+    /// length starts at the present length. If the old drive is also a rate, it continues from its present value
+    /// instead.
     void set_drive(CableHandle cable, const CableDrive& drive);
 };
 

@@ -17,8 +17,8 @@ namespace skerry {
 
 inline constexpr Real standard_pressure = 101325;  // standard atmosphere [Pa]
 
-/// A gas with p V^exponent = const while its mass is constant. p is the absolute pressure and V the volume. At ambient
-/// pressure the gas has the density `density`.
+/// A gas. p V^exponent is constant while no gas flows in or out. p is the absolute pressure and V the volume. At
+/// ambient pressure the gas has the density `density`.
 struct GasFilling {
     Real pressure = 0;                 // pressure above ambient at the start, > -ambient [Pa]
     Real exponent = 1.4;               // polytropic exponent, >= 1; 1: isothermal, 1.4: adiabatic air
@@ -28,8 +28,9 @@ struct GasFilling {
 };
 
 /// A liquid whose volume is prescribed, for example by a syringe. The pressure above ambient is bulk_modulus log(volume
-/// / V), with the volume V of the cavity, and at least -ambient. The smaller the bulk modulus, the longer the stable
-/// step. An error of pressure / bulk_modulus in the volume is often acceptable.
+/// / V), with the volume V of the cavity, and at least -ambient. A smaller bulk modulus allows a longer stable step.
+/// The liquid is then compressed by about the fraction pressure / bulk_modulus of its volume, which is often
+/// acceptable.
 struct LiquidFilling {
     Real bulk_modulus = 2.2e9;  // bulk modulus, > 0; default: water [Pa]
     // volume of the liquid at ambient pressure, > 0; default: the volume of the cavity when it is added [m^3]
@@ -47,7 +48,7 @@ struct CavitySettings {
     // Prescribed pressure, gas or liquid; default: the pressure 0.
     std::variant<TimeTable, GasFilling, LiquidFilling> filling{};
     // Volume of the gas or liquid at the start. Required if the faces do not enclose a volume, for example those of a
-    // piston: the volume then changes by the volume that the faces sweep in steps. Calls that place nodes, such as
+    // piston: during a step the volume then changes by the volume that the faces sweep. Calls that place nodes, such as
     // World::reset(body), keep this volume and the mass of the gas; World::reset(saved) restores those of the saved
     // world. Not allowed for faces that enclose a volume [m^3].
     std::optional<Real> volume{};
@@ -113,15 +114,17 @@ public:
     /// Settings with which add() would make an equal pipe now.
     PipeSettings settings(PipeHandle pipe) const;
 
-    /// Sets a prescribed pressure above ambient [Pa].
+    /// Sets the pressure above ambient of a cavity whose pressure is prescribed [Pa]. Throws SceneError for a gas or a
+    /// liquid.
     void set_pressure(CavityHandle cavity, const TimeTable& pressure);
-    /// Sets the flow of gas into a cavity [kg/s].
+    /// Sets the flow of gas into a cavity [kg/s]. Throws SceneError if the cavity contains no gas.
     void set_inflow(CavityHandle cavity, const TimeTable& inflow);
-    /// Sets the volume of a liquid at ambient pressure [m^3].
+    /// Sets the volume of a liquid at ambient pressure [m^3]. Throws SceneError if the cavity contains no liquid.
     void set_liquid_volume(CavityHandle cavity, const TimeTable& volume);
     /// Sets the conductance of a pipe, >= 0 [kg/(s Pa)].
     void set_conductance(PipeHandle pipe, Real conductance);
-    /// Sets the pressure of a reservoir above ambient [Pa].
+    /// Sets the pressure above ambient of the reservoir of a pipe [Pa]. Throws SceneError for a pipe between two
+    /// cavities.
     void set_reservoir(PipeHandle pipe, const TimeTable& pressure);
 };
 

@@ -163,8 +163,8 @@ void complete_step(WorldState& world, std::uint64_t let_through, StepReport& rep
     note_committed_step(world, report);
 }
 
-/// Checks the world after a second round of steps. Returns false if the balance of energy has to wait for the end of
-/// the call.
+/// Checks the world at the end of every second round of steps. Returns false if the balance of energy must be checked
+/// later, because positions are ahead of velocities (leapfrog).
 bool check_after_rounds(WorldState& world) {
     world.draw();
     if (!world.scratch.left_out)
@@ -194,9 +194,10 @@ void limit_turns(const WorldState& world, AttemptLimits& attempt) {
     attempt.fastest = row == no_index ? world.model.of_ranks.spinning : world.ranks.place_of(row);
 }
 
-/// Exchanges bodies with other ranks after an attempt that lacked some of them. Returns true if the next attempt must
-/// compute the forces anew, because new ghosts have none. The assumed stiffness of clusters is then restored: the next
-/// attempt must stiffen the same clusters again, so that its forces contain the impulses of this change.
+/// Fetches bodies from other ranks after an attempt that lacked some bodies. Returns false if none was missing or
+/// outdated. Otherwise the next attempt must compute the forces anew (h = 0 marks them as unknown), because new ghosts
+/// have no forces. The assumed stiffness of clusters is then restored: the next attempt must stiffen the same clusters
+/// again, so that its forces contain the impulses of this change.
 bool fetch_ghosts(WorldState& world) {
     if (!world.ranks.all.bodies_missing && !world.ranks.all.ghosts_expired) return false;
     world.transaction.restore_stiffness(world.model);
@@ -223,10 +224,10 @@ void require_countable(const WorldState& world, Real dt) {
            of_body ? "check the size and material of this body" : "use a shorter dt or a larger step_size");
 }
 
-/// Callbacks of the caller. The exception of a callback is kept until the end of the call.
+/// Calls functions of the user, and keeps an exception of such a function until the end of advance().
 class Callbacks {
 public:
-    /// Returns the result of the call; false if it throws.
+    /// Returns the result of call(); false if it throws.
     bool run(auto&& call) {
         try {
             return call();
@@ -255,7 +256,7 @@ private:
     bool& advancing_;
 };
 
-/// Advances a world whose start is complete (World::advance).
+/// Advances a world in which settle_start() has treated overlaps (World::advance).
 StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const StepReport&)>& go_on,
                       Callbacks& callbacks) {
     Model& model = world.model;
@@ -271,15 +272,15 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     const Real end = clock.time + dt;
     Real left = dt;
     AttemptLimits attempt = limits_of_first_attempt(world);
-    // The stored crossings belong to an abandoned step, and bodies may have changed since then.
+    // Stored crossings belong to a step that the last call of advance abandoned. Bodies may have changed since then.
     world.cache.crossings.row.clear();
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(world, clock.time, lag_between_steps(world), world.record.balance);
     world.scratch.self_crossing_places.resize(model.bodies.slot.size());
-    // force elements read all nodes in every step, so these nodes must be up to date
+    // force elements read all nodes in every step, so nodes that only draw round bodies must be up to date then
     world.scratch.parameters.draws_late = !model.forced;
-    // Energy that clusters have gained since the last committed step, and the part of it from before the present forces
-    // were computed [J]
+    // Energy that clusters have gained since the last committed step [J]. `stiffened_before`: this energy before the
+    // attempt that computed the present forces; `stiffened` is reset to it if these forces are discarded.
     Real stiffened = 0, stiffened_before = 0;
     // With leapfrog, the balance is checked only at the end of the call, when positions and velocities belong to one
     // time.
@@ -299,7 +300,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     };
     while (left > 0) {
         if (go_on && !stops && !callbacks.run([&] { return go_on(std::as_const(report)); })) stops = true;
-        // Every step informs all ranks if one of them stops, and all end the call after this step.
+        // The stages of each step tell all ranks whether one of them stops (all.stop), so all ranks end the call after
+        // the same step.
         if (world.ranks.on() ? world.ranks.all.stop : stops) {
             report.status = StepStatus::stopped;
             break;
@@ -310,7 +312,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
             blame(world, report);
             break;
         }
-        // Repeated attempts with longer lists or with crossings must keep the length of the step.
+        // Attempts with longer lists or with crossings must keep the length of the step, for which these were found.
         if (attempt.with_longer_lists == 0 && attempt.with_crossings == 0) limit_turns(world, attempt);
         const Real within = left_in_long_step(model, left, clock.long_step);
         const StepPlan plan = plan_step(model, within, attempt.at_most());
@@ -322,7 +324,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, attempt);
         if (!world.scratch.parameters.forces_known) stiffened_before = stiffened;
-        stiffened += world.scratch.findings.stiffened;  // energy also counts if the attempt is not committed
+        // counts even if the attempt is not committed, because the cluster matrices are then not restored
+        stiffened += world.scratch.findings.stiffened;
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::again_over_ranks && fetch_ghosts(world)) stiffened = stiffened_before;
         if (outcome == StepOutcome::refused) {
@@ -345,7 +348,7 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
     }
     // The last step of a call informs the ranks too late for the check before the next step.
     if (!(left > 0) && world.ranks.all.stop) report.status = StepStatus::stopped;
-    clock.long_step = {};                // at the end of a call, implicit bodies have reached the present time
+    clock.long_step = {};                // no long step continues in the next call
     world.cache.search.end_step(false);  // only has an effect if the last attempt was not committed
     if (report.steps == 0) {
         world.transaction.roll_back_call(model, clock);
@@ -355,7 +358,8 @@ StepReport take_steps(WorldState& world, Real dt, const std::function<bool(const
         drift(0);
         world.query_trees.forget();  // a query during the steps may have fitted the trees to other positions
         note_held(held_in_surfaces(world), world, report);
-        // Clusters are updated here, because their energy would otherwise be gained by the next call.
+        // Clusters are updated here. Otherwise the first step of the next call would add this energy, which belongs to
+        // this call.
         stiffened += follow_stiffening(model);
         balance.work += stiffened;
     }

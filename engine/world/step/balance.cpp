@@ -39,8 +39,8 @@ bool of_ghost(const Model& model, std::size_t node) {
     return model.bodies.is_ghost(static_cast<std::size_t>(model.nodes.body[node]));
 }
 
-/// Returns the sum of energy(blocks) over the blocks of elements of all bodies but ghosts: one range if there are no
-/// ghosts, else one for each body.
+/// Returns the sum of energy(blocks) over the element blocks of all bodies but ghosts. Without ghosts it calls energy()
+/// once with all blocks, otherwise once for each body.
 Real sum_of_own_blocks(const Model& model, auto&& energy) {
     if (model.bodies.ghost.empty()) return energy(model.all_blocks());
     Real sum = 0;
@@ -78,9 +78,10 @@ Present measure(const Model& model, Real time, Real lag) {
         if (!model.is_held(b)) kicked += sums.momentum;
     }
     now.kinetic += added_energy(model);
-    // The velocities are half a step older than the positions. The kinetic energy is corrected to first order by its
-    // change in half of the next kick, without contacts. With the velocities v and v' before and after a kick and the
-    // mass m, elastic bodies conserve m v.v' / 2 plus their elastic energy, as leapfrog does.
+    // The velocities are `lag` (half a step) older than the positions. The kinetic energy is therefore increased by
+    // `lag` times the power of all forces but contacts, which is its change to first order. The reason: with the
+    // velocities v and v' before and after a kick and the mass m, symplectic Euler conserves m v.v' / 2 plus the
+    // elastic energy of linear elastic bodies.
     if (lag != 0) {
         now.kinetic -= lag * sum_of_own_blocks(model, [&](const Range& blocks) {
                            return kernels().elastic_power(model.all_elements(), blocks, nodes.position, nodes.velocity);
@@ -89,7 +90,8 @@ Present measure(const Model& model, Real time, Real lag) {
         if (model.forced)  // the forces of the last step are used, as in balance.work
             for (std::size_t n = 0; n < nodes.position.size(); ++n) {
                 if (of_ghost(model, n)) continue;
-                // Fibres and springs exchange momentum between nodes also while all nodes are at rest.
+                // Applied forces, for example of springs, exchange momentum even while all nodes are at rest. They act
+                // for the time of one step, twice the lag.
                 now.momentum_size += 2 * std::abs(lag) * nodes.applied_before[n].norm();
                 if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
                     power += nodes.applied_before[n].dot(nodes.velocity[n]);

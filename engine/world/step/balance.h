@@ -1,5 +1,5 @@
-// Balance of energy and momentum in a run. Energy or momentum that changes without a known cause is an estimate of the
-// error.
+// Balance of energy and momentum in a run. A change of energy or momentum that no measured work or impulse explains is
+// an estimate of the error.
 #pragma once
 
 #include <cstdint>
@@ -29,24 +29,26 @@ struct Balance {
     Real work = 0;                 // external work minus dissipation since the balance was opened [J]
     // sums of |work| and |impulse| over all steps and causes since the balance was opened [J, N s]
     Real energy_flow = 0, momentum_flow = 0;
-    // The largest values in the run:
-    Real energy_error = 0, energy_scale = 0;      // energy_scale: largest energy that could be exchanged [J]
-    Real momentum_error = 0, momentum_scale = 0;  // [kg m/s]
+    // The largest values in the run. An error is the difference between a measured change and the sum of its known
+    // causes.
+    Real energy_error = 0, energy_scale = 0;      // energy_scale: largest energy present or exchanged [J]
+    Real momentum_error = 0, momentum_scale = 0;  // momentum_scale: sum of magnitudes, like energy_scale [kg m/s]
 
     void close() { open = false; }
 };
 
-/// Adds the energy and momentum that a committed step exchanged with the surroundings of the bodies.
+/// Adds the impulse and work of the surroundings on the bodies in a committed step, minus the energy that it
+/// dissipated.
 void add_step(const StepScratch& step, Balance& balance);
 
-/// Compares the present energy and momentum with the expected values. Records the error if it is the largest so far.
-/// Opens the balance if it is closed. Reads all tables. `time`: present time [s]; `lag`: time by which velocities are
-/// older than positions [s]. The kinetic energy is corrected for this lag with the present forces. With ranks the
-/// function is collective, and energy and momentum are those of all ranks.
+/// Compares the present energy and momentum with their values at the opening plus work and impulse since then. Records
+/// the error if it is the largest so far. Opens the balance if it is closed. Reads all tables. `time`: present time
+/// [s]; `lag`: time by which velocities are older than positions [s]. The kinetic energy is corrected for this lag with
+/// the present forces. With ranks the function is collective, and energy and momentum are those of all ranks.
 void check_balance(const WorldState& world, Real time, Real lag, Balance& balance);
 
 /// Returns a copy of the balance, checked by check_balance, for a report. A closed balance is returned unchanged, and
-/// so is that of a divided world.
+/// so is that of a divided world, because check_balance is then collective.
 Balance checked_balance(const WorldState& world, Real time, Real lag, Balance balance);
 
 }  // namespace skerry

@@ -30,9 +30,9 @@ constexpr Real entry_cost = 0.7;
 constexpr Real least_gain = 1.5;
 /// Bounds of the moment of inertia that clusters may add to a body. Let I be the smallest principal moment of the body.
 /// The bound is the larger of two values: most_moment * I, and of_lumping times the amount by which lumped masses
-/// increase I. In typical meshes it is 3 to 20 % of I.
+/// increase I. In typical meshes the bound is 3 to 20 % of I.
 constexpr Real most_moment = 0.01, of_lumping = 0.25;
-// number of nodes; a cluster matrix of this size takes 8 MB and about a second to invert
+// Largest number of nodes in a cluster. The matrix of such a cluster takes 8 MB, and about a second to invert.
 constexpr std::size_t largest_cluster = 1024;
 /// Factor by which the elements of clusters are assumed to be stiffer than at rest when cluster matrices are computed.
 /// Steps then stay stable while strain stiffens these elements.
@@ -47,9 +47,10 @@ constexpr Real most_lengthening = 32;
 /// Least ratio of the stable step with clusters to the stable step without clusters. With a smaller ratio the cost
 /// could hardly fall by the factor least_gain.
 constexpr Real least_lengthening = 1.68;
-/// Assumed ratio of the stable step with mass forms to the stable step with mass shares, for explicit elements. The
-/// ratio is needed because the search for implicit elements computes stable steps with mass shares, whereas the
-/// simulation uses mass forms. The measured ratio was 1.27 to 1.34 for four meshes.
+/// Assumed ratio of the stable step with mass forms to the stable step with mass shares, for explicit elements. Both
+/// divide the masses of nodes among elements: a mass share by one number per element, a mass form by a matrix
+/// (docs/methods/stable_step.md 2). The ratio is needed because the search for implicit elements uses mass shares, and
+/// the simulation mass forms. The measured ratio was 1.27 to 1.34 for four meshes.
 constexpr Real gain_of_forms = 1.25;
 
 bool has_elements(const Model& model, std::size_t b) {
@@ -100,8 +101,8 @@ struct Kept {
     }
 };
 
-/// Updates all data of a body that depend on which of its elements are implicit: inversion barriers, leeway of
-/// tetrahedra (tetrahedra.leeway) and viscosity.
+/// Updates all data of a body that depend on which of its elements are implicit: inversion barriers, viscosity, and the
+/// factor tetrahedra.leeway on the allowed change of strain.
 void note_implicit(Model& model, std::size_t b) {
     const Range of_body = model.bodies.blocks[b];
     arm_guards(model.all_elements(), of_body, model.nodes.inverse_mass,
@@ -150,7 +151,7 @@ public:
         for (const std::size_t first : twin_) ++of_first_[first].bodies;
     }
 
-    /// True if a body is large and too much of its volume would be implicit at a step length [s]. Changes nothing.
+    /// True if a body is large and too much of its volume would be implicit at the step length `step` [s].
     bool too_many(std::size_t b, Real step) {
         OfTwins& twins = of_first_[twin_[b]];
         if (!(model_.bodies.nodes[b].size() > nodes_of_large) || known_of(twins, step)) return false;
@@ -158,8 +159,8 @@ public:
         return twins.search->estimate_volume(step / gain_of_forms) > most_volume_of_large;
     }
 
-    /// Finds the implicit elements of a body for a step length [s]. May write the element columns of the body even if
-    /// `possible` of the result is false.
+    /// Finds the implicit elements of a body for the step length `step` [s], and writes the element columns of the
+    /// body. If Found::possible is false, the written values are invalid and the caller must restore the columns.
     Found find(std::size_t b, Real step) {
         OfTwins& twins = of_first_[twin_[b]];
         if (const Result* known = known_of(twins, step)) {
@@ -282,8 +283,9 @@ void set_cluster_step(Model& model, std::size_t b, Real step, Real stable) {
     model.bodies.rest_step[b] = std::min(step, stable);
 }
 
-/// Longest step for which the planned clusters are not too heavy [s]. `step`: step length for which they were planned.
-/// `moment`: moment of inertia that the clusters add at this length, divided by the largest allowed value.
+/// Longest step for which the planned clusters are not too heavy [s]: the mass that a cluster adds is proportional to
+/// the square of the step length for which it is made. `step`: planned step length. `moment`: moment of inertia that
+/// the clusters add at this length, divided by the largest allowed value.
 Real longest_by_moment(Real step, Real moment) {
     return moment > 0 ? step / std::sqrt(moment) : infinity;
 }
@@ -300,7 +302,8 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     // stable step of the explicit elements of each planned body; 0: the body has no clusters [s]
     std::vector<Real> stable(twin.size());
     for (const PlannedBody& body : plan.body) {
-        // bodies with equal meshes have equal plans, so the values of the first of them are copied
+        // bodies with equal meshes have equal plans, so mass forms are computed for the first one and copied to the
+        // others
         if (const std::size_t first = twin[body.row]; stable[first] > 0) {
             body.elements.put_back(model, body.row);
             const auto as_first = [&](auto& column) {
@@ -329,9 +332,9 @@ Real shortest_step(const Model& model) {
     return shortest;
 }
 
-/// Returns the cheapest plan of several step lengths, or a plan with step 0 if clusters do not reduce the cost enough.
-/// First makes plans for 2, 4, ... times the shortest stable step. Then makes plans for some steps between the cheapest
-/// of these and the next longer one.
+/// Returns the cheapest of the plans for several step lengths, or a plan with step 0 if clusters do not reduce the
+/// computing time by the factor least_gain. First makes plans for 2, 4, 8 ... times the shortest stable step. Then
+/// makes plans for some step lengths between that of the cheapest plan and twice this length.
 Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     const Real shortest = shortest_step(model), longest = longest_step(model);
     Plan best{.body = {}};

@@ -1,6 +1,7 @@
-// The drift of leapfrog before the first kick and after the last kick of a call. Each drift moves positions by half a
-// step. Every kick then lies in the middle of its step, and positions and velocities at both ends of a call belong to
-// one time. Each step is symmetric in time, whatever its length.
+// The drifts of leapfrog outside of steps. A drift moves positions, but not velocities. The first drift of a call takes
+// half of the first step, and the last drift half of the last step, so that positions and velocities at both ends of a
+// call belong to one time. If the step length changes, a drift between two steps takes half the difference. Every kick
+// then lies in the middle of its step, and each step is symmetric in time.
 #include <algorithm>
 
 #include "engine/world/step/step.h"

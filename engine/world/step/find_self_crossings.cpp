@@ -1,4 +1,4 @@
-// Checks whether the surfaces of bodies cross themselves. Only bodies with self-contact are kept from doing so.
+// Checks whether the surfaces of bodies cross themselves. Contacts prevent this only for bodies with self-contact.
 #include <algorithm>
 
 #include "engine/base/complaint.h"
@@ -11,7 +11,7 @@ namespace skerry {
 
 namespace {
 
-// Value for an unknown number of crossings: the body is not checked, so its number has not changed.
+// Stands for the number of crossings of a body that is not checked, because this number cannot have changed.
 constexpr Index unchanged = -1;
 
 /// True if the body may have begun or ceased to cross itself since the last check.

@@ -43,7 +43,8 @@ bool are_alike(const Model& model, std::size_t a, std::size_t b) {
 
 std::vector<std::size_t> find_twins(const Model& model) {
     std::vector<std::size_t> twin;
-    std::map<std::tuple<Index, Index, Real>, std::vector<std::size_t>> first_of;  // candidates for equality
+    // first bodies of groups of equal bodies, by number of nodes, number of element blocks and stable step at rest
+    std::map<std::tuple<Index, Index, Real>, std::vector<std::size_t>> first_of;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
         std::vector<std::size_t>& first =
             first_of[{model.bodies.nodes[b].size(), model.bodies.blocks[b].size(), model.bodies.rest_step[b]}];

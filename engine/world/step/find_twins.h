@@ -1,5 +1,5 @@
-// Search for equal bodies, which have equal meshes and elements. Results for one of these bodies are valid for all of
-// them.
+// Search for bodies with equal meshes and elements. Stable steps and implicit elements found for one of them are valid
+// for all.
 #pragma once
 
 #include <vector>

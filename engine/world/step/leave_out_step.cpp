@@ -41,8 +41,8 @@ bool a_force_changes(const Model& model, Real time, Real h) {
     });
 }
 
-/// True if a stable step is still to be evaluated for a stored shape. This can be so if a body was moving when its
-/// shape was stored and has fallen asleep since.
+/// True if the stable step of a stored shape is still to be evaluated, for which the stages must run. The body may have
+/// fallen asleep after its shape was stored.
 bool checks_are_due(const StepWatch& watch) {
     for (Index b = watch.body; b < watch.kept; ++b)
         if (watch.step[static_cast<std::size_t>(b)] != StepWatch::not_evaluated) return true;

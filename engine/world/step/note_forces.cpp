@@ -10,8 +10,8 @@ namespace skerry {
 
 namespace {
 
-/// Adds links between joined bodies: for each row of the table, between its first body and each other body that the row
-/// joins. A tie of which all nodes have broken off joins nothing.
+/// Adds links (pairs of joined bodies): for each row of a table such as ties, its first body with each other body that
+/// the row joins. A tie joins nothing once all of its nodes have broken off.
 template <class Table>
 void add_links(Table& table, BodyLinks& links) {
     const AnyTable any(table);
@@ -49,7 +49,8 @@ void note_forces(Model& model) {
         if (element->derive) element->derive(model);
     }
     note_force_rates(model);
-    // If the last force element was removed, the next step must still account for the work of its last forces.
+    // If the last force element was removed, `forced` stays true for the next step: its balance of energy uses the
+    // forces of the step before, because velocities lag behind positions.
     if (was_forced && !model.forced)
         model.forced =
             std::ranges::any_of(model.nodes.applied_before, [](const Vec3& force) { return force != Vec3::Zero(); });

@@ -18,8 +18,8 @@ using ListStages = void (*)(WorldState&, TaskGraph&);
 /// of all bodies, whatever their motion model. The balance of a run counts its forces as external work, unless the
 /// element has a function `energy`. All members after add_forces may be null.
 struct ForceElement {
-    // Returns whether the world has this force element. If none is present, the stages of all force elements are
-    // skipped.
+    // Returns whether the world has at least one object of this kind, for example a spring. If it has none of any kind,
+    // the stages of all force elements are skipped.
     bool (*any)(const Model&);
     ListStages add_forces;  // adds forces to NodeTable::applied_force at the start of the step
     // Computes derived columns. It is called after force elements, or bodies on which they act, have changed.
@@ -29,20 +29,21 @@ struct ForceElement {
     // positions.
     void (*add_rate)(Model&, std::span<Real> of_body) = nullptr;
     bool rate_moves = false;  // true: the bound depends on positions, and is computed again before each step
-    // For each body, raises a bound to the rate at which dampers of this force element reduce velocities [1/s]. In a
-    // step of length h they must reduce no velocity by more than the factor exp(-rate h). The bound limits the stable
-    // step.
+    // For each body, raises the entry of `of_body` to this force element's bound of a damping rate [1/s], if that is
+    // larger. In a step of length h, dampers must reduce no velocity to less than exp(-rate h) times its value. The
+    // rate limits the stable step.
     void (*bound_damping)(const Model&, std::span<Real> of_body) = nullptr;
-    // For each body, adds the rate c of forces -c m v that oppose the velocities v of its nodes of mass m [1/s]. They
-    // act as at the start of the step, and limit the stable step too.
+    // For each body, adds the rate c of forces -c m v that oppose the velocities v of its nodes of mass m [1/s]. These
+    // forces limit the stable step too, because they are computed with the velocities at the start of the step.
     void (*add_drag)(const Model&, std::span<Real> of_body) = nullptr;
-    ListStages mark_driven = nullptr;  // marks bodies that a change over time keeps awake, in StepScratch::driven
-    // Returns true if the forces change in the step of length `h` that starts at time `t` although no body moves.
+    ListStages mark_driven = nullptr;  // marks, in StepScratch::driven, bodies on which the force changes with time
+    // Returns true if the forces change with time in the step of length `h` [s] that starts at time `t` [s], even if no
+    // body moves.
     bool (*is_driven)(const Model&, Real t, Real h) = nullptr;
     ListStages measure = nullptr;   // measures work and losses, which the balance then no longer counts as external
     ListStages remember = nullptr;  // stores results for the next step, if the step can be committed
-    // Stored energy at the time `t`, corrected for the lag of velocities like spring_energy (systems/forces/springs.h)
-    // [J].
+    // Stored energy at the time `t` [s], with a correction for velocities that are `lag` seconds older than positions
+    // [J]; see spring_energy (systems/forces/springs.h).
     Real (*energy)(const Model&, Real t, Real lag) = nullptr;
 };
 
@@ -64,7 +65,7 @@ struct MotionModel {
 /// stages of the law in one phase of the step. A null pointer means that the law has no stages in this phase.
 struct ConstraintLaw {
     ListStages find = nullptr;      // finds the rows of this step and the impulses with which the solver starts
-    ListStages take = nullptr;      // removes rows that are not contacts from the contact table, after the solve
+    ListStages take = nullptr;      // removes rows that were in the contact table only for the solve
     ListStages measure = nullptr;   // measures work, losses and errors of the rows after the solve
     ListStages check = nullptr;     // checks that no constraint is violated at the end of the step
     ListStages remember = nullptr;  // stores the impulses for the next step, if the step can be committed
@@ -74,16 +75,18 @@ extern const ForceElement nodal_loads, cable_forces, cavity_pressures, fibre_for
 extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies, held_axes;
 extern const ConstraintLaw contact_law, joint_law, tie_law, cable_law, held_axes_law;
 
-/// All force elements. Nodal loads come first: their stage sets the total force on each node, to which the other force
-/// elements add.
+/// All force elements. Nodal loads come first: their stage overwrites NodeTable::applied_force, and the stages of all
+/// other force elements add to it.
 inline constexpr std::array<const ForceElement*, 6> force_elements{&nodal_loads,  &loads_and_fields, &spring_forces,
                                                                    &cable_forces, &cavity_pressures, &fibre_forces};
-/// All motion models. The order matters where two models write the same columns. Rigid bodies come first, because the
-/// frames of implicit bodies move like rigid bodies. Held axes come last, because they correct velocities.
+/// All motion models. The order matters where two models write the same columns. Rigid bodies come before implicit
+/// bodies, because the former also move the frames relative to which the latter deform. Held axes come last, because
+/// they correct the velocities that other models predict.
 inline constexpr std::array<const MotionModel*, 5> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,
                                                                  &implicit_bodies, &held_axes};
 /// All constraint laws. Contacts come first, because the rows of ties follow the contacts in the contact table. Held
-/// axes come last, because they have rows for the nodes of all other rows. `take` is called in the reverse order.
+/// axes come last, because they have rows for the nodes of all other rows. `take` is called in the reverse order, so
+/// that each law finds its rows at the end of the table.
 inline constexpr std::array<const ConstraintLaw*, 5> constraint_laws{&contact_law, &joint_law, &tie_law, &cable_law,
                                                                      &held_axes_law};
 

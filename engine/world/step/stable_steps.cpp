@@ -23,7 +23,7 @@ namespace {
 // that close within a step, and of contacts with rotating faces, grow with the step length.
 constexpr Real step_of_rigid_bodies = 1.0 / 120;
 
-/// Value of a bound by body; zero for a body that was added after the bounds were computed.
+/// Entry of `of_body`; zero for a body that was added after this column was computed.
 Real bound_of(const Column<Real>& of_body, std::size_t body) {
     return body < of_body.size() ? of_body[body] : 0;
 }
@@ -38,15 +38,16 @@ Real step_of_body(const Model& model, std::size_t body) {
     const Index material = model.bodies.material[body];
     Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
     damping += bound_of(model.force_damping, body);
-    // In each step, damping multiplies velocities by a factor k. A mode of the circular frequency omega is then stable
-    // for step lengths h with omega h < sqrt(2 (1 + k)).
-    // Half the bound of the squared product of frequency and step length: 1 + k, at most 2.
+    // In each step of length h, damping multiplies velocities by a factor k. A mode of the circular frequency omega is
+    // then stable if (omega h)^2 < 2 (1 + k) (docs/methods/stable_step.md 6.1). `half` is 1 + k; without damping it is
+    // 2.
     const Real half = damping > 0 && std::isfinite(step) ? 1 + std::exp(-damping * step) : 2;
     step *= std::sqrt(half / 2);
     const Real drag = bound_of(model.force_drag, body);
     if (!(drag > 0)) return step;
-    // Forces -c m v reduce the factor k by c h. The condition (omega h)^2 < 2 (1 + k - c h) then is a quadratic
-    // inequality for h. The bound 1/c keeps the decay free of oscillation in bodies that have no other limit.
+    // Forces -c m v reduce the factor k by c h. The condition is then (omega h)^2 < 2 (1 + k - c h), and the result is
+    // the root h of this quadratic equation. In bodies that have no other limit, the bound 1/c prevents a change of the
+    // sign of velocities.
     const Real share = std::isfinite(step) ? drag * step / (2 * half) : 0;
     return std::min(std::isfinite(step) ? step * (std::sqrt(1 + share * share) - share) : step, 1 / drag);
 }
@@ -94,9 +95,9 @@ Real step_with_frame(const Model& model) {
 
 namespace {
 
-/// Better bound of the stable step for a body with clusters that is strained in a few places only [s]. The bound covers
-/// the explicit elements. `stable`: a step length known to be stable. `longest`: largest step length that is of
-/// interest. Returns `stable` if it is at least `longest`, or if no longer stable step is found.
+/// Sharper bound of the stable step of the explicit elements, for a body with clusters that is strained in a few places
+/// only [s]. `stable`: a step length known to be stable. `longest`: longest step length that is of use. Returns
+/// `stable` if no better bound is needed (`stable` is at least `longest`) or found, or the body has no clusters.
 Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real longest, Real stable,
                       Column<Real>& memory) {
     const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];
@@ -120,7 +121,8 @@ Real explicit_step(const Model& model, std::size_t body, std::span<const Vec3> p
 }
 
 /// Stable step of a body with its clusters [s]; NaN for an invalid shape. `step`: stable step of the explicit elements
-/// of the body.
+/// of the body. If an implicit element has become stiffer than assumed by a factor s > 1, its cluster is stable up to
+/// cluster_step / sqrt(s) only.
 Real within_clusters(const Model& model, std::size_t body, std::span<const Vec3> position, Real step) {
     const Real of_clusters = model.bodies.cluster_step[body];
     if (!(of_clusters > 0)) return step;
@@ -150,10 +152,10 @@ public:
     }
 
     void take(std::size_t b, Real step) {
-        // A body gets clusters when strain has made its stable step shorter than goal_ / worth_clusters. Its implicit
-        // elements are chosen for the step length reserve * goal_, so that the body stays stable until the next
-        // evaluation. For a body that already has clusters, both factors are chosen so that more clusters are added
-        // later. The reason: elements stay implicit, although the stable step grows again when the strain decreases.
+        // More elements of a body become implicit when its stable step is shorter than goal_ / worth_clusters. They are
+        // those that are unstable at the step length reserve * goal_. With reserve > 1 a body without clusters stays
+        // stable until the next evaluation. A body that already has clusters gets fewer new ones, and later, because
+        // elements stay implicit when strain decreases, although their stable step then grows again.
         const bool has_clusters = model_.bodies.cluster_step[b] > 0;
         const Real worth_clusters = has_clusters ? 2.5 : 1.25, reserve = has_clusters ? 1 / 1.5 : 1.05;
         BodyTable& bodies = model_.bodies;
@@ -171,7 +173,8 @@ public:
         bodies.stable_step[b] = evaluate_stable_step(model_, b, model_.nodes.position, stiffness_sum_);
     }
 
-    /// Energy that the inertia of newly added clusters has added to the balance [J].
+    /// Rebuilds the clusters of bodies with new implicit elements. Returns the kinetic energy that their inertia adds
+    /// [J].
     Real end() {
         model_.clusters_grew = !changed_.empty();
         if (changed_.empty()) return 0;
@@ -211,14 +214,15 @@ Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum) {
 
 namespace {
 
-/// Number of pieces of a body's check, sent to other ranks.
+/// Number of pieces into which the check of a body's stable step is divided; sent to other ranks. `place`: row of the
+/// body in the undivided world.
 struct PiecesAtPlace {
     Index place;
     std::uint32_t pieces;
 };
 
-/// For each row of the undivided world: number of pieces of the checks of all bodies before it. Also the number of all
-/// pieces.
+/// Computes RankState::pieces_before: for each row of the undivided world, the number of pieces of all bodies before
+/// it. The last entry is the number of all pieces. Collective.
 void gather_pieces(const Model& model, RankState& ranks) {
     std::vector<PiecesAtPlace> mine;
     const ElementInputs elements = model.all_elements();
@@ -263,7 +267,8 @@ void store_shapes(Executor& executor, Model& model, std::uint64_t round) {
     const auto share = static_cast<Real>(std::min(watch.steps + 1, round)) / static_cast<Real>(round);
     watch.target =
         static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(watch.first_piece[bodies.slot.size()])));
-    watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // one row per node, as in saved worlds
+    // saved worlds contain a row for every node, so unused rows are 0
+    watch.position.resize(model.nodes.position.size(), Vec3::Zero());
     watch.stiffness_sum.resize(model.nodes.position.size());
     watch.step.resize(bodies.slot.size());
     const auto first = static_cast<std::size_t>(watch.kept);

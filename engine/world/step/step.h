@@ -14,7 +14,8 @@ void list_step_again(WorldState& world);
 
 // count_step.cpp
 
-/// Counters of a step alone, after the solve. Sums of energy are zero. `unstrained`: see StepFindings.
+/// Returns the counters of one step, for the results of the contact solve. The energies among them are zero; commit()
+/// adds those to the run itself. `unstrained`: StepFindings::unstrained.
 RunCounters count_step(const ContactTable& contacts, const RegionTable& regions, const ContactMeasures& measures,
                        const NewtonCounts& newton, Index unstrained);
 /// Adds the sums of `from` to those of `into`, except for sums of energy. Each maximum in `into` becomes the
@@ -29,23 +30,26 @@ Real dissipated_in(const StepFindings& findings);
 
 /// Handle and name of a body for reports.
 struct NamedBody {
-    BodyHandle body{};  // a stale handle for a mesh collider
+    BodyHandle body{};  // handle of no body if the object is a mesh collider
     std::string name;
 };
-/// Returns the handle and name of the body in a row of the undivided world, which this rank may not hold. `place`: this
-/// row; without ranks, the row in BodyTable.
+/// Returns the handle and name of a body, even if only other ranks hold it. `place`: row of the body in the undivided
+/// world; without ranks, its row in BodyTable.
 NamedBody name_body(const WorldState& world, Index place);
-/// Row in the undivided world of the body with the shortest stable step. `row`: result of stable_step.
+/// Returns the row in the undivided world of the body with the shortest stable step. `row`: row of this body as
+/// stable_step has set it (its argument `body`).
 Index place_of_stiffest(const WorldState& world, Index row);
 
 // ranks/lead_ghosts.cpp
 
-/// Computes BodyTable::ghost. Must be called after bodies, their owners or their holders have changed.
+/// Computes BodyTable::ghost. Must be called after a change of bodies, of the ranks that own them, or of the ranks that
+/// hold copies of them.
 void note_ghosts(WorldState& world);
-/// Must be called after reduce_limits at the end of a round. Sends bodies whose elements became implicit to their
-/// holders again, which then compute them completely.
+/// Must be called at the end of a round, after reduce_limits. For each body with new implicit elements, sends its data
+/// to the ranks with copies of it. From then on these ranks compute the forces of their copy themselves.
 void send_clustered_bodies(WorldState& world);
-/// Lists the stage that sends the predicted velocities of bodies to the ranks that hold a led ghost of them.
+/// Lists the stage that sends predicted velocities of bodies to ranks with a led ghost, a copy for which only the owner
+/// of the body computes forces.
 void list_led_ghosts(WorldState& world, TaskGraph& graph);
 
 // ranks/join_records.cpp
@@ -61,47 +65,50 @@ void join_reports(WorldState& world, StepReport& report);
 /// Lists the stages by which sets of touching bodies on several ranks fall asleep and wake as in an undivided world.
 void list_wakes(WorldState& world, TaskGraph& graph);  // finds bodies that this rank wakes; runs before the reduction
 void list_joined_wakes(WorldState& world,
-                       TaskGraph& graph);                    // joins these bodies of all ranks; runs before wake_bodies
+                       TaskGraph& graph);                    // collects bodies that any rank wakes; before wake_bodies
 void list_joined_sets(WorldState& world, TaskGraph& graph);  // joins sets of touching bodies; runs before rest_bodies
 
 // ranks/reduce_findings.cpp
 
-/// Lists the stage that combines the findings of all ranks. It has no stage if this process simulates the whole world.
+/// Lists the stage that combines the findings of all ranks. Lists nothing if this process simulates the whole world.
 void list_reduction(WorldState& world, TaskGraph& graph);
-/// Makes all ranks agree, before the stages run, on StepScratch::left_out and on a body that is too far from the
-/// origin. Communicates only if the last attempt has found that either is possible. Without ranks it does nothing.
+/// Must be called before the stages run. Makes all ranks agree whether the step is skipped (StepScratch::left_out), and
+/// whether a body is too far from the origin. Communicates only if, according to the last attempt, one of the two is
+/// possible. Without ranks it does nothing.
 void agree_to_start(WorldState& world);
 
 // ranks/reduce_limits.cpp
 
-/// Combines Model::of_ranks of all ranks. Without ranks it does nothing.
+/// Computes Model::of_ranks from the bodies of all ranks. Sets Model::forced if any rank has force elements. Without
+/// ranks it does nothing.
 void reduce_limits(WorldState& world);
-/// Returns the fastest deformation of all ranks. Without ranks it returns `mine`.
+/// Returns the fastest deformation of all ranks, with the row of its body in the undivided world. `mine`: fastest
+/// deformation of this rank, with the row in BodyTable. Without ranks it returns `mine`.
 StrainRate fastest_of_ranks(WorldState& world, const StrainRate& mine);
 
 // ranks/regions
 
-/// The next functions list the stages in which ranks exchange contacts and results of regions that cross their borders.
-/// They list nothing if this process simulates the whole world.
+/// The next three functions list the stages in which ranks exchange contacts and results of regions whose bodies belong
+/// to several ranks. They list nothing if this process simulates the whole world.
 void list_row_exchange(WorldState& world, TaskGraph& graph);
 void list_result_exchange(WorldState& world, TaskGraph& graph);
 void list_rows_taken_back(WorldState& world, TaskGraph& graph);
 
 // held_depth.cpp
 
-/// Largest depth of held nodes on surfaces inside analytic colliders now. Unless `all` is set, bodies whose attachments
-/// do not move are not tested against colliders that do not move.
+/// Largest depth of a held surface node inside an analytic collider at the present time. `all`: if false, pairs are
+/// skipped in which neither the collider nor an attachment of the body moves, because their depth has not changed.
 HeldDepth held_in_shapes(const WorldState& world, bool all);
-/// Largest depth of held nodes behind held triangles of other bodies and of mesh colliders now. Refits the trees of the
-/// bodies that have held nodes.
+/// Largest depth, at the present time, of a held node of one body or mesh collider behind a triangle of another one, if
+/// the three nodes of the triangle are held too. Refits the bounding volume hierarchies of the two.
 HeldDepth held_in_surfaces(WorldState& world);
 
 // note_forces.cpp
 
-/// Computes Model::forced and force_rate. Must be called after force elements, or bodies on which they act, were added,
-/// changed or removed.
+/// Computes Model::forced, force_rate, force_damping, force_drag and the derived columns of force elements. Must be
+/// called after force elements, or bodies on which they act, were added, changed or removed.
 void note_forces(Model& model);
-/// Computes Model::force_rate for the present positions.
+/// Computes Model::force_rate, force_damping and force_drag for the present positions.
 void note_force_rates(Model& model);
 /// Must be called before steps. Computes Model::links again if rows that join bodies have changed, Model::forced if the
 /// last force element was removed, and Model::force_rate if it depends on positions.
@@ -110,7 +117,7 @@ void note_changed_seams(Model& model);
 // stable_steps.cpp
 
 /// Shortest of the stable steps of all bodies, as last evaluated [s]. `body`: receives the row of the body with this
-/// step; no_index if the step was combined with other ranks (Model::of_ranks).
+/// step; no_index if the step comes from Model::of_ranks, which is computed from the bodies of all ranks.
 Real stable_step(const Model& model, Index* body = nullptr);
 /// True if strain has shortened the stable step of a body.
 bool is_strained(const Model& model, std::size_t body);
@@ -120,17 +127,19 @@ Real step_of_body(const Model& model, std::size_t body);
 /// Stable step for reports [s]. If all bodies are rigid or implicit, and therefore stable at any step length, it is the
 /// result of trusted_step.
 Real reported_step(const Model& model, Index* body = nullptr);
-/// The longest step that is taken [s]: the stable step times Tuning::step_safety, or the step length from the settings
-/// (with rigid or implicit bodies at most 1/120 s by default), whichever is shorter.
+/// The longest step that is taken [s]: the shortest of these three. First, the stable step times Tuning::step_safety.
+/// Second, Settings::step_size if given, otherwise 1/120 s if the world has rigid or implicit bodies. Third,
+/// Settings::implicit_step if it is above 0 and the world has implicit bodies.
 Real trusted_step(const Model& model, Index* body = nullptr);
 /// Longest step that would be taken after a rigid or implicit body is added [s].
 Real step_with_frame(const Model& model);
-/// Evaluates the stable step of one body for the given node positions [s].
+/// Evaluates the stable step of one body for the node positions `position` [s]. `stiffness_sum`: working memory, by
+/// node.
 Real evaluate_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
                           Column<Real>& stiffness_sum);
-/// Evaluates the stable steps of all bodies at once. If the stable step of a body is much shorter than at rest, makes
-/// elements of this body implicit where this reduces the cost. Returns the energy that the inertia of new clusters adds
-/// to the balance [J].
+/// Evaluates the stable steps of all bodies at once. Makes elements of a body implicit if strain has made its stable
+/// step much shorter than the shortest stable step at rest of all bodies, and if this reduces the computing time.
+/// Returns the energy that the inertia of new clusters adds to the balance [J].
 Real evaluate_stable_steps(Model& model, Column<Real>& stiffness_sum);
 /// Ends a round in which stable steps were evaluated in parallel with the steps. The new stable steps are used from now
 /// on. Elements become implicit as in evaluate_stable_steps. Returns the energy that the inertia of new clusters adds
@@ -139,19 +148,20 @@ Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum);
 /// Must be called before each step. Copies the shapes of some bodies; the stable steps for these shapes are then
 /// evaluated in parallel with the step. In a round of `round` steps, all bodies are evaluated.
 void store_shapes(Executor& executor, Model& model, std::uint64_t round);
-/// Computes StepWatch::first_piece. With ranks it is collective the first time, and after a round in which elements of
-/// some rank became implicit.
+/// Computes StepWatch::first_piece, by which the stable-step checks of a round are spread over its steps. With ranks it
+/// is collective the first time, and after a round in which elements of some rank became implicit.
 void count_pieces(WorldState& world);
 
-/// Updates the matrices of clusters whose elements have stiffened, exactly as the next step would do. Returns the
-/// energy that this update adds to the balance [J].
+/// Updates the matrices of clusters whose elements have stiffened, by the test that the next step would also apply.
+/// Velocities do not change, so the larger inertia adds kinetic energy. Returns this energy, which the balance must
+/// count as work [J].
 Real follow_stiffening(Model& model);
 
 // yield_blocks.cpp
 
-/// Returns the elements in a range of blocks to the yield surface at the present positions, and evaluates nothing if no
-/// material yields. `elements`: the elements of the model, with the marks of those that are left out. Returns the
-/// dissipated energy [J].
+/// Plastic flow at the present positions: moves the elastic strain of elements in a range of blocks back to the yield
+/// surface (radial return). Does nothing if no material yields. `elements`: all elements, or Model::awake_elements() to
+/// leave out elements that steps skip. Returns the dissipated energy [J].
 Real yield_blocks(WorldState& world, const ElementInputs& elements, Range blocks);
 /// True if an element of a body has flowed plastically.
 bool has_flowed(const Model& model, std::size_t body);
@@ -169,7 +179,8 @@ bool clusters_allowed(const Settings& settings);
 /// estimated computing time of a simulated second is smallest.
 void settle_clusters(Model& model, Column<Real>& stiffness_sum);
 /// Makes more elements of a body implicit: those that are unstable at the step length `step` [s]. Returns false, and
-/// changes nothing, if too many elements would be implicit, or if steps of the present length `present` [s] cost less.
+/// changes nothing, in three cases: the body must not have clusters, the clusters would be too large or too heavy, or
+/// steps of the present length `present` [s] take less computing time.
 bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum);
 /// Kinetic energy of the inertia that all implicit elements add to their nodes [J].
 Real added_energy(const Model& model);
@@ -185,22 +196,22 @@ struct StepPlan {
     Real h = 0;       // s
     Real steps = 1;   // number of steps of length `h` until the end of the planned interval
     Real stable = 0;  // longest step that stability and the settings allow [s]
-    // Longest step that also suits rotating joints [s]. The smallest allowed length of a repeated attempt is a fraction
-    // of it.
+    // Length `stable`, or less if bodies with joints or ties would rotate too far in such a step (step_of_turns) [s].
+    // Attempts are shortened down to a fraction of this length.
     Real regular = 0;
-    // row in BodyTable of the body with the shortest stable step; no_index if the step was combined with other ranks
+    // row in BodyTable of the body with the shortest stable step; no_index if this step comes from Model::of_ranks
     Index stiffest = no_index;
 };
 /// Plans the next step of an interval that ends in `left` seconds. The step is at most `fast_limit` seconds long.
 StepPlan plan_step(const Model& model, Real left, Real fast_limit);
 /// Greatest angular speed of a body with a joint or tie [rad/s]. `body`: set to the row of this body in BodyTable.
 Real fastest_spin(const Model& model, Index* body = nullptr);
-/// Longest step in which no body with a joint rotates by more than a small angle [s]. `fastest`: set to the row in
-/// BodyTable of the fastest of these bodies if this step is shorter than `shorter_than`; no_index if the speed was
-/// combined with other ranks (Model::of_ranks).
+/// Longest step in which no body with a joint or tie rotates by more than a small angle, but at most `shorter_than`
+/// [s]. `fastest`: set only if the result is shorter than `shorter_than`, to the row in BodyTable of the body that
+/// rotates fastest; no_index if its speed comes from Model::of_ranks.
 Real step_of_turns(const Model& model, Real shorter_than, Index& fastest);
-/// True if a force that follows the motion acts on an implicit body, or a cable runs through one. Such a force must be
-/// evaluated in every step.
+/// True if a force that depends on the motion acts on an implicit body, or a cable runs over one. Such forces must be
+/// evaluated in every step, so implicit bodies then take no long steps.
 bool forces_follow_implicit_bodies(const Model& model);
 /// Returns the time until the end of the long step that contains the next step [s]. Begins a long step if there is
 /// none. In worlds without long steps, returns `left`, the time until the end of the call.
@@ -215,7 +226,8 @@ void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock);
 // leave_out_step.cpp
 
 /// True if the planned step would change nothing but time: all bodies sleep, no script moves anything, and no contacts
-/// or speeds remain from earlier steps. Also computes the motion of colliders and held nodes for this step.
+/// or speeds remain from earlier steps. If it returns true, it has computed the motion of colliders and held nodes for
+/// this step, as skipped stages would do.
 bool nothing_moves(WorldState& world);
 /// Sets the contact and attachment forces to zero after a skipped step, in which no stage measured them.
 void forget_forces_of_step(const Model& model, ForceScratch& forces);
@@ -235,15 +247,18 @@ void find_self_crossings(Executor& executor, Model& model, Real time, Column<Ind
 /// Moves positions, colliders and attachments by a drift. Afterwards the positions are `offset` seconds ahead of the
 /// velocities.
 void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, SearchMemory& search);
-/// Must be called after positions were restored. Measures again the distance of each node from its displacement origin.
+/// Must be called after positions were restored. Measures again how far nodes are from NodeTable::displacement_origin,
+/// where BodyTable::displacement was last zero.
 void measure_displacement_again(Executor& executor, Model& model, SearchMemory& search);
-/// Adds to each collider the distance that it travels at its present velocity in `seconds` [s]. The travel of bodies is
-/// measured by measure_displacement.
+/// Adds to ColliderTable::travel the largest distance that a point of the collider near a body moves in `seconds` [s]
+/// at the present velocity. `extent`: for each collider, largest distance of such points from its origin [m]. The
+/// travel of bodies is measured by measure_displacement.
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders);
 
 // watch_problems.cpp
 
-/// State of rigid bodies, and deformation velocities of implicit bodies, before contacts are solved.
+/// State of rigid bodies and of the frames of implicit bodies, and deformation velocities of implicit bodies, before
+/// contacts are solved.
 struct KeptFrames {
     std::span<const Vec3> center, angular_momentum;     // RigidBodyTable
     std::span<const Mat3> rotation, axes;               // RigidBodyTable

@@ -20,26 +20,25 @@ constexpr std::size_t inline_work = 1024;
 /// contacts of the following attempts. If surfaces cross in the last of these attempts too, the step is shortened.
 constexpr int tries_at_one_length = 4;
 
-/// A step in which surfaces cross is repeated with half its length. The shortest length is the stable step divided by
-/// this factor. Afterwards the step length grows again. Limits predicted from the speed of deformation have the same
-/// lower bound. The bound applies to the length and not to the number of halvings, because repeated halvings in
-/// successive steps would make steps shorter and shorter.
+/// A step in which surfaces cross is repeated with half its length, if it is longer than StepPlan::regular divided by
+/// this factor. In the next steps the length grows again. Limits predicted from the speed of deformation are at least
+/// regular / most_shortening. The length is bounded, not the number of halvings: halvings in successive steps would
+/// make steps shorter and shorter.
 constexpr Real most_shortening = 128;
 
-/// A step that deforms an element too fast, or for which Newton's method fails, is repeated with a shorter length. The
-/// shortest length is the stable step divided by this factor. The factor is large because material squeezed between a
-/// rigid body and held nodes is ejected at several hundred times the speed of the rigid body. Steps this short must
-/// remain the exception.
+/// A step that deforms an element too fast, or for which Newton's method fails, is repeated with a shorter length, if
+/// it is longer than StepPlan::regular divided by this factor. The factor is large because material squeezed between a
+/// rigid body and held nodes is ejected at several hundred times the speed of the rigid body.
 constexpr Real most_shortening_against_speed = 1024;
 
-/// A step that turns elements inside out is repeated with a shorter length. The shortest length is the stable step
-/// divided by this factor. In thrown meshes, half the step length saves a third of these elements from inversion. Where
-/// elements are squeezed and not thrown, shorter steps do not prevent inversion, but they conserve the energy of
-/// crushed bodies. With the factor 2 instead of 4, or with faster growth of the steps, a ball shot at a wall gains a
-/// third more energy.
+/// A step that turns elements inside out is repeated with half its length, if it is longer than StepPlan::regular
+/// divided by this factor. Otherwise the inversion is accepted. In thrown meshes, halving the step prevents a third of
+/// the inversions. Where elements are squeezed and not thrown, shorter steps do not prevent inversion, but they
+/// conserve the energy of crushed bodies. With the factor 2 instead of 4, or with faster growth of the steps, a ball
+/// shot at a wall gains a third more energy.
 constexpr Real most_shortening_against_inversion = 4;
 
-/// Factor by which the largest allowed step length grows in each step after an inversion or a crossing.
+/// Factor by which AttemptLimits::longest grows in each committed step.
 constexpr Real step_growth = 1.2;
 
 /// Largest ratio of a step length to the previous one while the speed of deformation limits the steps.
@@ -73,7 +72,8 @@ Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) 
     if (model.settings.integrator != Integrator::symplectic_euler || clock.step_before == 0) return plan.h;
     Real before = clock.step_before;
     // If the last step was much longer than the present stable step, a body was added or has become stiffer. For this
-    // body, a kick from the middle of the last step would be too long.
+    // body, a kick from the middle of the last step would be too long. So the last step counts with at most `growth`
+    // times the stable step.
     constexpr Real growth = 2;
     if (before > growth * plan.stable)
         before = std::min(before, growth * model.tuning.step_safety * stable_step(model));
@@ -123,8 +123,9 @@ bool run_stages(WorldState& world) {
     return true;
 }
 
-/// Makes the element rotations and spring strains of this step the input of the next step, by swapping columns. For
-/// unstrained bodies the swapped columns contain equal values. Those of led ghosts are never read.
+/// Makes the element rotations and spring strains of this step the input of the next step. Columns are swapped if no
+/// body sleeps. Rows that this step has not computed are then swapped too, which is harmless: both columns have equal
+/// values for unstrained bodies, and rows of led ghosts are never read.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     if (!world.model.any_asleep) {
@@ -132,20 +133,20 @@ void keep_frames(WorldState& world) {
         elements.spring_strain.swap(elements.spring_strain_next);
         return;
     }
-    // Applies to the elements that the stages of this step computed. Bodies that fall asleep or wake count from the
-    // next step on.
+    // Copies the rows that the stages of this step computed. awake_elements() still gives those rows, because it
+    // changes only when the next step begins, even if bodies fell asleep or woke in this step.
     keep_memory(*world.executor, world.model.awake_elements(), elements);
 }
 
-/// Returns the elements of the bodies that moved to the yield surface at their new positions.
+/// Plastic flow at the end of a step, of the elements of all bodies that the step computed (yield_blocks).
 void flow(WorldState& world) {
     const bool yields = std::ranges::any_of(world.model.materials.constants, &MaterialConstants::yields);
     const TraceZone zone(world.record.tracing && yields ? &world.record.trace : nullptr, "dynamics/yield_elements");
     world.scratch.findings.plastic = yield_blocks(world, world.model.awake_elements(), world.model.all_blocks());
 }
 
-/// Clears the mark `unstrained` of all bodies in contact. Must be called after contacts have pushed positions apart,
-/// because this can deform these bodies without a change of their velocities.
+/// Clears the mark `unstrained` of all bodies in contact. Must be called after a push-out, because it can deform bodies
+/// without changing their velocities.
 void forget_unstrained(const ContactTable& contacts, BodyTable& bodies) {
     for (const Column<Index>* column : {&contacts.first_body, &contacts.second_body})
         for (const Index body : *column)
@@ -191,7 +192,8 @@ void commit(WorldState& world) {
     world.clock.step_before = parameters.h;
 }
 
-/// Counts the cause that limited the length of a committed step: earlier attempts, the settings or the stiffest body.
+/// Counts a committed step under the cause that limited its length: earlier attempts, fast deformation, rotation at
+/// joints, the settings or the stiffest body.
 void note_step(WorldState& world, const StepPlan& plan, const AttemptLimits& attempt) {
     const Model& model = world.model;
     const bool fast = attempt.slow_enough < attempt.longest;
@@ -326,8 +328,9 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     world.cache.crossings.last_try = attempt.letting_through;
     world.cache.crossings.beyond_lists = false;
     world.cache.crossings.found_count = 0;
-    // Largest number of repetitions with longer contact lists. Several may be needed, because contact forces change the
-    // motion in the next attempt, and the lists cannot cover every motion.
+    // Largest number of repetitions of an attempt with longer contact lists. Several may be needed, because contacts
+    // found in the longer lists change the motion, which may then exceed the lists again. After that, such pairs count
+    // as crossings.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
@@ -347,8 +350,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
         case StepOutcome::again_with_crossings:
             break;
         case StepOutcome::again_shorter:
-            // The shorter attempt finds its own crossings. After an inversion it keeps the crossings of earlier
-            // attempts as contacts.
+            // The shorter attempt has another motion, so it finds crossings anew. If the attempt found an inversion
+            // instead of a crossing, the crossings of earlier attempts remain contacts.
             if (!scratch.inverts()) world.cache.crossings.row.clear();
             note_try(world);
             attempt = limits_of_shorter_attempt(world, plan, attempt);

@@ -21,7 +21,7 @@ struct WorldState;
 /// the attempt. The regular step is StepPlan::regular.
 ///
 ///     attempt -- good ------------------------------------------------------------> committed
-///      |---- a rank lacks bodies or labels of other ranks -----------------------> again_over_ranks --------> attempt
+///      |---- a rank lacks bodies or region labels of other ranks ----------------> again_over_ranks --------> attempt
 ///      |---- features near enough to cross were not in the lists -----------------> again_with_longer_lists -> attempt
 ///      |---- features cross, fewer than 4 attempts of this length ----------------> again_with_crossings ----> attempt
 ///      |---- features cross; h > regular step / 128 ------------------------------> again_shorter -----------> attempt
@@ -31,7 +31,7 @@ struct WorldState;
 ///      '---- not finite, too far; too fast or unsolved at the shortest length ----> refused
 enum class StepOutcome {
     committed,
-    again_over_ranks,         // ranks have to exchange bodies, or more labels of regions; then the same attempt again
+    again_over_ranks,         // the same attempt again, after an exchange of bodies or more rounds of region labels
     again_with_longer_lists,  // the contact lists lacked features that might cross; the next attempt has longer lists
     again_with_crossings,     // crossing features are contacts of the next attempt with the same length
     again_shorter,            // the next attempt is half as long, or as long as the rate of deformation allows
@@ -44,7 +44,7 @@ struct AttemptLimits {
     // Upper bound of the step length after crossings, inversions or steps that Newton's method could not solve [s]. The
     // bound grows in each committed step.
     Real longest = infinity;
-    Real slow_enough = infinity;   // upper bound by the rate of deformation and the rotation of joints [s]
+    Real slow_enough = infinity;   // upper bound by the rate of deformation and the rotation at joints and ties [s]
     Index fastest = no_index;      // row in the undivided world of the body that causes this bound
     int with_longer_lists = 0;     // number of attempts at this step whose contact lists were incomplete
     int with_crossings = 0;        // number of attempts with this step length in which features crossed
@@ -57,8 +57,8 @@ struct AttemptLimits {
     Real at_most() const { return std::min(longest, slow_enough); }
 };
 
-/// Longest step for the given rate of deformation, but not less than the shortest length that is attempted [s].
-/// `stable`: upper bound of the step length by all other limits [s].
+/// Returns the longest step in which the fastest element deforms by no more than is allowed, but at least `stable` /
+/// 128 [s]. `stable`: upper bound of the step length by all other limits [s].
 Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable);
 
 /// Attempts the planned step within the limits `attempt`. Returns the outcome, and updates `attempt` for the next
@@ -76,41 +76,40 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
 ///     rigid_bodies.center, rotation, moments
 ///     and axes                                  drift_to (leapfrog)    a copy from the start of the call
 ///     elements.implicit_modulus,
-///     clusters.inverse                          stiffen_clusters       nothing: they follow the shapes at the start of
-///                                                                      the attempt, as they do at the end of a call;
-///                                                                      with leapfrog, whose shapes drift before, a
-///                                                                      copy from the start of the call; before bodies
-///                                                                      move between ranks, a copy from the attempt
-///                                                                      that computed the forces
-///     pairs, their search                       find_candidates        nothing: results of a search for the positions
-///                                                                      at the start of the step stay valid;
-///     search.memory.body_unmeasured                                    bodies that no committed step has measured
-///                                                                      are searched again
+///     clusters.inverse                          stiffen_clusters       nothing: they depend on the shapes at the start
+///                                                                      of the attempt, which do not change. Two
+///                                                                      exceptions: with leapfrog, which drifts first,
+///                                                                      a copy from the start of the call; before
+///                                                                      bodies move between ranks, a copy from the
+///                                                                      attempt that computed the forces
+///     pairs, and candidates in them             find_candidates        nothing: results of a search for the positions
+///                                                                      at the start of the step stay valid
+///     search.memory.body_unmeasured             find_candidates        at the end of the call, bodies whose speeds no
+///                                                                      committed step has measured are searched again
 ///
-/// All other state is written only by stages that run in a step that can be committed, and by commit().
+/// All other state is written only by commit(), and by stages that run only if the step can be committed.
 /// tests/scene/transaction_test.cpp compares this list with the writes that the stages declare.
 class StepTransaction {
 public:
     void begin_try(const Model& model);
     void roll_back_try(Model& model) const;
-    /// keep_stiffness and restore_stiffness store and restore the assumed stiffness of clusters.
+    /// keep_stiffness and restore_stiffness store and restore elements.implicit_modulus and clusters.inverse.
     void keep_stiffness(const Model& model);
     void restore_stiffness(Model& model) const;
     /// For each body, nonzero if it was asleep when the attempt began.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
 
-    /// begin_call and roll_back_call store and restore the state at the start of a call of advance, if the integrator
-    /// is leapfrog. Only leapfrog moves positions before the first step of a call. With symplectic Euler the functions
-    /// do nothing.
+    /// begin_call and roll_back_call store and restore the state at the start of a call of advance. They do nothing
+    /// with symplectic Euler, because only leapfrog moves positions before the first step of a call.
     void begin_call(const Model& model, const Clock& clock);
     void roll_back_call(Model& model, Clock& clock) const;
 
 private:
     Column<std::uint8_t> asleep_;           // bodies.asleep
     Column<Real> max_speed_, frame_speed_;  // bodies.max_speed, bodies.frame_speed [m/s]
-    Column<Vec3> driven_velocity_;          // velocities of the nodes in attachments.node [m/s]
+    Column<Vec3> driven_velocity_;          // velocities of attachments.node at the start of the attempt [m/s]
     Real time_ = 0;                         // time at the start of the call [s]
-    Column<Vec3> position_, velocity_;      // positions and velocities of all nodes [m, m/s]
+    Column<Vec3> position_, velocity_;      // positions and velocities of all nodes at the start of the call [m, m/s]
     Column<Vec3> center_;                   // centres of rigid bodies [m]
     Column<Vec3> moments_;                  // principal moments of inertia of rigid bodies [kg m^2]
     Column<Mat3> rotation_, axes_;          // rotations and principal axes of rigid bodies

@@ -21,8 +21,8 @@ void keep_column(std::span<const T> from, Column<T>& to) {
     std::copy(from.begin(), from.end(), to.begin());
 }
 
-/// Converts row numbers of the contacts of a step to positions in the list of all contacts, which includes contacts of
-/// sleeping bodies.
+/// Replaces each entry of `place`, a row of `contacts`, by the index of this contact in the list that World::contacts()
+/// returns. This list also contains contacts of sleeping bodies.
 void number_among_all(const ContactTable& contacts, const RestingContactTable& resting, std::vector<Index>& place) {
     if (resting.empty()) return;
     Column<Index> rows;
@@ -33,7 +33,8 @@ void number_among_all(const ContactTable& contacts, const RestingContactTable& r
     for (Index& row : place) row = place_of[static_cast<std::size_t>(row)];
 }
 
-/// Directions in which attachments hold nodes of the regions of a step.
+/// Directions in which attachments hold nodes. `entries`: entries of AttachmentTable::node to include, which are those
+/// of nodes in contact regions of the step.
 std::vector<HeldDirection> held_directions(const AttachmentTable& attachments, std::span<const Index> entries) {
     std::vector<HeldDirection> held;
     if (entries.empty()) return held;

@@ -73,8 +73,8 @@ void add_spring_rates(Model& model, std::span<Real> of_body) {
     }
 }
 
-// Raises the bound of each body to the largest rate of its dampers. The rates are not summed, because each mass is
-// divided among the dampers that act on it.
+// Raises the bound of each body to the largest damping rate of a single damper on it. The rates are not summed, because
+// each damper counts only with its share of a mass on which several dampers act.
 void bound_spring_damping(const Model& model, std::span<Real> of_body) {
     const SpringInputs springs = springs_of(model);
     const auto divided = [&](const AnchorMass& mass, const AnchorInputs& anchors, std::size_t s) {

@@ -10,7 +10,8 @@
 namespace skerry {
 
 SpringInputs springs_of(const Model& model);
-/// Computes the inverse masses of the anchors of all springs, and the number of dampers that share each mass.
+/// Computes SpringTable::first_mass and second_mass: for each anchor of a spring its inverse mass, and the number of
+/// dampers that share this mass.
 void weigh_springs(Model& model);
 /// See ForceElement::add_rate and ForceElement::bound_damping.
 void add_spring_rates(Model& model, std::span<Real> of_body);

@@ -1,6 +1,6 @@
 // Parallel traversal of a large region: a team of workers visits the contacts of the region in the order of a
 // colouring. The impulses are bitwise equal to those of one thread that visits the contacts in the same order. Sums
-// over contacts are added block by block.
+// over contacts are added block by block, so that they do not depend on the number of workers.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace skerry {
 
-/// Number of rows in one block of a parallel loop over nodes, or over contacts that are not ordered yet. Copying so
-/// many rows of 32 bytes takes several times as long as claiming the block.
+/// Number of rows in one block of a parallel loop over nodes, or over contacts that are not ordered yet. With this
+/// size, copying the rows of a block (32 bytes each) takes several times as long as claiming the block.
 inline constexpr std::size_t row_block = 256;
 
 inline Index row_block_count(std::size_t rows) {
@@ -48,8 +48,8 @@ public:
         : order_(&order), team_(&team), partial_(partial) {}
 
     std::size_t number_of(std::size_t place) const { return static_cast<std::size_t>(order_->contact[place]); }
-    /// Visits the phases one after the other as in a sweep, even where any order of the contacts would do, so that each
-    /// worker finds its contacts in its cache.
+    /// Visits the phases one after the other, although the contacts may be visited in any order here. Each worker then
+    /// gets the same contacts as in a sweep and finds them in its cache.
     template <class Body>
     void contacts(std::size_t, Body&& body) const {
         for_blocks([&body](std::size_t begin, std::size_t end, Index) { body(begin, end); });

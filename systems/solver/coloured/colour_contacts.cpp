@@ -29,8 +29,8 @@ void for_each_node(const ContactNodes& nodes, Visit&& visit) {
     }
 }
 
-/// Finds the lowest colour that no contact of the excluded nodes has, or colour_limit if there is none. take() marks
-/// this colour as used at the given nodes.
+/// colour() is the lowest colour that is still free at all nodes passed to exclude(), or colour_limit if there is none.
+/// take() marks this colour as used at the given nodes.
 struct FreeColour {
     ColouringMemory& memory;
     std::uint64_t used = 0;
@@ -51,8 +51,8 @@ void count_degrees(std::span<const ContactNodes> contact, Index node_count, Colo
     for (const ContactNodes& nodes : contact) for_each_node(nodes, [&](Index node) { ++memory.degree[node]; });
 }
 
-/// Assigns each contact to a bin. If a node of the contact is a hub (a node with many contacts), the bin belongs to the
-/// first such hub, otherwise to a colour. Returns the number of hubs.
+/// Assigns each contact to a bin. A contact of a hub (a node with many contacts) goes into the bin of its first hub.
+/// Any other contact goes into the bin of its colour, or of the tail if no colour is free. Returns the number of hubs.
 Index fill_bins(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory) {
     const bool has_hubs =
         std::any_of(memory.degree.begin(), memory.degree.end(), [](Index degree) { return degree > hub_degree; });
@@ -101,7 +101,8 @@ void list_hubs(Index hub_count, ColouringMemory& memory) {
     }
 }
 
-/// Gives each hub block (the contacts of one hub) a colour, then sorts the hubs by colour and number.
+/// Gives each hub block (the contacts of one hub) a colour. Then sorts the hubs by colour, and hubs of one colour by
+/// their index.
 void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, ColouringMemory& memory) {
     list_hubs(hub_count, memory);
     std::fill(memory.colours_used.begin(), memory.colours_used.end(), 0);
@@ -201,7 +202,8 @@ private:
     Index place_ = 0;
 };
 
-/// Sorts the contacts by their lowest node, then by contact number.
+/// Lists the contacts in `by_node`, sorted by their lowest moving node. Contacts with equal lowest node stay in
+/// ascending order.
 void sort_by_node(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory) {
     const auto lowest = [&](const ContactNodes& nodes) {
         Index node = std::max(nodes[0], Index(0));
@@ -218,9 +220,9 @@ void sort_by_node(std::span<const ContactNodes> contact, Index node_count, Colou
         memory.by_node[memory.node_offset[lowest(contact[k]) + 1]++] = static_cast<Index>(k);
 }
 
-/// Writes the contacts to their positions in the coloured order. Contacts of one colour are sorted by node: a worker
-/// that gets equal shares of all colours then reuses the nodes in its cache. Contacts of hubs and of the tail stay in
-/// ascending order.
+/// Writes the contacts to their positions in the coloured order. Contacts of one colour are sorted by node. A worker
+/// prefers the same fraction of the blocks in every phase (Team), so it meets mostly the same nodes in all colours and
+/// finds them in its cache. Contacts of hubs and of the tail stay in ascending order.
 void place_contacts(std::span<const ContactNodes> contact, Index node_count, Index tail, ColouringMemory& memory,
                     ColouredOrder& order) {
     sort_by_node(contact, node_count, memory);

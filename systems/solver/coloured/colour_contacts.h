@@ -35,12 +35,13 @@ struct ColouringMemory {
     // Lists of the contacts of each hub: start of each list, and all lists one after the other.
     Column<Index> hub_offset, hub_item;
     Column<Index> hub_order, hub_colour;
-    Column<Index> node_offset, by_node;  // contacts sorted by their lowest node
+    // by_node: contacts sorted by lowest node; node_offset: start of each node in by_node
+    Column<Index> node_offset, by_node;
 };
 
-/// A node with more contacts than this number is a hub. Each contact of a node needs its own colour: meshes of similar
-/// size take 7 to 10 colours, but a coarse mesh under a finer one would take hundreds. The contacts of a hub therefore
-/// form one block, and the hub blocks are coloured instead.
+/// A node with more contacts than this number is a hub. All contacts of a node need different colours. Two meshes of
+/// similar fineness take 7 to 10 colours, but a node of a coarse mesh under a fine one may have hundreds of contacts.
+/// So the contacts of a hub form one block, and colours are given to whole blocks.
 inline constexpr Index hub_degree = 32;
 /// A colour with fewer contacts than this number (one block) does not justify a phase of its own. Its contacts go to
 /// the tail, the last phase, which is solved by one worker.
@@ -48,7 +49,8 @@ inline constexpr Index smallest_colour = 64;
 
 /// Colours the contacts greedily in ascending order, with at most 64 colours. Contacts without a free colour go to the
 /// tail. The result depends only on the arguments. Nodes are numbered 0 .. node_count - 1. Contacts of a colour are
-/// sorted by node: a worker that gets an equal share of each colour then reuses the nodes in its cache.
+/// sorted by node. A worker prefers the same fraction of the blocks in every phase (Team), so it meets mostly the same
+/// nodes in all colours and finds them in its cache.
 void colour_contacts(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory,
                      ColouredOrder& order);
 

@@ -3,7 +3,8 @@
 namespace skerry {
 namespace {
 
-/// Writes the moving nodes of all contacts. Returns true if they equal those of the last call.
+/// Writes the moving nodes of all contacts to region.moving. Returns true if they equal the nodes that the last call
+/// wrote.
 bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& team, ColouredRegion& region) {
     const bool as_many = region.moving.size() == row.size();
     region.moving.resize(row.size());
@@ -23,9 +24,9 @@ bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& te
     return same;
 }
 
-/// Numbers the nodes of the region in the order of their first appearance. `place` caches the number of a node by its
-/// row of NodeTable. A cached number from another call is detected: region.node then holds a different node at that
-/// number.
+/// Numbers the nodes of the region in the order of their first appearance. `place` stores the number of a node at its
+/// row of NodeTable. It is not cleared between calls: an entry is valid only if region.node holds this node at the
+/// stored number.
 void number_nodes(std::span<Index> place, ColouredRegion& region) {
     region.node.clear();
     region.local.resize(region.moving.size());

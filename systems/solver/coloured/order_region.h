@@ -26,7 +26,8 @@ struct ColouredRegion {
 ContactNodes moving_nodes(const RegionInputs& inputs, Index row);
 
 /// Orders the contacts listed in `row`. `place` is scratch memory by row of NodeTable; its initial contents do not
-/// matter. Returns false if the order of the last call is still valid and is reused, as for a region at rest.
+/// matter. Returns false if no moving node of a contact has changed since the last call, as in a region at rest. The
+/// order of the last call is then reused.
 bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& team, std::span<Index> place,
                   ColouredRegion& region);
 

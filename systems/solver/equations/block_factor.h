@@ -20,11 +20,12 @@ public:
     void start();
     /// Adds a part, which is a group of `size` unknowns. Returns the index of the part.
     Index add_part(Index size);
-    /// Marks the blocks (g, h) and (h, g) as nonzero. Diagonal blocks always are. Call it after close_parts().
+    /// Marks the blocks (g, h) and (h, g) as nonzero. Diagonal blocks always count as nonzero. Call it between
+    /// close_parts() and analyse().
     void couple(Index g, Index h);
     void close_parts();
-    /// Finds the elimination order. Returns false if the factor would need too much memory; no other function may be
-    /// called in this case.
+    /// Finds the elimination order. Returns false if the factor would need more than 256 MiB. Only start() may be
+    /// called then.
     bool analyse();
     /// Number of multiplications of one factorisation.
     Real work() const { return work_; }
@@ -56,8 +57,9 @@ private:
     // For each pair of parts: 1 if the blocks that couple the two parts are nonzero, including fill-in.
     Column<std::uint8_t> coupled_;
     Column<Index> beside_;        // by part: total size of the coupled parts that are not yet eliminated
-    Column<Index> order_, rank_;  // elimination order, and the position of each part in it
-    // For each position in the elimination order: parts whose blocks change when the part there is eliminated.
+    Column<Index> order_, rank_;  // order_: parts in elimination order; rank_: by part, its position in order_
+    // For each position in the elimination order: parts that are eliminated later and are coupled to the part at this
+    // position.
     Ragged<Index> later_;
     Column<std::size_t> first_;   // by pair of parts: index of the block's first entry in `number_`
     Column<Index> stride_below_;  // by part: column stride of the part's blocks below the diagonal

@@ -34,9 +34,10 @@ public:
         void add(const BodyPush& of) { push[static_cast<std::size_t>(count++)] = of; }
         std::span<const BodyPush> all() const { return {push.data(), static_cast<std::size_t>(count)}; }
     };
-    /// A velocity row of the region that contacts can change, and the position of this row in the equations.
+    /// A node velocity or rigid motion that contacts of the region can change. `row`: its row among the velocities of
+    /// the region. `part`, `place`: its part of the equations, and its first entry within the part.
     struct Unknown {
-        Index body, partner;  // identifiers of the unknown's body and of the other touched body, or no_index
+        Index body, partner;  // identify the unknown's body and, for a node, the other body it touches, or no_index
         Index row;
         Index rigid = no_index;  // row of RigidBodyTable if the unknown is a rigid motion
         Index slot = no_index;   // for nodes of implicit bodies: velocity row of the body's rigid motion
@@ -62,16 +63,16 @@ public:
     /// Stores the present blocks of the factor as inertia matrix K.
     void keep_inertia();
     void start_from_inertia();
-    /// Adds J^T block J of a contact to the matrix.
+    /// Adds J^T block J to the matrix, where J is the Jacobian of the contact's velocity with respect to the unknowns.
     void add(Index contact, const Mat3& block);
-    /// Returns the velocity J v of a contact.
+    /// Returns the velocity J v of a contact for the unknowns `v`, with the Jacobian J of add().
     Vec3 velocity(Index contact, std::span<const Real> v) const;
     /// Sets the right-hand side to K x. Returns the product x . K x.
     Real set_right(std::span<const Real> x);
     /// Adds J^T r to the right-hand side, where r is the impulse of a contact.
     void add_right(Index contact, const Vec3& impulse);
-    /// Begins a round, which is a sequence of Newton steps with fixed start impulses: clears all sliding directions
-    /// and marks no contact to be stopped.
+    /// Begins a round, which is a sequence of Newton steps with fixed start impulses: clears `way`, `stops` and
+    /// `rises`.
     void start_round();
 
     Real softness = 0;         // compliance of the contacts in a round, as a fraction of the mobility D
@@ -82,8 +83,8 @@ public:
     // `present` produce. change: answered - present. step: Newton step. before: `present` before the step.
     Column<Real> present, answered, change, step, before;
     Column<Mat3> answer;  // by contact: derivative of the impulse from which the last matrix was built
-    // Data by contact. way: sliding direction for which the last matrix was built, or zero. stops: 1 if the next step
-    // shall stop the contact.
+    // Data by contact. way: sliding direction of the contact with which the last matrix was built; zero if it did not
+    // slide. stops: 1 if the next step shall stop the contact.
     Column<Vec3> way;
     Column<std::uint8_t> stops;
     Index rises = 0;  // number of steps in this round that were accepted although the merit function rose

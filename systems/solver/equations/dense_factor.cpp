@@ -171,8 +171,8 @@ void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseB
     }
 }
 
-/// Calls `of(begin, count)` for ranges of columns of b, without gaps of at least eight zero columns. Zero columns come
-/// from nodes without a pressed contact, which do not couple to other bodies.
+/// Splits the columns of b where at least eight consecutive columns are zero, and calls of(begin, count) for each range
+/// between. Zero columns come from nodes without a pressed contact, which do not couple to other bodies.
 void for_each_run_of_columns(const DenseBlock& b, auto&& of) {
     constexpr Index gap = 8;
     const auto counts = [&](Index k) {
@@ -261,8 +261,8 @@ bool factor_dense(const DenseBlock& a, Index* pivot) {
 }
 
 void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b) {
-    // The use of triangle inverses depends on the number of all columns, not on the lengths of the runs. The bits of
-    // the result must not depend on the position of zeros.
+    // Whether triangle inverses are used depends on the number of all columns, not on the lengths of the runs, so that
+    // the bits of the result do not depend on the position of zero columns.
     const bool many = b.columns >= many_columns;
     for_each_run_of_columns(
         b, [&](Index begin, Index count) { solve_all(factors, pivot, b.part(0, begin, b.rows, count), many); });

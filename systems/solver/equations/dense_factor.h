@@ -24,8 +24,8 @@ struct DenseBlock {
 void subtract_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c);
 /// Adds a matrix times a vector: y += a x. `shape` gives the size and layout of the matrix a, `numbers` its entries.
 void add_product(const DenseBlock& shape, const Real* numbers, const Real* x, Real* y);
-/// Factors a = L U with row exchanges: row k is exchanged with row `pivot[k]`. Returns false if a pivot is zero or not
-/// finite.
+/// Factors a = L U with row exchanges: for k = 0, 1, ..., row k is exchanged with row `pivot[k]`. L and U overwrite a.
+/// Returns false if a pivot is zero or not finite.
 bool factor_dense(const DenseBlock& a, Index* pivot);
 /// Solves a x = b with the factors from factor_dense. The solution overwrites b.
 void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b);

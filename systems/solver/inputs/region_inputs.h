@@ -17,8 +17,8 @@
 
 namespace skerry {
 
-/// State of the rigid bodies at the start of the step, and the kick (change of velocity by the forces of the step).
-/// Spans have one entry per row of RigidBodyTable, except `position` and `core_nodes`.
+/// State of the rigid bodies at the start of the step, and the kick (change of momentum by the forces of the step) [N
+/// s]. Spans have one entry per row of RigidBodyTable, except `position` and `core_nodes`.
 struct RigidInputs {
     RigidNodes nodes{};
     std::span<const Vec3> position{};  // by node [m]
@@ -30,8 +30,8 @@ struct RigidInputs {
     std::span<const Mat3> rotation{};
     std::span<const Index> body{}, core_nodes{};  // `body`: row of BodyTable; `core_nodes`: by row of BodyTable
     // Row of AttachmentTable that prescribes the motion of the body (the body is held), or no_index. The span is empty
-    // if no body is held. A deformable body in a held frame has a rigid row with zero velocity; its nodes store their
-    // total velocity (docs/methods/implicit_bodies.md 7).
+    // if no body is held. The RigidBodyTable row of a deformable body in a held frame has zero velocity; the nodes of
+    // the body store their total velocity (docs/methods/implicit_bodies.md 7).
     std::span<const Index> holder{};
 
     bool any() const { return nodes.any(); }
@@ -76,7 +76,7 @@ struct ImplicitInputs {
     // Velocity after the kick (the change of velocity by forces), and velocity at the start of the step, in the mesh
     // frame, by row of ImplicitNodeTable [m/s]
     std::span<const Vec3> velocity{}, velocity_before{};
-    std::span<const Mat3> axes{}, rotation{};  // rotations by row of RigidBodyTable
+    std::span<const Mat3> axes{}, rotation{};  // by RigidBodyTable row; rotation axes^T: from mesh frame to world frame
 
     static ImplicitInputs bind(const Binder& binder, const BodyTable& body, const RigidBodyTable& rigid,
                                const ImplicitNodeTable& implicit, const ImplicitCoupling& coupling) {
@@ -103,7 +103,8 @@ struct ImplicitInputs {
         return rotation[r] * (axes[r].transpose() * velocity[static_cast<std::size_t>(row)]);
     }
     /// Change of a node's velocity by the kick on the deformation of its implicit body, in world axes [m/s]; zero for
-    /// nodes of other bodies. It comes from elastic forces. In a body at rest, contact impulses cancel this change.
+    /// nodes of other bodies. It comes from elastic forces. In a body at rest, contact impulses cancel this change in
+    /// every step.
     Vec3 thrown(Index node, const RigidNodes& nodes) const {
         const Index row = this->row(node, nodes);
         if (row == no_index) return Vec3::Zero();
@@ -112,7 +113,7 @@ struct ImplicitInputs {
     }
 };
 
-/// Inputs of the stage: contacts, nodes, bodies and joints.
+/// Inputs of solve_regions: contacts, nodes, bodies, joints and cables.
 struct RegionInputs {
     std::span<const Stencil> stencil;
     std::span<const Vec3> normal;
@@ -122,8 +123,8 @@ struct RegionInputs {
     std::span<const Real> inverse_mass;  // by node [1/kg]
     std::span<const Vec3> velocity;      // by node, at the start of the step [m/s]
     Real gravity = 0;                    // magnitude of gravity, for the scale of the error measure [m/s^2]
-    // Ascending contact keys, which identify regions across steps. Without keys the scheduler cannot use the sweep
-    // counts of earlier steps.
+    // Ascending contact keys. With them, regions are recognised in later steps, and the scheduler estimates their cost
+    // from earlier sweep counts. The span may be empty.
     std::span<const ContactKey> key{};
     // Clusters: groups of nodes with a coupled mass matrix. Null or empty if every node has its own mass.
     const NodeClusters* clusters = nullptr;
@@ -133,7 +134,8 @@ struct RegionInputs {
     std::span<const JointBlock> joints{};  // joints between rigid bodies; none by default
     SolvedCables cables{};                 // none by default
     // first_body and second_body: rows of BodyTable of the two bodies of a contact, or no_index. body_kind and
-    // still_time: by row of BodyTable. If these spans are empty, no body counts as still.
+    // still_time: by row of BodyTable. If the spans are empty, no body counts as still
+    // (SolverSettings::still_tolerance).
     std::span<const Index> first_body{}, second_body{};
     std::span<const BodyKind> body_kind{};
     std::span<const Real> still_time{};  // [s]
@@ -141,8 +143,8 @@ struct RegionInputs {
     // friction axis of each contact; empty: friction is the same in all directions
     std::span<const FrictionAxis> friction_axis{};
 
-    /// True if the row is a tie, which is an equation (see FrictionLimits). The column `point` then holds the point at
-    /// which the impulse acts on both partners.
+    /// True if the contact at this row is a tie, which is a bilateral constraint: its impulse may also pull (see
+    /// FrictionLimits). TouchPlaces::point then holds the point at which the impulse acts on both bodies.
     bool is_tie(Index row) const { return dynamic_friction[static_cast<std::size_t>(row)] == infinity; }
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }
 
@@ -188,10 +190,10 @@ struct RegionOutputs {
     std::span<Vec3> deforming_impulse{};     // by row of ImplicitNodeTable, zero before the solve [N s]
     std::span<Vec3> joint_impulse{};         // by joint block: warm start as input, solution as output
     std::span<AxisImpulses> axis_impulse{};  // by joint block
-    std::span<Real> cable_impulse{};  // tension by point of the cables: warm start as input, solution as output [N s]
-    std::span<Real> cable_work{};     // by solved cable: work on the bodies [J]
-    std::span<Real> cable_loss{};     // by solved cable: energy that friction at its points dissipates [J]
-    std::span<Vec3> cable_sum{};      // by solved cable: total impulse on the moving nodes [N s]
+    std::span<Real> cable_impulse{};         // by cable point, impulse of the tension: warm start, then solution [N s]
+    std::span<Real> cable_work{};            // by solved cable: work on the bodies [J]
+    std::span<Real> cable_loss{};            // by solved cable: energy that friction at its points dissipates [J]
+    std::span<Vec3> cable_sum{};             // by solved cable: total impulse on the moving nodes [N s]
 
     static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid,
                               ImplicitNodeTable& implicit, JointBlockTable& joints, CableBlockTable& cables) {

@@ -32,7 +32,7 @@ struct LaneProblem {
     T diagonal[K];                 // mobility D of docs/methods/contact.md 2.1; zero for unused contacts [1/kg]
     T inverse_diagonal[K];         // 1/D; zero for unused contacts [kg]
     T friction[K];
-    T scale;      // number by which the error e_nat is divided [sqrt(J)]
+    T scale;      // e_nat is the norm of the error divided by this number [sqrt(J)]
     T tolerance;  // tolerance of e_nat
 };
 
@@ -69,7 +69,8 @@ Vec4 lane_of(const LaneVec3<T>& all, int lane) {
     return {lane_of(all.x, lane), lane_of(all.y, lane), lane_of(all.z, lane), 0};
 }
 
-/// Writes the matrix C = J M^-1 J^T of the region into its lane. Entries of unused contacts keep their values.
+/// Writes the matrix C = J M^-1 J^T of the region, with the stencil weights J and the lumped masses M, into its lane.
+/// Entries of unused contacts keep their values.
 template <class T, int K>
 void fill_coupling(const LaneRegion& region, int lane, LaneProblem<T, K>& problem) {
     std::array<Real, 4 * K> step;  // by node: velocity change per unit impulse of contact i [1/kg]
@@ -88,7 +89,7 @@ void fill_coupling(const LaneRegion& region, int lane, LaneProblem<T, K>& proble
     }
 }
 
-/// Resets the problem, so that unused lanes and contacts have zero impulses.
+/// Resets the problem, so that unused lanes and contacts have zero impulses. The scale 1 avoids 0 / 0 in unused lanes.
 template <class T, int K>
 void clear(LaneProblem<T, K>& problem) {
     problem = LaneProblem<T, K>();

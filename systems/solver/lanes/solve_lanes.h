@@ -1,6 +1,6 @@
-// Accelerated Gauss-Seidel sweeps on regions in SIMD lanes: docs/methods/region_solver.md 2, 3 in the dense form. No
-// operation combines lanes, and solved lanes do not change. The result of a region therefore does not depend on the
-// other lanes.
+// Accelerated Gauss-Seidel sweeps on regions in SIMD lanes (docs/methods/region_solver.md 2, 3), in the dense form of
+// LaneProblem. No operation combines the numbers of different lanes, and solved lanes do not change. The result of a
+// region therefore does not depend on the other lanes.
 #pragma once
 
 #include <algorithm>
@@ -80,7 +80,8 @@ T lane_error(const LaneProblem<T, K>& problem) {
     return square_root(sum) / problem.scale;
 }
 
-/// Does one sweep. Lanes outside the mask `swept` keep their impulses unchanged.
+/// Does one sweep over the contacts. Lanes outside the mask `swept` keep their impulses. `previous`: impulses after the
+/// last sweep, before they were extrapolated.
 template <class T, int K>
 SweepChangeOf<T> sweep_lanes(LaneProblem<T, K>& problem, const LaneVec3<T>* previous, const LaneMask<T>& swept,
                              Real relaxation) {
@@ -114,8 +115,8 @@ public:
         return sweep_lanes<T, K>(problem_, previous_, swept_, relaxation);
     }
     T error() const { return lane_error<T, K>(problem_); }
-    /// True if the change of the last sweep suggests that the error is within the tolerance. `tolerance`: one number
-    /// for all lanes, or one number per lane.
+    /// True if the last sweep changed the impulses so little that the error is probably within the tolerance and worth
+    /// a measurement. `change`: squared change [J]. `tolerance`: one number for all lanes, or one per lane.
     LaneMask<T> suggests_check(const T& change, const auto& tolerance) const {
         return change <= (tolerance * tolerance) * (problem_.scale * problem_.scale);
     }

@@ -8,7 +8,7 @@ namespace skerry {
 
 namespace {
 
-/// Sum of entries of a mobility matrix that may cancel, for example if a cable is straight through a point that moves.
+/// Sum of mobility entries of both signs. They cancel, for example, where a cable runs straight through a moving point.
 struct MobilitySum {
     Real sum = 0, size = 0;  // sum of the entries, and of their absolute values [1/kg]
 
@@ -77,13 +77,13 @@ Real CableLaw::answer(std::size_t s, Real of) const {
     return std::clamp(next, impulse[s - 1] / most_ratio[s], impulse[s - 1] * most_ratio[s]);
 }
 
-/// Applies the law to segment `s`. The impulses of the segments after it keep their ratios to its impulse. Returns the
-/// absolute change [N s].
+/// Applies the law to segment `s`. The impulses of later segments keep their ratios to the impulse of `s`. Returns the
+/// absolute change of this impulse [N s].
 Real CableLaw::step(std::size_t s) const {
     const std::size_t count = segments();
     const Real present = impulse[s];
     const auto ratio = [&](std::size_t m) { return present > 0 ? impulse[m] / present : Real(1); };
-    MobilitySum of;  // mobility of the far rate for changes that keep the ratios of the impulses
+    MobilitySum of;  // decrease of far_rate(s) per unit change of impulse[s] [1/kg]
     for (std::size_t m = s; m < count; ++m)
         for (std::size_t row = s; row < count; ++row) of.add(entry(row, m) * ratio(m));
     const Real next = answer(s, of.value());
@@ -109,7 +109,8 @@ void CableLaw::solve() const {
         std::ranges::fill(rate, Real(0));
         return;
     }
-    // The sweeps of the region continue an unfinished solution, so the limit of the passes does not limit the accuracy.
+    // If the passes end before convergence, the next sweep of the region continues from their impulses. So this limit
+    // does not limit the accuracy.
     constexpr int most_passes = 50;
     constexpr Real rounding = 1e-15;
     for (int pass = 0; pass < most_passes; ++pass) {

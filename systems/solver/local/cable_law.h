@@ -8,41 +8,42 @@
 
 namespace skerry {
 
-/// A cable with n segments. The tension of segment `s` has the impulse r_s >= 0 [N s] and changes the rates of length
-/// u [m/s] by -A r, with the mobility matrix A. At a point between the segments s - 1 and s, friction bounds the ratio
-/// of the tensions: r_(s-1) / e <= r_s <= r_(s-1) e.
+/// A cable with n segments. The tension of segment `s` has the impulse r_s >= 0 [N s] and changes the rates of length u
+/// [m/s] by -A r, with the mobility matrix A. At a point between the segments s - 1 and s, friction bounds the ratio of
+/// the tensions: r_(s-1) / e <= r_s <= r_(s-1) e, with e = exp(mu times the angle of wrap).
 struct CableLaw {
-    Index first = 0;   // number of the first point among the rows of the region
-    Index moving = 0;  // number of the first point that impulses can move
+    Index first = 0;   // index of the first point among the contact rows of the region
+    Index moving = 0;  // index of the first point that impulses can move, counted like `first`
     Index points = 0;  // number of points
-    // True for a tie: `impulse` has the three components of the impulse of every point, `rate` those of the sum u of
-    // the velocities of the points, which the law makes zero, and u changes by +A r. Members that name segments are
-    // unused.
+    // True for a tie: `impulse` has the three components of the impulse r, which acts on each point. `rate` has the
+    // components of the sum u of the velocities of the points. The law makes u zero, and u changes by +A r.
+    // `direction`, `most_ratio` and `far_mobility` are unused.
     bool is_tie = false;
     bool by_length = false;
-    Real wanted = 0;  // upper bound of the sum of the rates u [m/s] if `by_length`, else the impulse r_0 [N s]
+    Real wanted = 0;  // if `by_length`: upper bound of the sum of the u_s [m/s]; else: impulse r_0 [N s]
     std::span<const Vec3> direction;   // by segment: unit vector to the next point; 0 if the segment has no length
     std::span<const Real> most_ratio;  // by segment: e at the start of the segment
     std::span<const Real> mobility;    // A, row by row [1/kg]
-    // Sum of the entries of A whose row and column are at least the segment, by segment [1/kg]. It is the mobility of
-    // the rate of length of the cable from the segment on.
+    // Sum of A_ij over i, j >= s, for each segment s [1/kg]. It is the mobility of the rate of length of the cable from
+    // segment s to the end.
     std::span<Real> far_mobility;
-    // Present impulses and rates of length, by segment. Impulses before the present step of the solver, and in the
-    // sweep before.
+    // Columns by segment: present impulses [N s] and rates of length [m/s]. `before`, `previous` are scratch of
+    // BodyOperator::sweep_cables: impulses before the cable is solved and in the previous sweep, later the differences
+    // of `impulse` from both.
     std::span<Real> impulse, rate, before, previous;
     static constexpr std::size_t numbers_by_segment = 5;  // number of the spans by segment, from far_mobility on
 
     std::size_t segments() const { return impulse.size(); }
     /// Computes the impulses of the segments from the impulses of the points. `point` begins with the points of the
-    /// cable. At its two points a segment has the impulses r_s and -r_s along its direction. A segment without length
-    /// has the impulse of the segment before it, or of the first segment with a length.
+    /// cable. Segment s pulls its first point by r_s and its last point by -r_s along `direction`. A segment without
+    /// length has the impulse of the segment before it, or of the first segment with a length.
     void read(std::span<const Vec4> point, std::span<Real> impulse_of_segment) const;
     /// Impulse at point `p` due to the impulses `of` of the segments or of the tie [N s].
     Vec3 at_point(std::span<const Real> of, std::size_t p) const;
     /// Fills far_mobility.
     void prepare() const;
-    /// Computes the impulses of the law from the present ones, while all contacts keep their impulses. Updates the
-    /// rates.
+    /// Solves the law, starting from the present `impulse`. The impulses of contacts and of other cables stay. Updates
+    /// `impulse` and `rate`.
     void solve() const;
     /// Squared residual of the law at the present impulses and rates, in the energy norm [J] (docs/methods/errors.md
     /// 1).

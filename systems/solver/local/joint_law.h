@@ -22,8 +22,9 @@ struct AxisBounds {
 /// Returns the impulse of motor and dry friction together, where u = w r + b is the axis velocity and w the mobility.
 /// The motor drives u to its target, and friction drives u to zero, both within their greatest impulses.
 inline Real drive_impulse(const AxisBounds& axis, Real w, Real b) {
-    // `first` is the drive with the lower target velocity. While u is below both targets, both pull with all their
-    // strength.
+    // `first` is the drive with the lower target velocity. Below this target both drives push forwards with full
+    // strength. Between the targets `first` brakes with full strength, and `second` still pushes forwards. So at the
+    // lower target the sum is in [second - first, second + first].
     const bool motor_first = axis.target < 0;
     const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
     const Real near_first = std::clamp((std::min(axis.target, Real(0)) - b) / w, second - first, second + first);
@@ -35,7 +36,7 @@ inline Real drive_impulse(const AxisBounds& axis, Real w, Real b) {
 /// `high` hold regardless of all other forces.
 inline Real answer_axis(const AxisBounds& axis, Real w, Real b) {
     if (!(w > 0)) return 0;
-    // mobility, and velocity without drives, while spring and damper act
+    // u = w (drive + pull - drag u) + b, solved for u: u = w_damped drive + b_damped
     const Real share = 1 / (1 + w * axis.drag), w_damped = share * w, b_damped = share * (b + w * axis.pull);
     const Real drive = drive_impulse(axis, w_damped, b_damped);
     const Real u = b_damped + w_damped * drive;
@@ -56,7 +57,7 @@ inline AxisImpulses parts_of(const AxisBounds& axis, Real w, Real u, Real r) {
     }
     if (!(axis.most > 0)) return {0, spring + drive};
     if (!(axis.friction > 0)) return {drive, spring};
-    // The drive with the higher target velocity has its full strength while u is at the lower target or below.
+    // Up to the lower target, `second` has its full strength, so `first` has the rest. Above it, `first` brakes fully.
     const bool motor_first = axis.target < 0;
     const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
     const Real of_first = drive >= second - first ? drive - second : -first;
@@ -68,10 +69,11 @@ inline AxisImpulses parts_of(const AxisBounds& axis, Real w, Real u, Real r) {
 struct JointLaw {
     bool axis_free;  // true: the third row is a free axis; false: the third row is locked
     AxisBounds axis{};
-    Mat3 block;          // block of W
-    Mat3 inverse;        // inverse of the locked part of the block
+    Mat3 block;          // diagonal block of W of the three rows
+    Mat3 inverse;        // inverse of the locked rows and columns of `block`; 0 in the row and column of a free axis
     Real axis_mobility;  // mobility of the axis while the locked rows hold (Schur complement)
-    Real mimic = 0;      // MimicShare::coefficient; if it is not 0, no other member is used
+    // coefficient of the axis velocity in a mimic equation, which couples two joints; if not 0, no other member is used
+    Real mimic = 0;
 
     void prepare(const Mat3& of, bool with_axis);
 

@@ -7,7 +7,8 @@ namespace skerry {
 namespace {
 
 /// Contact velocity at the start of the step, and predicted velocity after the kick (the velocity change by forces).
-/// The predicted velocity excludes the kick of the deformations of implicit bodies [m/s]
+/// Elastic forces also kick the deformation of implicit bodies. `now` excludes this part, because contact impulses
+/// cancel it in a body at rest [m/s]
 struct AroundKick {
     Vec3 before, now;
 };

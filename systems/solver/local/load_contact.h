@@ -19,7 +19,7 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
 /// step, perpendicular to the sliding direction. The friction law uses the velocity at the end of the step, whose
 /// direction has a first-order error. With the correction, friction acts along the sliding direction at the middle of
 /// the step. Zero if there is no friction, no sliding or no change of direction, and for friction that depends on the
-/// direction, which itself turns the slip.
+/// direction, because such friction itself turns the slip.
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
 /// Loads contact `row`. `local(node)` returns the region's row of a moving node. `velocity_next` holds the predicted
@@ -35,7 +35,7 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     Vec3 offset = contact.bias * inputs.normal[row] - inputs.surface_velocity[row];
     contact.node_count = 0;
     contact.diagonal = 0;
-    Real lightest = 0;  // [1/kg]
+    Real lightest = 0;  // greatest inverse mass of the moving nodes [1/kg]
     for (std::size_t a = 0; a < 4; ++a) {
         const Real weight = stencil.weight[a];
         if (weight == 0) continue;

@@ -18,9 +18,9 @@ struct LumpedContact {
     Vec4 offset;  // velocity of fixed nodes - surface velocity + bias along the normal - midpoint_slip [m/s]
     std::array<Real, 4> weight;  // stencil weights of the moving nodes
     std::array<Real, 4> step;    // weight times inverse mass of each moving node [1/kg]
-    std::array<Index, 4> node;   // rows of the moving nodes in the region's list
+    std::array<Index, 4> node;   // velocity rows of the moving nodes in the region
     Index node_count;            // number of moving nodes; 0 if the contact moves only rigid bodies or nothing
-    Real diagonal;               // mobility D of docs/methods/contact.md 2.1 [1/kg]
+    Real diagonal;               // mobility D: a third of the trace of the diagonal block W_ii [1/kg]
     Real inverse_diagonal;       // 1/D; 0 if no impulse of this contact can move anything [kg]
     Real bias;                   // normal bias b_n of docs/methods/contact.md 3.1, included in `offset` [m/s]
     FrictionLimits friction;
@@ -73,8 +73,8 @@ inline Real solve_contact(const LumpedContact& contact, Friction friction, Real 
 }
 
 /// Natural map F_i of docs/methods/errors.md 1: the impulse minus the impulse that the friction law gives for the
-/// velocity u. Uses the De Saxce form for a cone with equal coefficients, otherwise the residual of the contact step.
-/// Flattened for the same reason as project_onto_cone.
+/// velocity u. Uses the De Saxce form for a cone with equal static and dynamic coefficients, otherwise the residual of
+/// the contact step. gnu::flatten keeps vectors in registers (see project_onto_cone).
 [[gnu::flatten]] inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const Vec4& impulse,
                                          const Vec4& u) {
     const FrictionLimits mu = contact.friction;

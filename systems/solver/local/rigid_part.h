@@ -24,7 +24,7 @@ inline Mat3 cross_matrix(const Vec3& a) {
 /// Effect of a contact on one rigid body. `weight` and `arm` are sums over the body's nodes in the stencil.
 struct RigidTerm {
     Index row = no_index;  // row of RigidBodyTable
-    Index slot = 0;        // index of the body's velocity in the region; the next index is its spin
+    Index slot = 0;        // velocity row of the body's velocity in the region; the spin is in the next row
     Real weight = 0;       // sum of the stencil weights, often 1 or -1
     Real step = 0;         // weight divided by mass [1/kg]
     Vec4 arm;              // sum of weight times vector from the centre of mass to the node [m]
@@ -39,12 +39,13 @@ struct RigidPart {
     std::span<const RigidTerm> terms() const { return {term.data(), static_cast<std::size_t>(term_count)}; }
     Columns3 mobility;  // W_ii [1/kg]
     Columns3 frame;     // contact frame; its columns are the normal and two tangents
-    LocalBlock block;   // W_ii in the contact frame, scaled by `across`, prepared for solve_block
+    LocalBlock block;   // W_ii in the contact frame, second tangent multiplied by `across`; prepared for solve_block
     // Friction coefficient along the second tangent, as a multiple of that along the first one. solve_block works with
     // the impulse (r_n, r_1, r_2 / across) and the velocity (u_n, u_1, across u_2) (docs/methods/friction.md 4.2).
     Real across = 1;
-    Real along_normal;  // n W_ii n for the normal n if deformable bodies were rigid [1/kg]
-    Real steepest;      // upper bound of the largest eigenvalue of W_ii [1/kg]
+    // mobility along the normal, with deformable bodies taken as rigid; for the split impulse [1/kg]
+    Real along_normal;
+    Real steepest;  // upper bound of the largest eigenvalue of W_ii [1/kg]
 };
 
 /// Adds the contact velocity due to rigid bodies to `start`. The function is always inlined: every contact step calls

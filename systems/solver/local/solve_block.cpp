@@ -109,7 +109,7 @@ LocalBlock prepare_block(const Mat3& matrix) {
     const Real a = matrix(1, 1) - w1 * w1 / block.normal;
     const Real c = matrix(2, 2) - w2 * w2 / block.normal;
     const Real d = 0.5 * (matrix(1, 2) + matrix(2, 1)) - w1 * w2 / block.normal;
-    // one Jacobi rotation
+    // One Jacobi rotation diagonalises the tangential Schur complement [[a, d], [d, c]].
     if (d != 0) {
         const Real theta = (c - a) / (2 * d);
         const Real tangent = std::copysign(1 / (std::abs(theta) + std::sqrt(theta * theta + 1)), theta);
@@ -121,8 +121,8 @@ LocalBlock prepare_block(const Mat3& matrix) {
         block.eigenvalue[0] = a;
         block.eigenvalue[1] = c;
     }
-    // Rounding errors can make an eigenvalue of zero slightly positive or negative. Eigenvalues are therefore raised to
-    // a bound.
+    // SlipCurve divides by the eigenvalues. Rounding errors can make a zero eigenvalue negative, so eigenvalues are
+    // raised to a positive bound.
     constexpr Real rank_rounding = 1e-14;  // smallest eigenvalue as a fraction of the trace
     const Real smallest = rank_rounding * (block.normal + matrix(1, 1) + matrix(2, 2));
     for (Real& eigenvalue : block.eigenvalue) eigenvalue = std::max(eigenvalue, smallest);

@@ -23,16 +23,16 @@ inline Real newton_step_cost(Index contacts) {
     return step_cost + count * count * (pair_cost + triple_cost * count);
 }
 
-/// Operators with memory for Newton steps and a known number of couplings. Other operators use accelerated sweeps only
-/// (run_method.h): in the engine, the warm start of the next step reduces the remaining error at less cost than a
-/// factorisation.
+/// Operators with memory for dense Newton steps and a known number of couplings. Operators that have neither these nor
+/// their own Newton steps use accelerated sweeps only (run_method.h): in the engine, the warm start of the next time
+/// step reduces the remaining error at less cost than a factorisation.
 template <class Op>
 concept KeepsNewtonMemory = requires(Op op, const Op constant) {
     { op.newton_memory() } -> std::same_as<NewtonMemory&>;
     { constant.couplings() } -> std::convertible_to<Index>;  // number of off-diagonal blocks of W
 };
-/// Operators with their own Newton steps. To estimate the cost of a step [ns], such an operator must inspect the
-/// complete region.
+/// Operators with their own Newton steps. To estimate the cost of a Newton step [ns], such an operator must inspect the
+/// complete region, so the estimate is requested only after the first sweeps.
 template <class Op>
 concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
     { op.take_newton_steps(number, number, limit) } -> std::same_as<SolveResult>;
@@ -90,8 +90,8 @@ SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedS
 }
 
 /// Starts with sweeps for about the cost of two Newton steps. The convergence rate of the last sweeps then predicts
-/// whether as many sweeps again, or the remaining allowed sweeps, would converge. If not, Newton steps are taken. If
-/// the Newton steps fail, the next group of sweeps is twice as long.
+/// whether as many sweeps again (or the remaining allowed sweeps, if these are fewer) would converge. If not, Newton
+/// steps are taken. If the Newton steps fail, the next group of sweeps is twice as long.
 template <TakesNewtonSteps Op>
 SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     // Newton steps do not support the friction pyramid.
@@ -125,7 +125,8 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
         if (result.iterations + newton_steps >= limits.max_iterations) break;
         if (looks_later && trial == 0) {
             trial = newton_trial(op);
-            // Take Newton steps after at most half of the allowed sweeps, unless a step is far too expensive.
+            // Take Newton steps after at most half of the allowed sweeps, unless two steps cost more than
+            // out_of_proportion times all allowed sweeps.
             constexpr Real out_of_proportion = 10;
             const Real all = limits.max_iterations;
             pause = trial > out_of_proportion * all ? all : std::min(std::max(trial, least_sweeps), all / 2);

@@ -62,8 +62,8 @@ public:
     }
 
     bool known() const { return known_; }
-    /// Stores the present impulse if `error`, measured for the first time, is the smallest error so far. An error that
-    /// is not finite is ignored.
+    /// offer() that ignores an error that is not finite. It serves the last impulse of a method, which no test has
+    /// checked.
     void offer_last(Real error) {
         if (std::isfinite(error)) offer(error);
     }
@@ -108,7 +108,8 @@ public:
     /// measurement is due, if the change suggests convergence, or after the last sweep.
     bool ends_after_sweep(Index iteration, Real change, Index last) {
         if (limits_.fixed_iterations) return false;
-        const bool suggested = op_.suggests_check(change, limits_.tolerance);  // must be called exactly once per sweep
+        // This call resets sums of the sweep, so it must be made exactly once per sweep.
+        const bool suggested = op_.suggests_check(change, limits_.tolerance);
         return (suggested || due(iteration) || iteration >= last) && ends(iteration);
     }
 

@@ -45,11 +45,11 @@ public:
             memory_.contact.push_back({op_.normal(i), op_.mobility(i), op_.limits(i)});
     }
 
-    /// Takes steps until several steps in a row do not lower the error. The error may rise before the correct sets of
-    /// sticking and sliding contacts are found. The final impulse is the best one. `error` is the error of the present
-    /// impulse.
+    /// Takes at most `limit` steps, until the error is within the tolerance or several steps in a row do not lower it.
+    /// The error may rise before the correct sets of sticking and sliding contacts are found. The final impulse is the
+    /// best one. `error` is the error of the present impulse.
     SolveResult run(Real error, Real tolerance, Index limit) {
-        constexpr Index patience = 4;  // in steps (docs/decisions/0004)
+        constexpr Index patience = 4;  // number of steps without a lower error before giving up (docs/decisions/0004)
         const std::span<Vec4> kept = op_.workspace(2);
         SolveResult result{0, error, error <= tolerance};
         std::ranges::copy(impulse_, kept.begin());

@@ -1,6 +1,6 @@
 // Semismooth Newton method on the natural map of the exact Coulomb law (Alart and Curnier 1991;
-// docs/methods/region_solver.md 5.6), with a dense factorisation. It is used for small regions, as an independent
-// check, and when sweeps take longer than a factorisation.
+// docs/methods/region_solver.md 5.6), with a dense factorisation. It is used for small regions, as an independent check
+// of the other methods, and when sweeps take longer than a factorisation.
 #pragma once
 
 #include "systems/solver/methods/any_operator.h"

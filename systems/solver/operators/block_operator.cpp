@@ -88,7 +88,7 @@ Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction)
         return {impulse[0] - pressing(impulse[0] - u[0]), impulse[1] - std::clamp(impulse[1] - u[1], -limit, limit),
                 impulse[2] - std::clamp(impulse[2] - u[2], -limit, limit)};
     }
-    // Projects r - u - mu |u_t| n onto the cone. The tangential direction is needed only in the result.
+    // Returns r minus the projection of r - u - mu |u_t| n onto the cone.
     const Real shift = mu * std::sqrt(u[1] * u[1] + u[2] * u[2]);
     const Real along = impulse[0] - u[0] - shift;
     const Real t1 = impulse[1] - u[1], t2 = impulse[2] - u[2];

@@ -19,7 +19,7 @@ namespace skerry {
 /// Contact problem u = W r + q with W in compressed rows of blocks. W is used as given, even if it is slightly
 /// asymmetric.
 struct BlockSystem {
-    std::span<const Index> row_offset;  // first block of each row; contact count + 1 entries
+    std::span<const Index> row_offset;  // index of the first block of each row; contact count + 1 entries
     std::span<const Index> column;
     std::span<const Mat3> block;  // [1/kg]
     std::span<const Vec3> q;      // [m/s]
@@ -39,8 +39,8 @@ struct BlockMemory {
     using Columns = Columns3;
 
     std::vector<Contact> contact;
-    std::vector<Index> offset;    // first off-diagonal block of each row; contact count + 1 entries
-    std::vector<Index> neighbor;  // position of the other contact of each off-diagonal block
+    std::vector<Index> offset;    // index of the first off-diagonal block of each contact; contact count + 1 entries
+    std::vector<Index> neighbor;  // index of contact j of each off-diagonal block W_ij, in the order of the sweep
     std::vector<Columns> block;   // off-diagonal blocks W_ij
     std::vector<Vec4> impulse;    // [N s]
     std::array<std::vector<Vec4>, workspace_limit> workspace;
@@ -55,13 +55,14 @@ struct BlockMemory {
 /// with respect to its velocity u, for the cone of FCLIB or the pyramid of Lazarevych et al. (2010).
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
-/// Operator of one region: the contacts at positions [begin, end) of the memory. Blocks must not couple them to
-/// contacts of other regions.
+/// Operator of one region: the contacts [begin, end) of `memory`. No block may couple them to contacts of other
+/// regions.
 class BlockOperator {
 public:
     using Number = Real;
 
-    /// `smallest_size` is a lower bound of the norm that divides the error: the region's share of a larger problem.
+    /// `smallest_size` is a lower bound of the norm that divides the error. For one region of a larger problem it is
+    /// the share of this region in the norm of the problem; otherwise it is 0.
     BlockOperator(BlockMemory& memory, Index begin, Index end, Friction friction, Real smallest_size);
 
     Index size() const { return end_ - begin_; }

@@ -16,7 +16,7 @@ namespace {
 
 using Unknown = BodyEquations::Unknown;
 
-/// Calls `of(first, last)` for the range of unknowns of each body.
+/// Calls `of(first, last)` for the range [first, last) of unknowns of each body.
 void for_each_body(const Column<Unknown>& unknown, auto&& of) {
     for (std::size_t begin = 0, end = 0; begin < unknown.size(); begin = end) {
         while (end < unknown.size() && unknown[end].body == unknown[begin].body) ++end;
@@ -30,7 +30,8 @@ void add_identity(const DenseBlock& block, Index at, Real number) {
 
 }  // namespace
 
-/// Lists the velocity rows that contacts can change, sorted by body. Rigid bodies come first.
+/// Lists the unknowns: first the rigid bodies, then the touched nodes, sorted by their body, by the other body that
+/// they touch, and by row.
 void BodyOperator::list_unknowns(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     Column<Index>& of_row = equations.unknown_of_row();
@@ -72,8 +73,9 @@ Index BodyOperator::name_of_node(Index node) const {
     return static_cast<Index>(memory_.velocity.size()) + walk_.owner(node);
 }
 
-/// Groups the unknowns into parts, which are the blocks of the matrix. A part is a rigid body, or those nodes of a
-/// deformable body that touch the same other body. Nodes of a part couple only to nodes of these two bodies.
+/// Groups the unknowns into parts, which are the blocks of the matrix. A part is a rigid body, or the nodes of a
+/// deformable body whose first contact is with the same other body. Most of these nodes couple only within their own
+/// body and with this other body, which keeps the matrix sparse.
 void BodyOperator::list_parts(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     BlockFactor& factor = equations.factor();
@@ -101,8 +103,8 @@ void BodyOperator::list_pushes(BodyEquations& equations) const {
         BodyEquations::Pushes& of = pushes[static_cast<std::size_t>(i)];
         of.count = 0;
         for (const RigidTerm& term : part(i).terms()) {
-            // A held body has no unknown. If the body deforms, its nodes are the unknowns, and their velocities include
-            // the rigid motion.
+            // The rigid motion of a deformable body is an unknown only with rigid_modes, and only if the body is not
+            // held. Without rigid_modes its nodes are the unknowns, and their velocities include the rigid motion.
             if (!moves_rigidly(equations, term)) continue;
             of.add(
                 {.part = unknown_of(term.slot).part, .turns = true, .weight = term.weight, .arm = term.arm.head<3>()});
@@ -149,20 +151,20 @@ BodyEquations& BodyOperator::newton_memory() {
 
 BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
     equations.set_cost(infinity);
-    // The inertia matrix K is known only for nodes with their own mass and for bodies.
+    // The inertia matrix K is not known for nodes of clusters. The cost stays infinite, so no Newton steps are taken.
     if (touches_clusters()) return equations;
     list_unknowns(equations);
     list_parts(equations);
     list_pushes(equations);
-    constexpr Index most_parts = 4000;  // limits memory: all pairs of parts are stored
+    constexpr Index most_parts = 4000;  // the memory for all pairs of parts grows with the square of this
     if (equations.factor().part_count() > most_parts) return equations;
     couple_parts(equations);
     if (!equations.factor().analyse()) return equations;
     Real work = equations.factor().work();
     for_each_body(equations.unknown(), [&](std::size_t begin, std::size_t end) {
         const Real numbers = 3 * static_cast<Real>(end - begin);
-        // The response matrix of a body is inverted once for about ten Newton steps, so a tenth of the cost counts for
-        // each step.
+        // Inverting the response matrix of a body takes about 4/3 n^3 operations, once for about ten Newton steps. So a
+        // tenth of them counts for each step.
         if (deforms(equations.unknown()[begin])) work += numbers * numbers * numbers * 0.13;
     });
     // Cost per operation in small blocks, cost per operation in large blocks (which fill the registers), and cost per
@@ -198,8 +200,8 @@ void BodyOperator::assemble(BodyEquations& equations) const {
     equations.keep_inertia();
 }
 
-/// Sets the blocks of K for the touched nodes of a deformable body. This is the inverse of the nodes' response to
-/// impulses, which includes rigid motion and deformation.
+/// Sets the blocks of K for the touched nodes of a deformable body: the inverse of the matrix of velocity responses to
+/// impulses on these nodes. The responses include rigid motion and deformation.
 void BodyOperator::assemble_deforming(BodyEquations& equations, std::size_t begin, std::size_t end) const {
     const Column<Unknown>& unknown = equations.unknown();
     const auto count = static_cast<Index>(end - begin), numbers = 3 * count;
@@ -303,8 +305,9 @@ Answer answer_at(const RigidPart& part, const Vec3& start, const Vec3& u, Real s
 /// impulses produce. With d = answered - present and the inertia matrix K, sets the right-hand side to K d and returns
 /// the merit d . K d [J].
 ///
-/// Unless `wanted` is `value`, also builds the matrix. If `wanted` is `turns`, also marks contacts whose sliding
-/// direction is opposite to that in the last matrix; stop_turned then changes their equations.
+/// Unless `wanted` is `value`, also builds the matrix. If `wanted` is `turns`, and the region has implicit bodies, also
+/// marks contacts whose sliding direction is opposite to that in the last matrix; stop_turned then changes their
+/// equations.
 Real BodyOperator::answer_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation wanted) {
     const bool with_matrix = wanted != Evaluation::value;
     if (with_matrix) equations.start_from_inertia();
@@ -373,10 +376,10 @@ std::optional<Real> BodyOperator::go_on_as_before(BodyEquations& equations, std:
     return answer_motion(equations, start, Evaluation::turns);
 }
 
-/// One Newton step from the present motion, with a line search on the merit from answer_motion. It takes the first step
-/// length of 1, 1/2, 1/4, ... that lowers the merit below 0.9 times its value, otherwise the length with the smallest
-/// merit. If the step stops contacts, it may take length 1 although the merit rises, a few times per round. Returns the
-/// new merit, or nothing if the factorisation broke down.
+/// One Newton step from the present motion, whose merit is `lack`, with a line search on the merit from answer_motion.
+/// It takes the first step length of 1, 1/2, 1/4, ... that lowers the merit below 0.9 times `lack`, otherwise the
+/// length with the smallest merit. If the step stops contacts, it may take length 1 although the merit rises, a few
+/// times per round. Returns the new merit, or nothing if the factorisation broke down.
 std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack) {
     constexpr int halvings = 6;
     constexpr Real enough = 0.9;
@@ -411,13 +414,13 @@ std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::spa
 
 namespace {
 
-// Softness is the compliance of contacts within a round, as a fraction of the mobility D. A smaller value needs fewer
-// rounds, but more steps per round. Regions of soft bodies converge at the largest value, stiff bodies at a hundredth
-// of it, and a light body under a heavy one at a small fraction of the mass ratio. The softness is therefore adapted to
-// the number of steps of the last round.
+// A round is a sequence of Newton steps with fixed start impulses and compliant contacts. The softness is this
+// compliance as a fraction of the mobility D. A smaller value needs fewer rounds, but more steps per round. Regions of
+// soft bodies converge at the largest value, stiff bodies at a hundredth of it, and a light body under a heavy one at a
+// small fraction of the mass ratio. The softness is therefore adapted to the number of steps of the last round.
 constexpr Real most_softness = 0.3, least_softness = 1e-9;
 // Start value for regions with deformable bodies. Rounds converge there even at a small softness, since contacts that
-// reverse are stopped.
+// reverse their sliding are stopped (stop_turned).
 constexpr Real first_softness = 0.03;
 
 /// Softness (compliance of contacts) of the next round if the last round took this number of steps.

@@ -196,7 +196,7 @@ void BodyOperator::extrapolate(Real factor) {
 
 Real BodyOperator::squared_residual(Index i) const {
     if (i >= swept()) {
-        // The residual of a cable counts once, at its first point that moves.
+        // The residual of a cable counts once, at its first point that impulses can move.
         for (const Index cable : memory_.cable)
             if (memory_.cable_law[static_cast<std::size_t>(cable)].moving == i)
                 return read_cable(cable).squared_residual();
@@ -209,7 +209,7 @@ Real BodyOperator::squared_residual(Index i) const {
         return contact(i).inverse_diagonal * rate * rate;
     }
     if (law == nullptr && part(i).across != 1) {
-        // The natural map of the isotropic problem in scaled variables.
+        // In the scaled variables r_2 / across and across u_2 friction is isotropic (docs/methods/friction.md 4.2).
         Vec4 r = in_frame(part(i).frame, impulse), u = in_frame(part(i).frame, velocity(i));
         r[2] /= part(i).across;
         u[2] *= part(i).across;

@@ -24,9 +24,9 @@ namespace skerry {
 /// of W_ii.
 struct BodyMemory : ContactMemory {
     std::span<RigidPart> part;            // by contact
-    Index contacts = 0;                   // number of contacts
-    std::span<const JointLaw> joint;      // laws of the joint rows, which follow the contacts
-    std::span<const Index> cable;         // numbers of the cables, whose points follow the joint rows
+    Index contacts = 0;                   // number of contacts without joint rows and points of cables
+    std::span<const JointLaw> joint;      // by joint row; joint row k has the contact index contacts + k
+    std::span<const Index> cable;         // indices in cable_law; the points of these cables follow the joint rows
     std::span<const CableLaw> cable_law;  // by solved cable of the step
     std::span<const Vec4> free_velocity;  // by velocity row: velocity without impulses [m/s, rad/s]
 };
@@ -40,7 +40,7 @@ class BodyOperator : public RegionOperatorBase<BodyOperator, ThroughGroups, Body
 
 public:
     /// The error e_nat is divided by `scale` [sqrt(J)]. The velocities in `memory` must match its impulses. `pool`
-    /// provides memory for Newton steps.
+    /// lends memory for Newton steps, `runs` for sweeps over implicit bodies.
     BodyOperator(const BodyMemory& memory, Friction friction, Real scale, const ThroughGroups& walk, NewtonPool& pool,
                  RunPool& runs)
         : Base(memory, friction, scale, walk), pool_(&pool) {
@@ -105,13 +105,14 @@ public:
         return mobility * change * change;
     }
 
-    /// Returns the law of a joint row, or null for a contact.
+    /// Returns the law of a joint row, or null for a contact or a point of a cable.
     const JointLaw* joint(Index i) const {
         return i < memory_.contacts || i >= swept() ? nullptr
                                                     : &memory_.joint[static_cast<std::size_t>(i - memory_.contacts)];
     }
 
-    /// Rate of the mimic row with the blocks i and i + 1. `velocity_of(k)`: velocity of block k.
+    /// Rate at which the mimic equation of the blocks i and i + 1 is violated: the sum of their coefficients times axis
+    /// velocities. `velocity_of(k)`: velocity of block k.
     Real mimic_rate(Index i, auto&& velocity_of) const {
         Real rate = 0;
         for (const Index k : {i, i + 1}) rate += joint(k)->mimic * part(k).frame[2].dot(velocity_of(k));
@@ -130,8 +131,8 @@ private:
     bool moves(Index i) const { return contact(i).inverse_diagonal > 0; }
     Real squared_residual(Index i) const;  // uses a third of the trace of the diagonal block W_ii as mobility D
     const Vec4& free_velocity(std::size_t n) const { return memory_.free_velocity[n]; }
-    /// An impulse on an implicit body moves all touched nodes of the body. Impulses are therefore summed by node before
-    /// the velocities are updated.
+    /// Adds the velocity change by `impulse` to `velocity`. An impulse on an implicit body moves all its touched nodes,
+    /// so the impulses are first summed by node, and each node is then processed once.
     void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
     const RigidPart& part(Index i) const { return memory_.part[static_cast<std::size_t>(i)]; }
@@ -180,11 +181,12 @@ private:
     void for_each_in_sweep(auto&& of);
     /// Solves the cables one after the other. Adds the changes of their impulses to `sum`.
     void sweep_cables(Real relaxation, SweepChange& sum);
-    /// Reads the present impulses and rates of a cable into its law.
+    /// Computes the present impulses and rates of a cable from the region's impulses and velocities, and stores them in
+    /// its law.
     const CableLaw& read_cable(Index cable) const;
     void list_runs() const;
-    /// Applies an impulse of contact i within a sweep. On an implicit body only the nodes of the present run move
-    /// (ContactRuns).
+    /// Applies an impulse of contact i within a sweep. On an implicit body only the nodes of the present run move at
+    /// once; the others follow at the end of the run (ContactRuns).
     void apply(Index i, const Vec4& impulse);
 
     NewtonPool* pool_;

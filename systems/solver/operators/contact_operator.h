@@ -1,7 +1,7 @@
 // Interface between methods and contact problems: the Delassus operator W = J M^-1 J^T, formed only where necessary,
-// and the friction law of each contact. J maps node velocities to contact velocities; M is the lumped mass matrix.
-// Models are LumpedOperator (stores node velocities; used in a step of the engine), BodyOperator (rigid bodies) and
-// BlockOperator (explicit blocks of W; problems from files). NormalRows supports accelerated sweeps only.
+// and the friction law of each contact. J maps velocities of nodes and bodies to contact velocities; M is the mass
+// matrix. The operators are LumpedOperator (stores node velocities; used in a step of the engine), BodyOperator (rigid
+// bodies) and BlockOperator (explicit blocks of W; problems from files). NormalRows supports accelerated sweeps only.
 #pragma once
 
 #include <concepts>
@@ -46,8 +46,10 @@ concept SweptOperator = requires(Op& op, Real relaxation, typename Op::Number nu
     // One sweep with this relaxation factor: solves the contacts exactly, one after the other.
     { op.accelerated_sweep(relaxation) } -> std::same_as<SweepChangeOf<typename Op::Number>>;
     { op.error() } -> std::same_as<typename Op::Number>;  // error of the present impulse
-    op.suggests_check(number, relaxation);  // call it after each sweep, with the sweep's change and the tolerance
-    op.remember();                          // previous = present
+    // Call once per sweep, with the change by the sweep and the tolerance. True if the error may be within the
+    // tolerance.
+    op.suggests_check(number, relaxation);
+    op.remember();  // stores the present impulses and velocities as the previous ones
     // present += number (present - previous); previous = old present
     op.extrapolate(number);
     op.refresh_all();  // recomputes the stored velocities of present and previous impulses
@@ -66,7 +68,7 @@ concept ContactOperator = SweptOperator<Op> &&
     { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;
     { op.sweep(number) } -> std::convertible_to<Real>;  // one sweep; returns the size of its change
     op.residual(out);      // writes -u of each contact; Lazarevych et al. (2010) call it b - A lambda
-    op.multiply(in, out);  // W d
+    op.multiply(in, out);  // out = W in
     { constant.project(i, vector) } -> std::convertible_to<Vec4>;  // projection of an impulse onto the friction law
     {
         constant.feasible(i, vector)

@@ -28,7 +28,8 @@ public:
     }
     void add(const ImplicitCoupling& coupling, std::size_t body, Index place, const Vec4& impulse);
     bool empty() const { return factor_.empty(); }
-    /// Velocities of the touched nodes in the mesh frame, three numbers per node [m/s]
+    /// Velocities of the touched nodes in the frame of the body, three numbers per node [m/s]. Valid until the next
+    /// call.
     std::span<const Real> velocities(std::size_t numbers);
 
 private:
@@ -54,7 +55,7 @@ public:
     void list(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t rows,
               std::size_t most_nodes = 24);
     std::span<const Run> runs() const { return run_; }
-    /// Applies an impulse of contact `i` to the nodes of its run, but not to rigid bodies.
+    /// Applies an impulse of contact `i` to the nodes of its run. The caller applies it to rigid bodies.
     void apply(std::size_t i, const LumpedContact& contact, const ThroughGroups& walk, const Vec4& impulse,
                Vec4* velocity);
     /// Applies the summed impulses of a run to the touched nodes outside of the run. Call it at the end of the run.
@@ -62,7 +63,8 @@ public:
     /// Number of node velocities that a sweep updates, counting repeated updates.
     Real moved() const { return moved_; }
 
-    /// Returns zeroed impulse sums by node of the region, for impulses outside of sweeps [N s]
+    /// Returns zeroed impulse sums by velocity row of the region, for impulses that belong to no run: those of cables,
+    /// and those outside of sweeps [N s]
     std::span<Vec4> sums(std::size_t rows) {
         sum_.assign(rows, Vec4::Zero());
         return sum_;
@@ -71,8 +73,8 @@ public:
     void spread_sums(const ThroughGroups& walk, Vec4* velocity);
 
 private:
-    /// Nodes of one body in the contacts of a run: `count` entries of node_ from `first` on. Their blocks of W begin at
-    /// `first_block` in block_.
+    /// Nodes of one body in the contacts of a run: `count` entries of node_ from `first` on. Their response blocks
+    /// begin at `first_block` in block_.
     struct Patch {
         std::size_t first, count, first_block;
         std::size_t body;  // row of RigidBodyTable
@@ -81,7 +83,8 @@ private:
     /// Nodes of the run that an impulse on one node of a contact moves. `count` is 0 if this node is on no implicit
     /// body.
     struct Near {
-        std::size_t first, count, self, row;  // `first`, `self`: indices in node_; `row`: index of a block in block_
+        // `first`, `self`: indices in node_; `row`: index in block_ of the first of `count` blocks
+        std::size_t first, count, self, row;
     };
 
     void list_patches(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t first_node,
@@ -93,7 +96,7 @@ private:
     Column<Index> node_;                // rows of the region, ascending within a patch
     Column<Vec4> pending_;              // impulse sum by index in node_ [N s]
     Column<std::array<Near, 4>> near_;  // by contact
-    Column<PaddedMat3> block_;          // blocks of W in world axes [1/kg]
+    Column<PaddedMat3> block_;          // responses of node velocities to impulses on nodes, in world axes [1/kg]
     // Index in node_ that a row of the region received last, by row. It is outdated if node_ now holds another row at
     // this index.
     Column<Index> entry_;

@@ -12,12 +12,12 @@
 
 namespace skerry {
 
-/// A visiting order. It calls `body` with ranges [begin, end) that together cover all positions. Contacts that share a
-/// node are never visited concurrently, and always in the same order.
+/// A visiting order. It calls `body` with ranges [begin, end) that together cover the places [0, count) of the order.
+/// Contacts that share a node are never visited concurrently, and one of them always comes first.
 template <class W>
 concept RegionOrder = requires(const W walk, std::size_t count, void (*body)(std::size_t, std::size_t),
                                Real (*part)(std::size_t, std::size_t)) {
-    // number of the contact in the region, for a position in the visiting order
+    // number of the contact in the region, for a place in the visiting order
     { walk.number_of(count) } -> std::convertible_to<std::size_t>;
     walk.contacts(count, body);
     walk.nodes(count, body);
@@ -28,8 +28,9 @@ concept RegionOrder = requires(const W walk, std::size_t count, void (*body)(std
 template <class W>
 concept RegionWalk = RegionOrder<W> &&
     requires(const W walk, const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
-    { W::own_masses } -> std::convertible_to<bool>;  // true if J M^-1 J^T of a contact equals LumpedContact::diagonal
-    walk.apply(contact, impulse, velocity);          // velocities of the region's nodes += M^-1 J^T impulse
+    // true if every moving node has its own mass and belongs to no cluster
+    { W::own_masses } -> std::convertible_to<bool>;
+    walk.apply(contact, impulse, velocity);                     // velocities of the region's nodes += M^-1 J^T impulse
     { walk.coupling(contact, contact) } -> std::same_as<Real>;  // scalar block J M^-1 J^T of two contacts [1/kg]
 };
 

@@ -81,8 +81,8 @@ private:
         };
     }
 
-    // extrapolate() updates the velocities at once. The impulses are extrapolated in the next sweep, which visits them
-    // anyway.
+    // extrapolate() updates the velocities at once. While `waiting_` is true, the impulses still have to be
+    // extrapolated by `factor_`; the next sweep does it, because it visits them anyway.
     bool waiting_ = false;
     Real factor_ = 0;
 };
@@ -101,7 +101,8 @@ void LumpedOperatorBy<Walk>::settle() {
 template <RegionWalk Walk>
 void LumpedOperatorBy<Walk>::extrapolate(Real factor) {
     settle();
-    // Velocities depend on the impulses linearly, apart from a constant. So they are extrapolated by the same factor.
+    // Velocities are an affine function of the impulses, so extrapolation by the factor of the impulses is exact for
+    // them.
     walk_.nodes(memory_.velocity.size(), [this, factor](std::size_t begin, std::size_t end) {
         extrapolate_range(begin, end, factor, memory_.velocity, memory_.scratch);
     });

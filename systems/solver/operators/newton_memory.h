@@ -18,7 +18,7 @@ struct NewtonMemory {
     };
 
     Eigen::MatrixXd operator_matrix;  // W
-    Eigen::MatrixXd jacobian;         // Jacobian of the active contacts
+    Eigen::MatrixXd jacobian;         // Jacobian of the natural map of the active contacts
     Eigen::VectorXd rest, change;
     std::vector<Contact> contact;
     std::vector<Index> active;  // numbers of the contacts that are not open

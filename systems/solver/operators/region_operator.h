@@ -69,7 +69,7 @@ public:
                 if (own().moves(static_cast<Index>(i))) part += own().squared_residual(static_cast<Index>(i));
             return part;
         });
-        // Near the underflow the sum and the scale have no accurate digits, and a scale of zero has no quotient.
+        // Near the underflow threshold, `sum` and scale_ have no accurate digits, and scale_ may be zero.
         constexpr Real least_energy = std::numeric_limits<Real>::min() / std::numeric_limits<Real>::epsilon();  // [J]
         if (sum < least_energy) return 0;
         return std::sqrt(sum) / scale_;

@@ -36,8 +36,8 @@ public:
     void apply_to_node(const LumpedContact& contact, std::size_t a, const Vec4& impulse, Vec4* velocity) const {
         clusters_.apply_to_node(contact, a, impulse, velocity);
     }
-    /// Applies an impulse to all nodes that are on no implicit body. It serves corrections in which
-    /// implicit bodies move rigidly: of positions, and with rigid-body modes.
+    /// Applies an impulse to all nodes that are on no implicit body. The function serves corrections in which implicit
+    /// bodies do not deform: the split impulse and rigid-body modes. Other code moves the rigid bodies.
     [[gnu::always_inline]] void apply_undeformed(const LumpedContact& contact, const Vec4& impulse,
                                                  Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
@@ -60,7 +60,7 @@ public:
         return rigid_->position[static_cast<std::size_t>(node_[static_cast<std::size_t>(n)])] -
                rigid_->center[body_of(n)];
     }
-    /// True if contacts touch nodes of this implicit body. `body` is a row of RigidBodyTable.
+    /// True if the body is implicit and contacts touch its nodes. `body` is a row of RigidBodyTable.
     bool deforms(Index body) const {
         return implicit_->any() && !implicit_->coupling->nodes[static_cast<std::size_t>(body)].empty();
     }

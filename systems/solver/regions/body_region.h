@@ -10,11 +10,11 @@
 namespace skerry {
 
 /// A region with rigid or implicit bodies. Its velocity rows are: two per rigid body, then touched nodes of implicit
-/// bodies, then nodes of clusters, then other nodes. In the memory by contact, joints follow the
-/// contacts, and points of cables follow the joints.
+/// bodies, then nodes of clusters, then other nodes. In the memory by contact, joints follow the contacts, and points
+/// of cables follow the joints.
 struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     std::span<const Index> joint;  // rows of JointBlockTable
-    std::span<const Index> cable;  // numbers of solved cables
+    std::span<const Index> cable;  // indices of the cables that the region solves
     std::span<const Index> rigid;  // rows of RigidBodyTable
     bool has_axes = false;         // true if the friction of a contact depends on the direction
 
@@ -36,8 +36,8 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     /// the tolerance (docs/methods/joints.md 2).
     void hold_joints(const RegionStage& stage, BodyOperator& op, RegionOutcome& outcome) const;
     void write_contact(const RegionStage& stage, std::size_t i) const;
-    /// Adds the impulse of contact or point `i` to the bodies that its nodes move with, and writes the velocities of
-    /// these nodes.
+    /// Adds the impulse of contact `i` (or of point `i` of a cable) to the rigid and implicit bodies of its nodes, and
+    /// writes the velocities of these nodes.
     void write_stencil(const RegionStage& stage, const Stencil& stencil, std::size_t i) const;
     void write_joints(const RegionStage& stage) const;
     void write_body_push(const RegionStage& stage) const;

@@ -21,7 +21,7 @@ void find_mobility(const CableLaw& law, const BodyMemory& memory, const ThroughG
                       points = static_cast<std::size_t>(law.points);
     std::ranges::fill(mobility, Real(0));
     // An impulse at point b changes the velocity of point a by the block of W. Point p ends segment p - 1 and begins
-    // segment p.
+    // segment p, so its velocity lengthens segment p - 1 and shortens segment p.
     const auto for_each_segment = [&](std::size_t point, auto&& visit) {
         if (point > 0) visit(point - 1, Real(1));
         if (point < count) visit(point, Real(-1));
@@ -121,7 +121,7 @@ void write_cable(const RegionStage& stage, Index cable, const BodyMemory& memory
     const CableLaw& law = law_of(stage, cable);
     const Range points = block_of(stage, cable).points;
     law.read(memory.impulse.subspan(static_cast<std::size_t>(law.first)), law.impulse);
-    if (law.is_tie) {  // take_tie_rows() finds its work
+    if (law.is_tie) {  // take_tie_rows() computes the work of the tie
         std::ranges::copy(law.impulse, rows_of(stage.out.cable_impulse, points).begin());
         return;
     }
@@ -130,7 +130,7 @@ void write_cable(const RegionStage& stage, Index cable, const BodyMemory& memory
     std::ranges::copy(law.impulse, rows_of(stage.out.cable_impulse, points).begin());
     Real work = 0, loss = 0;
     Vec3 sum = Vec3::Zero();
-    Real drawn = 0;             // rate of the cable past the point, towards the first point [m/s]
+    Real drawn = 0;             // speed at which the cable slides past the point towards its first point [m/s]
     Vec3 after = Vec3::Zero();  // mean velocity of the next point in the step [m/s]
     for (Index p = points.size(); p-- > 0;) {
         const Vec3 impulse = memory.impulse[static_cast<std::size_t>(law.first + p)].head<3>();

@@ -1,4 +1,5 @@
-// Rows of cables in a region. Each point of a cable has three rows like a contact, and the cable's law couples them
+// Rows of cables in a region. A cable is solved in a region if its length is prescribed or it has friction. Each point
+// of the cable has three rows like a contact, and the law of the cable couples the rows of all points
 // (docs/methods/cables.md 2).
 #pragma once
 
@@ -10,8 +11,8 @@
 
 namespace skerry {
 
-/// Fills the law of a solved cable, whose points are loaded from row `first` of `memory` on. `walk`: traversal of the
-/// region. Adds the cable to the sums for the error scale.
+/// Fills the law of a solved cable. Its points must already be loaded, from contact row `first` of `memory` on. `walk`:
+/// traversal of the region. Adds the cable to the sums for the error scale.
 void load_cable(const RegionStage& stage, Index cable, const BodyMemory& memory, const ThroughGroups& walk, Index first,
                 LoadSums& sums);
 

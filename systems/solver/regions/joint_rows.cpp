@@ -30,8 +30,8 @@ struct BodyMotion {
     Vec3 at_point() const { return velocity + turning(); }
 };
 
-/// Half of the acceleration with which the joint error changes in the frame of the second body while both bodies move
-/// freely [m/s^2 or rad/s^2]
+/// Half of the acceleration of the joint error in the frame of the second body while both bodies move freely. Times h
+/// it is the second-order part of the mean rate of the error in the step [m/s^2 or rad/s^2]
 Vec3 half_acceleration(bool of_spins, const BodyMotion& first, const BodyMotion& second) {
     if (of_spins) return (first.spin_rate - second.spin_rate - second.spin.cross(first.spin - second.spin)) / 2;
     const Vec3 of_first = first.spin.cross(first.turning()) + first.spin_rate.cross(first.arm);
@@ -72,7 +72,8 @@ AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real fastest) {
     bounds.target = axis.motor.target;
     if (axis.drive == JointDrive::speed) return bounds;
     const Real way = axis.motor.target - axis.coordinate;
-    // Braking uses half of the greatest motor impulse; the other half is reserved for loads.
+    // Greatest speed from which half of the motor force `most` stops within `way`: v^2 = 2 a |way| with the
+    // deceleration a = most mobility / 2. The other half is reserved for loads.
     const Real brakes = std::sqrt(axis.motor.most * mobility * std::abs(way));
     const Real closing = std::copysign(std::min(std::abs(way) / h, brakes), way);
     bounds.target = std::clamp(axis.target_rate + closing, -axis.motor.most_speed, axis.motor.most_speed);
@@ -183,7 +184,7 @@ void load_joint(const RegionStage& stage, const JointBlock& block, std::span<con
 }
 
 void load_mimic(const JointPlaceInRegion& first, const JointPlaceInRegion& leader) {
-    constexpr Real rounding = 1e-12;  // rounding error of the mobility, as a fraction of its summands
+    constexpr Real rounding = 1e-12;  // a smaller fraction of the absolute summands counts as mobility 0
     Real sum = 0, size = 0;
     for (const JointPlaceInRegion* a : {&first, &leader})
         for (const JointPlaceInRegion* b : {&first, &leader}) {

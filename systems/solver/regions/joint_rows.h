@@ -20,8 +20,8 @@ struct JointPlaceInRegion {
 void load_joint(const RegionStage& stage, const JointBlock& block, std::span<const Index> rigid,
                 const JointPlaceInRegion& place);
 
-/// Sets the mobility of a mimic row from its two loaded blocks. The row belongs to `first`; the block `leader` counts
-/// as a row that moves nothing.
+/// Sets the mobility of a mimic equation, which couples the axis velocities of two joints, from its two loaded blocks.
+/// The equation is solved with `first`; the block `leader` gets mobility 0, so sweeps skip it.
 void load_mimic(const JointPlaceInRegion& first, const JointPlaceInRegion& leader);
 
 /// Corrects the offset of a joint so that the joint holds at the end of the step, by one Newton step. The error of the

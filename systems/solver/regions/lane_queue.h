@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// True if the settings allow solving regions in lanes.
+/// True if the settings allow solving regions in SIMD lanes.
 bool lanes_allowed(const SolverSettings& settings);
 
 /// Queue of loaded and started regions. It solves eight regions of one size class at a time, finishes them and writes
@@ -15,7 +15,8 @@ class LaneQueue {
 public:
     LaneQueue(const RegionStage& stage, RegionTable& regions) : stage_(stage), regions_(regions) {}
 
-    /// True if the queue can solve this region.
+    /// True if the queue can solve this region: it is small and has at least two contacts, no ties, and equal static
+    /// and dynamic friction.
     bool takes(const RegionInOrder& region) const;
     void push(Index number, const RegionInOrder& region);
     /// Solves the regions that are still waiting.

@@ -14,7 +14,7 @@
 namespace skerry {
 
 /// One region and its rows of the working memory, in the order in which the walk visits the contacts. BodyRegion
-/// replaces some of the functions.
+/// replaces the functions from moves_node() on.
 template <RegionOrder Walk, class Memory>
 struct LoadedRegion {
     std::span<const Index> row;  // rows of ContactTable, by number of the contact in the region
@@ -26,14 +26,16 @@ struct LoadedRegion {
     Real tolerance = 0;  // tolerance of the relative error for this region
 
     Index row_at(std::size_t place) const { return row[walk.number_of(place)]; }
-    /// True if the region writes the velocity of its node number n. False if the node moves with the frame of a body.
+    /// True if write_nodes() writes the velocity of the node in velocity row n. BodyRegion returns false for nodes that
+    /// move with the frame of a body.
     bool moves_node(const RegionStage&, std::size_t) const { return true; }
     SolverMethod method(const SolverSettings& settings) const { return settings.method; }
     /// Sets the impulses of joints and cables to those of the last step.
     void take_joint_impulses(const RegionStage&) const {}
     /// Solves the region again if its joints would not hold at the end of the step.
     void hold_joints(const RegionStage&, auto&, RegionOutcome&) const {}
-    /// Adds the impulse of a contact to the touched bodies, and writes the velocities of the nodes of these bodies.
+    /// Adds the impulse of a contact to the touched rigid and implicit bodies, and writes the velocities of the
+    /// contact's nodes on them.
     void write_contact(const RegionStage&, std::size_t) const {}
     /// Writes the impulses of joints and cables.
     void write_joints(const RegionStage&) const {}
@@ -46,8 +48,8 @@ struct LoadedRegion {
 };
 
 /// List of the nodes of a region and their velocities, in the order of their first appearance. RegionMemory::place
-/// caches the position of a node in the list. Regions share no moving node, so they do not overwrite each other's
-/// cached positions. A cached position from another region is detected: this list then holds a different node there.
+/// stores the index of each node in the list. Regions of a step share no moving node, so their entries do not conflict.
+/// An entry left from an earlier step is recognised: at this index the list holds another node or none.
 class NodeList {
 public:
     /// The list may use at most `room` entries of the columns by node, from `first` on.
@@ -56,7 +58,8 @@ public:
           node_(data.node.span().subspan(first, room)),
           velocity_(data.velocity.span().subspan(first, room)) {}
 
-    /// Returns the position of a node. A new node is added to the list with the velocity that `velocity()` returns.
+    /// Returns the index of a node in the list. A new node is added to the list with the velocity that `velocity()`
+    /// returns.
     template <class Velocity>
     Index place_of(Index node, Velocity&& velocity) {
         Index& place = place_[node];

@@ -136,8 +136,8 @@ private:
         }
     }
 
-    /// Loads a point of a cable. Its `offset` is the velocity of the held nodes, or of a point of a collider.
-    /// `acts_at`: point at which impulses act on rigid and implicit bodies; null: the nodes of the point.
+    /// Loads a point of a cable. LumpedContact::offset gets the velocity of the held nodes, or of the collider at the
+    /// point. `acts_at`: point at which impulses act on rigid and implicit bodies; null: the nodes of the point.
     void load_point(std::size_t point, const Vec3* acts_at, LumpedContact& contact, RigidPart& part) {
         const RigidNodes& rigid = stage_.inputs.rigid.nodes;
         const Stencil& stencil = stage_.inputs.cables.stencil[point];

@@ -31,7 +31,8 @@ LumpedRegion<Walk> lumped_region(const RegionStage& stage, std::span<const Index
 }
 
 /// Loads the contacts of a region. `numbering(k)` returns a function that maps a moving node of contact k to its row in
-/// the region. After each call of the returned function, the velocity of the row must be set.
+/// the region. When the returned function returns a row, region.memory.velocity must already contain the velocity of
+/// this row.
 template <RegionWalk Walk, class Numbering>
 void load_lumped_contacts(const RegionStage& stage, LumpedRegion<Walk>& region, Numbering&& numbering) {
     // The lane solver needs the contact velocities without impulses.

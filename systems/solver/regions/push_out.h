@@ -28,7 +28,8 @@ concept RegionOperator = ContactOperator<Op> &&
 struct PushedContacts {
     /// True if rotation of bodies may reduce gaps.
     bool any_turns() const { return false; }
-    /// Speed at which rotation reduces the gap of a contact; at most 0 [m/s]
+    /// Rate of change of a contact's gap by rotation, if rotation shrinks the gap; otherwise 0. So it is never positive
+    /// [m/s]
     Real loss(std::size_t, std::span<const Vec4>) const { return 0; }
     /// Does one sweep over the joints. Returns the squared energy norm of the impulse change [J]
     Real sweep_joints(std::span<Vec4>) const { return 0; }
@@ -103,12 +104,12 @@ private:
         // Joints and ties can prevent a contact from being pushed apart. They take precedence, so the last sweeps are
         // over joints and ties only: with an error in their positions the next velocity solve would demand a motion
         // that the contact forbids.
-        constexpr Real rounding = 1e-24;  // squared
+        constexpr Real rounding = 1e-24;  // square of the relative tolerance 1e-12
         sweep_rows(rounding * asked, true);
     }
 
     /// Sweeps over the joints and contacts, or over the joints and ties only, until the squared energy norm of the
-    /// change of a sweep is at most `small`. Returns true if it is reached before the limit of the iterations.
+    /// change of a sweep is at most `small`. Returns true if this happens within max_iterations.
     bool sweep_rows(Real small, bool only_equations) {
         for (Index iteration = 1; iteration <= stage_.settings.max_iterations; ++iteration) {
             const Real of_joints = others_.sweep_joints(velocity_);

@@ -15,7 +15,8 @@ namespace {
 /// lowest point after the rotation, because the lowest point moves around the rim [m]
 Real height_after(const Vec3& place, const Vec3& axis, const Vec3& axis_then, const Vec3& normal) {
     // A point counts as the lowest of its rim if it is higher than the lowest one by at most `lowest` times the radius.
-    // Below the angle `least_tilt` between axis and normal, many points of a rim count as lowest [rad].
+    // Below the angle `least_tilt` between axis and normal [rad], many points of a rim would count as lowest, so
+    // `place` itself is rotated.
     constexpr Real lowest = 1e-9, least_tilt = 1e-4;
     const Real up = axis.dot(place), radius = (place - up * axis).norm();
     const auto lowest_of_rim = [&](const Vec3& of) { return up * of.dot(normal) - radius * of.cross(normal).norm(); };
@@ -42,7 +43,7 @@ Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
     constexpr Real rounding = 1e-12;  // rounding error of positions, as in push_slop [m]
     const RigidInputs& rigid = stage_.inputs.rigid;
     const Vec3& normal = stage_.inputs.normal[static_cast<std::size_t>(row_[i])];
-    Real along = 0;  // [m]
+    Real along = 0;  // change of the gap by arcs instead of straight lines [m]
     for (const RigidTerm& term : memory_.part[i].terms()) {
         const auto r = static_cast<std::size_t>(term.row);
         const bool cylinder = rigid.is_cylinder(term.row);

@@ -25,9 +25,9 @@ public:
 
     /// True if the region has a capsule or a cylinder.
     bool any_turns() const { return any_turns_; }
-    /// Rate at which the gap of contact i shrinks because the contact point moves on an arc instead of a straight line.
-    /// The body moves with its velocities and the pseudo velocities `push`. At most 0; 0 if it is below the rounding
-    /// error [m/s].
+    /// Rate of change of the gap of contact i because the contact point moves on an arc instead of a straight line. The
+    /// body moves with its velocities and the pseudo velocities `push`. Negative if the gap shrinks by more than the
+    /// rounding error, otherwise 0 [m/s].
     Real loss(std::size_t i, std::span<const Vec4> push) const;
     /// Does one sweep over the joints. Returns the squared energy norm of the impulse change [J]
     Real sweep_joints(std::span<Vec4> push) const;

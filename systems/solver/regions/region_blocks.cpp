@@ -47,8 +47,8 @@ std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memor
 }
 
 std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& regions, RegionMemory& memory) {
-    // The first entries, four for each contact, belong to regions without clusters and rigid bodies. The entries of the
-    // other regions follow.
+    // In the columns by node, the first entries, four for each contact of the step, belong to regions without clusters
+    // and rigid bodies. The entries of the other regions follow.
     std::size_t end = 4 * regions.contacts.item.size();
     memory.rows = memory.contact_rows = regions.contacts.item.size();
     memory.region_clusters.clear();

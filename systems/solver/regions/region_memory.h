@@ -82,7 +82,8 @@ struct RegionMemory {
     // 1 for each region in which the friction of a contact depends on the direction; empty if no contact has an axis
     Column<std::uint8_t> region_has_axes;
     Column<std::size_t> node_base;  // by region: index of the first node row of the region
-    // For each cluster and for each body: last region that touched the cluster or body.
+    // For each cluster and for each body: last region in whose list find_region_blocks has put it, so that no list
+    // contains it twice.
     Column<Index> region_of_cluster, region_of_rigid;
     Column<RigidPart> rigid_part;  // by contact; empty if there are no rigid bodies
     // Laws by row of the regions with joints or cables. These rows follow the contact rows, so entry 0 is row
@@ -90,7 +91,8 @@ struct RegionMemory {
     Column<JointLaw> joint_law;
     Column<CableLaw> cable_law;   // by solved cable
     Column<Real> cable_mobility;  // mobility matrices of all cables (CableBlock::mobility) [1/kg]
-    Column<Real> cable_numbers;   // by point of the cables, several times: numbers by segment of CableLaw
+    // the spans of CableLaw from far_mobility on, one after the other, each by point of all cables
+    Column<Real> cable_numbers;
     // For regions with joints or cables: index of the first row of the region. The contacts of the region come first,
     // then the joints, then the points of the cables.
     Column<std::size_t> joint_base;
@@ -98,14 +100,15 @@ struct RegionMemory {
     // cables.
     std::size_t contact_rows = 0, rows = 0;
     Column<Vec4> free_velocity;  // by row of `velocity`; empty if there are no rigid bodies [m/s]
-    // For each row of NodeTable: position that the node received last in the list of its region. It is outdated if the
-    // list now holds another node there.
+    // For each row of NodeTable: index that the node received last in the list of its region (NodeList). It is outdated
+    // if the list now holds another node at this index.
     Column<Index> place;
     // by region
-    Column<Real> cost;           // predicted [microseconds]
+    Column<Real> cost;           // predicted time of the solve [microseconds]
     Column<Real> cost_parts;     // partial sums of `cost` over the regions
-    RegionHistoryTable history;  // number of sweeps of each region in earlier steps
-    RegionHistoryTable present;  // number of sweeps of each region, including this step
+    RegionHistoryTable history;  // average numbers of sweeps of the regions of the last step
+    // `history` of this step's regions; remember_regions() adds this step and swaps the tables
+    RegionHistoryTable present;
     // by task
     Column<RegionTask> task;
     LargeRegions large;

@@ -37,31 +37,33 @@ void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regi
 
 SolveLimits limits_of(const SolverSettings& settings, Real tolerance);
 
-/// Tolerance of a region with these contacts. Regions whose bodies are all still use a smaller tolerance; otherwise the
-/// solver error would keep the bodies from coming to rest (docs/methods/errors.md 7).
+/// Tolerance of a region with the contacts `row`. If all its bodies are still, it is SolverSettings::still_tolerance if
+/// that is smaller than the usual tolerance. With a greater tolerance the solver error would keep the bodies from
+/// coming to rest (docs/methods/errors.md 7).
 Real tolerance_of(const RegionStage& stage, std::span<const Index> row);
 
-/// Memory of `count` contacts from row `base` on, and of velocities from row `first_node` on. `node` lists the row of
-/// NodeTable of each velocity. `slots` is the number of workspace vectors.
+/// Memory of one region: `count` entries of the columns by contact from index `base` on, and node.size() entries of the
+/// columns by node from index `first_node` on. `node` lists the rows of NodeTable. `slots`: number of workspace
+/// vectors.
 ContactMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::size_t first_node,
                           std::span<const Index> node, std::size_t slots);
-/// Predicted velocity of a node [m/s]
+/// Velocity that a node would have after the step without contact impulses [m/s]
 inline Vec4 free_velocity_of(const RegionStage& stage, Index node) {
     return padded(stage.out.velocity_next[node]);
 }
 /// Memory of the split impulse for `count` contacts from row `base` on.
 PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count);
 
-/// Energy that a contact dissipates. Its impulse and velocities must already be written (docs/methods/time_stepping.md
-/// 2.6) [J]
+/// Energy that a contact dissipates (docs/methods/time_stepping.md 2.6). `stage.out` must already contain the impulse
+/// of the contact and the velocities of its nodes [J].
 Real dissipated_by(const RegionStage& stage, Index row);
 
 /// Work against the forces of the step when nodes are displaced by h p, with the pseudo velocities p in memory.scratch
 /// [J]. Contact forces are not included. The work is accurate to first order in h p. `own_masses`: true if the region
-/// has neither clusters nor bodies.
+/// has neither clusters nor rigid bodies.
 ///
 /// The force on a node times h is the change of momentum of the node minus its contact impulses. For a node of a
-/// cluster it is the entry of the node in RegionInputs::cluster_kick.
+/// cluster the force times h is read from RegionInputs::cluster_kick, because its mass is coupled to other nodes.
 Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses);
 
 }  // namespace skerry

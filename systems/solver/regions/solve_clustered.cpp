@@ -11,7 +11,8 @@ RegionOutcome solve_clustered(const RegionStage& stage, std::span<const Index> r
     NodeList list(stage.memory, first_node, room_of_region(stage.inputs, stage.memory, row.size(), number));
     LumpedRegion<ThroughClusters> region =
         lumped_region(stage, row, base, first_node, list.node(), ThroughClusters(clusters, list.node()));
-    // Nodes of clusters get the first rows of the region.
+    // ThroughClusters expects the nodes of each cluster in consecutive rows of the region, also nodes without contacts.
+    // So all nodes of the touched clusters are listed before the contacts add theirs.
     for (const Index c : stage.memory.region_clusters[r])
         for (const Index node : clusters.nodes[static_cast<std::size_t>(c)])
             list.place_of(node, [&] { return free_velocity_of(stage, node); });

@@ -12,7 +12,8 @@ RegionByColour load_by_colour(const RegionStage& stage, std::span<const Index> r
         for (std::size_t n = begin; n < end; ++n) region.memory.velocity[n] = free_velocity_of(stage, kept.node[n]);
     });
     load_lumped_contacts(stage, region, [&](std::size_t number) {
-        // load_contact calls this function for each moving node, in the order in which kept.local lists the nodes.
+        // load_contact calls the returned function once for each moving node of the contact, in the order in which
+        // kept.local lists these nodes.
         return [next = kept.local[number].data()](Index) mutable { return *next++; };
     });
     return region;

@@ -13,7 +13,8 @@ SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& re
     const PushMemory memory = push_memory(stage, region.base, region.row.size());
     NormalRows rows(region.memory, region.scale, {memory.impulse, memory.bias});
     const SolveResult result = solve_ags(rows, limits_of(stage.settings, region.tolerance));
-    // If the method has not converged, region.memory already contains the best impulses.
+    // Without convergence solve_ags has already written its best impulses to region.memory, and `rows` holds later,
+    // worse ones.
     if (result.converged || !std::isfinite(result.error)) rows.keep();
     return result;
 }

@@ -8,11 +8,12 @@ namespace skerry {
 
 using RegionInOrder = LumpedRegion<InOrder>;
 
-/// Copies the contacts and moving nodes of a region to contiguous memory. `base` is the row of the first contact in the
-/// columns by contact. Impulses are zero.
+/// Copies the contacts and moving nodes of a region to contiguous memory. `base` is the index of its first contact in
+/// the columns by contact of RegionMemory. Impulses are zero.
 RegionInOrder load_region(const RegionStage& stage, std::span<const Index> row, Index base);
 
-/// Runs the method of the settings from the present impulse. Without friction it uses NormalRows.
+/// Runs the method of the settings from the present impulses. For a frictionless region, if the settings allow it, the
+/// sweeps change only the normal impulses (NormalRows).
 RegionOutcome sweep_in_order(const RegionStage& stage, const RegionInOrder& region, LumpedOperator& op);
 
 /// Solves a region with one contact in closed form: one contact step from zero impulse.

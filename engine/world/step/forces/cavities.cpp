@@ -23,8 +23,9 @@ void list_cavity_forces(WorldState& w, TaskGraph& g) {
             value(w.clock.time), value(p.lag), value(p.kick), outputs<CavityOutputs>(c, w.model.nodes), if_any);
 }
 
-/// Upper bound of the contribution of one cavity's pressure to the squared frequencies of the nodes of a body [1/s^2].
-/// `p`: pressure [Pa]. `stiffness`: stiffness of the filling [Pa/m^3].
+/// Upper bound by which one cavity raises the squared circular frequencies of a body that deforms [1/s^2]: the sum of
+/// the bounds for the filling and for the rotation of faces (not for implicit bodies). `p`: largest pressure [Pa].
+/// `stiffness`: decrease of pressure per increase of volume [Pa/m^3].
 Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Real p, Real stiffness,
                    bool is_implicit) {
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(cavities.body[c])];
@@ -51,7 +52,9 @@ Real rate_of_nodes(Model& model, const CavityInputs& cavities, std::size_t c, Re
     return stiffness * of_filling + (is_implicit ? 0 : p * of_turning);
 }
 
-/// Upper bound of the contribution of one cavity's filling to the squared frequencies of a rigid body [1/s^2].
+/// Upper bound by which the filling of one cavity raises the squared circular frequencies of a rigid body [1/s^2]:
+/// stiffness (|A|^2/m + L.I^-1 L), with the sum A of the area vectors of the faces and its moment L about the centre of
+/// mass.
 Real rate_of_rigid(const Model& model, const CavityInputs& cavities, std::size_t c, Real stiffness) {
     const auto body = static_cast<std::size_t>(cavities.body[c]);
     if (model.is_held(body)) return 0;

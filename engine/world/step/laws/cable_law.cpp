@@ -1,5 +1,5 @@
-// Constraint law of cables whose length is prescribed, or that rub at their points (docs/methods/cables.md). The stage
-// forces/prepare_cables of the force element lists their rows.
+// Constraint law of cables with a prescribed length, or with friction at the points over which they run
+// (docs/methods/cables.md). The stage forces/prepare_cables lists the rows of these cables (forces/cables.cpp).
 #include "engine/world/step/seams.h"
 #include "systems/forces/prepare_cables.h"
 

@@ -1,4 +1,5 @@
-// Motion model of nodes with lumped masses. They are integrated explicitly by symplectic Euler.
+// Motion model of the nodes of explicit bodies, which have lumped masses. They are integrated explicitly, by symplectic
+// Euler or leapfrog.
 #include "engine/world/kernels.h"
 #include "engine/world/step/seams.h"
 #include "systems/dynamics/elements/find_unstrained.h"

@@ -1,5 +1,6 @@
-// Motion model of clusters. A cluster consists of the nodes of elements that would be unstable at the step length.
-// These nodes are integrated together by an implicit method (docs/methods/clusters.md).
+// Motion model of clusters. A cluster consists of the moving nodes of connected elements that explicit integration
+// would make unstable at the step length. An implicit method integrates the nodes of a cluster together
+// (docs/methods/clusters.md).
 #include "engine/world/kernels.h"
 #include "engine/world/step/seams.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"

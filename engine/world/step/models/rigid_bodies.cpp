@@ -18,8 +18,8 @@ void list_rigid_kick(WorldState& w, TaskGraph& g) {
             value(p.h), value(p.kick), outputs<RigidKicks>(m.rigid_bodies, m.nodes));
 }
 
-/// Lists the stage that computes the next pose of each body. The stage also sets velocity_next of the nodes, which is
-/// the constant velocity that leads to the nodes' next positions.
+/// Lists the stage that computes the pose of each body at the end of the step. The stage also sets velocity_next of
+/// each node to the constant velocity that moves the node to its position at the end of the step.
 void list_turn(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/turn_rigid_bodies", turn_rigid_bodies, rigid_inputs(m),
