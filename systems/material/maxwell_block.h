@@ -119,8 +119,8 @@ struct InnerProduct {
             part_of(a.xy, part), part_of(a.yz, part), part_of(a.zx, part)};
 }
 
-/// Constants of a step that are equal in all elements of a body. Each fills a register, so that instructions can read it
-/// from memory. Moduli are divided by `modulus`.
+/// Constants of a step that are equal in all elements of a body. Each fills a register, so that instructions can read
+/// it from memory. Moduli are divided by `modulus`.
 struct MaxwellStep {
     // fraction 1 / (1 + h r) of the spring strain that remains after a step h at the rate r
     std::array<KernelFloat, maxwell_count> kept;
